@@ -1,0 +1,50 @@
+use super::*;
+use proptest::prelude::*;
+
+/// What every tier must agree on, bit for bit.
+#[inline(always)]
+fn exercise<V: Vector8>(input: &[Lanes; 3]) -> [Lanes; 9] {
+    let [a, b, c] = input.map(V::load);
+    let mask = a.less(b).or(b.less_equal(c).not());
+    [
+        a + b * c,
+        a / b - c,
+        a.abs().sqrt(),
+        a.max(b).min(c),
+        V::select(mask, a, -b),
+        a.permute(&[7, 0, 3, 3, 1, 2, 6, 5]),
+        V::splat(a.horizontal_sum()),
+        a.scaled_by(DoubleDouble::PI).0,
+        a.scaled_by(DoubleDouble::PI).1,
+    ]
+    .map(V::store)
+}
+
+crate::tiered! {
+    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 9] = exercise;
+}
+
+fn bits(lanes: [Lanes; 9]) -> Vec<u64> {
+    lanes.iter().flat_map(|lane| lane.0.map(f64::to_bits)).collect()
+}
+
+proptest! {
+    #[test]
+    fn every_tier_gives_the_same_bits(numbers in prop::array::uniform24(-1e9..1e9f64)) {
+        let mut input = [Lanes([0.0; WIDTH]); 3];
+        for (index, number) in numbers.into_iter().enumerate() {
+            input[index / WIDTH].0[index % WIDTH] = number;
+        }
+        let expected = bits(exercise::<Lanes>(&input));
+        prop_assert_eq!(&bits(exercised(&input)), &expected);
+        #[cfg(target_arch = "x86_64")]
+        if is_x86_feature_detected!("avx2") {
+            #[target_feature(enable = "avx2")]
+            fn avx2(input: &[Lanes; 3]) -> [Lanes; 9] {
+                exercise::<Avx2>(input)
+            }
+            // SAFETY: the machine has AVX2.
+            prop_assert_eq!(&bits(unsafe { avx2(&input) }), &expected);
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! The only place that knows Python.
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _core {}
