@@ -171,9 +171,6 @@ macro_rules! operators {
         }
     };
 }
-#[cfg(target_arch = "x86_64")]
-pub(super) use operators;
-
 operators!(Lanes:
     |a: Lanes, b: Lanes| a.zip(b, |x, y| x + y),
     |a: Lanes, b: Lanes| a.zip(b, |x, y| x - y),

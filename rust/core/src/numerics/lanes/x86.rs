@@ -3,7 +3,7 @@
 //! Every method here is `#[inline(always)]` and only ever reached from a function that `tiered!`
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
-use super::{Bits, Lanes, Vector8, WIDTH, operators, scaled_by};
+use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::Real;
 use core::arch::x86_64::*;

@@ -1,0 +1,96 @@
+//! Integrators: a method is a table; the loops that run tables are written once.
+//!
+//! To add a method, write one file that defines `METHOD` and add its line to
+//! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
+//! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
+
+pub mod dop853;
+pub mod kahan_li8;
+pub mod leapfrog;
+pub mod rk4;
+pub mod yoshida4;
+
+use crate::numerics::double_double::DoubleDouble;
+
+/// An integration method: what it declares about itself, and its table.
+#[derive(Debug)]
+pub struct Method {
+    /// Its name in the Python interface.
+    pub name: &'static str,
+    /// One line on what it is for.
+    pub summary: &'static str,
+    /// Classical order.
+    pub order: u32,
+    /// Force evaluations per step.
+    pub stages: u32,
+    /// Whether the map is symplectic for a separable Hamiltonian.
+    pub symplectic: bool,
+    /// Whether a step of `-h` undoes a step of `h`.
+    pub reversible: bool,
+    /// Order of the states between nodes.
+    pub dense_order: u32,
+    /// Where it was published.
+    pub reference: &'static str,
+    /// Its coefficients.
+    pub scheme: Scheme,
+}
+
+/// The kinds of table.
+#[derive(Debug)]
+pub enum Scheme {
+    /// Alternating kicks and drifts.
+    Splitting(Splitting),
+    /// Explicit Runge–Kutta with a fixed step.
+    RungeKutta(Tableau),
+    /// Explicit Runge–Kutta with an error estimate and a continuous extension.
+    Embedded(Embedded),
+}
+
+/// `kick[0] drift[0] kick[1] drift[1] … drift[s-1] kick[s]`, coefficients in units of the step.
+#[derive(Debug)]
+pub struct Splitting {
+    /// One more than `drifts`; the first or the last may be zero.
+    pub kicks: &'static [DoubleDouble],
+    /// Coefficients of the drifts.
+    pub drifts: &'static [DoubleDouble],
+}
+
+/// The Butcher tableau of an explicit method.
+#[derive(Debug)]
+pub struct Tableau {
+    /// Row `i` has `i` entries.
+    pub a: &'static [&'static [DoubleDouble]],
+    /// Weights.
+    pub b: &'static [DoubleDouble],
+    /// Nodes, the row sums of `a`.
+    pub c: &'static [DoubleDouble],
+}
+
+/// An explicit method with error estimates and a continuous extension.
+#[derive(Debug)]
+pub struct Embedded {
+    /// The method itself.
+    pub tableau: Tableau,
+    /// Weights of the error estimate `E = h Σ error[i] k[i]`.
+    pub error: &'static [DoubleDouble],
+    /// Weights of a second, cruder estimate `E3`: the error is then `E² / sqrt(E² + 0.01 E3²)`
+    /// (Hairer, Nørsett & Wanner, *Solving ODE I*, II.10).
+    pub second_error: Option<&'static [DoubleDouble]>,
+    /// The step control raises the scaled error to `-1 / error_exponent`.
+    pub error_exponent: u32,
+    /// Rows of `a` of the stages that only the continuous extension uses. Stage `s` (the first after
+    /// the method's own `s` stages) is the derivative at the end of the step and has no row here.
+    pub dense_a: &'static [&'static [DoubleDouble]],
+    /// Their nodes.
+    pub dense_c: &'static [DoubleDouble],
+    /// `dense[i]` holds the weight of stage `i` at `y(t + θh) = y + h Σ w_i(θ) k_i` in the nested basis
+    /// `w = θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`, which loses no digits at either end.
+    pub dense: &'static [&'static [DoubleDouble]],
+}
+
+impl Method {
+    /// Whether the method chooses its own steps.
+    pub const fn adaptive(&self) -> bool {
+        matches!(self.scheme, Scheme::Embedded(_))
+    }
+}

@@ -1,0 +1,12 @@
+//! What the package offers, one line each: methods and potentials.
+
+use crate::integrators::{Method, dop853, kahan_li8, leapfrog, rk4, yoshida4};
+
+/// Every integration method, in the order of the documentation.
+pub static METHODS: &[&Method] =
+    &[&rk4::METHOD, &dop853::METHOD, &leapfrog::METHOD, &yoshida4::METHOD, &kahan_li8::METHOD];
+
+/// The method of a name.
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().copied().find(|method| method.name == name)
+}
