@@ -89,7 +89,11 @@ class CloseEncounter(Error, RuntimeError):
 
     def __str__(self) -> str:
         i, j = self.bodies
-        who = f"body {i} is {self.distance:g} from a fixed centre" if i == j else f"bodies {i} and {j} are {self.distance:g} apart"
+        who = (
+            f"body {i} is {self.distance:g} from a fixed centre"
+            if i == j
+            else f"bodies {i} and {j} are {self.distance:g} apart"
+        )
         return (
             f"the step size fell to zero at t = {self.time}: {who}; "
             "soften the force, or use a fixed step that passes over the encounter"

@@ -8,6 +8,7 @@ import time
 import warnings
 
 import pytest
+
 from visviva import _core
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="no fork on this system")

@@ -9,13 +9,14 @@ import threading
 import time
 
 import pytest
+
 from visviva import _core, errors
 
 # The gate looks every 50 ms and threads notice within a tick; the promise is 0.2 s on a machine with a core to spare.
 PROMISE = 0.2
 
 
-class Stop(Exception):  # noqa: N818
+class Stop(Exception):
     """A callback's own exception."""
 
 

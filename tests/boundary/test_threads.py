@@ -7,6 +7,7 @@ import threading
 from concurrent.futures import ThreadPoolExecutor
 
 import pytest
+
 from visviva import _core, errors
 
 
@@ -39,7 +40,9 @@ try:
 except errors.InvalidInput as error:
     print(error)
 """
-    assert child(code, VISVIVA_THREADS=value).startswith(f"VISVIVA_THREADS: expected a whole number from 1 to 1024, got '{value}'")
+    assert child(code, VISVIVA_THREADS=value).startswith(
+        f"VISVIVA_THREADS: expected a whole number from 1 to 1024, got '{value}'"
+    )
 
 
 def test_a_wrong_simd_tier_is_refused_at_import() -> None:
@@ -61,7 +64,12 @@ def test_the_simd_tier_can_be_chosen() -> None:
 
 @pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="no affinity on this system")
 def test_the_default_is_the_cores_this_process_may_use() -> None:
-    code = "import os; os.sched_setaffinity(0, {min(os.sched_getaffinity(0))}); from visviva import _core; print(_core.info()['threads'])"
+    code = """
+import os
+os.sched_setaffinity(0, {min(os.sched_getaffinity(0))})
+from visviva import _core
+print(_core.info()["threads"])
+"""
     assert child(code, VISVIVA_THREADS="") == "1"
 
 
