@@ -4,10 +4,15 @@
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
+pub mod adaptive;
 pub mod dop853;
+pub mod fixed;
 pub mod kahan_li8;
 pub mod leapfrog;
 pub mod rk4;
+pub mod runge_kutta;
+pub mod splitting;
+pub mod state;
 pub mod yoshida4;
 
 use crate::numerics::double_double::DoubleDouble;
