@@ -4,6 +4,8 @@
 //! numerics ← potentials ← forces ← nbody, scattering ← scene.
 
 pub mod error;
+pub mod integrators;
 pub mod numerics;
+pub mod registry;
 
 pub use error::{Error, Result};
