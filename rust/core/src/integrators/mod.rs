@@ -93,6 +93,14 @@ pub struct Embedded {
     pub dense: &'static [&'static [DoubleDouble]],
 }
 
+/// A coefficient, as the generated tables write it.
+const fn dd(high: f64, low: f64) -> DoubleDouble {
+    DoubleDouble::new(high, low)
+}
+
+/// An absent coefficient.
+const ZERO: DoubleDouble = dd(0.0, 0.0);
+
 impl Method {
     /// Whether the method chooses its own steps.
     pub const fn adaptive(&self) -> bool {
