@@ -1,6 +1,7 @@
 //! The numerical ground: scalars and SIMD lanes, double-double, elementary functions, random numbers.
 
 pub mod double_double;
+pub mod elementary;
 pub mod lanes;
 pub mod real;
 pub mod simd;
