@@ -6,7 +6,7 @@ use crate::numerics::element::Shape;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::parallel::Ticker;
-use crate::potentials::{Formula, Potential};
+use crate::potentials::Formula;
 use crate::tiered;
 
 /// The force of a potential fixed at a point.
@@ -24,16 +24,6 @@ impl<P: Formula> CentralField<P> {
     pub fn new(potential: P, shape: Shape, center: [f64; 3], inverse_mass: Vec<Lanes>) -> Self {
         Self { potential, shape, center, inverse_mass }
     }
-}
-
-/// The force of any potential.
-pub fn central_force(
-    potential: &dyn Potential,
-    shape: Shape,
-    center: [f64; 3],
-    inverse_mass: Vec<Lanes>,
-) -> Box<dyn Force<Lanes>> {
-    potential.central_force(shape, center, inverse_mass)
 }
 
 #[inline(always)]

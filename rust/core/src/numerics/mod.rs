@@ -2,6 +2,8 @@
 
 pub mod double_double;
 pub mod element;
+pub mod elementary;
 pub mod lanes;
+pub mod power_of_two;
 pub mod real;
 pub mod simd;

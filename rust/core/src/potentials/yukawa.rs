@@ -2,7 +2,7 @@
 
 use super::{Declaration, Formula, Parameter};
 use crate::numerics::elementary::Exponential;
-use crate::scene::frame::scale;
+use crate::numerics::power_of_two::scale;
 use std::sync::Arc;
 
 /// V = k·exp(−r/length)/r.

@@ -6,7 +6,6 @@
 pub mod closed_form;
 pub mod columns;
 pub mod frame;
-pub mod independent;
 pub mod integrate;
 pub mod plan;
 pub mod request;

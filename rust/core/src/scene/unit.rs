@@ -4,16 +4,16 @@
 //! blocks. Batched, the lanes are eight units and the rows their bodies. The same integrators run both.
 
 use super::columns::{Entry, Writer};
-use super::frame::{Origin, Units, scale};
+use super::frame::{Origin, Units};
 use super::plan::Plan;
 use super::{ForceSpec, Scene, distance};
-use crate::forces::central_field::central_force;
 use crate::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles};
 use crate::forces::uniform_field::UniformField;
 use crate::forces::{Dynamics, Force};
 use crate::integrators::state::State;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
+use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 
 /// Padding lanes stand far out, each elsewhere, where nothing they feel or exert is felt.
@@ -176,7 +176,7 @@ impl Prepared {
                     // Energy in these units: mass · length² / time².
                     let energy = exponents.mass + 2 * (exponents.length - exponents.time);
                     let scaled = potential.scaled(exponents.length, energy);
-                    central_force(scaled, shape, center.map(|x| scale(x, -exponents.length)), inverse_mass)
+                    scaled.central_force(shape, center.map(|x| scale(x, -exponents.length)), inverse_mass)
                 }
                 ForceSpec::Gravity { softening, .. } => {
                     let softening = scale(*softening, -exponents.length);
