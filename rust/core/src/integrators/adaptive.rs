@@ -158,6 +158,12 @@ impl<S: Element> Adaptive<S> {
         reduce.largest(size(0, self.tolerance.atol_q).max(size(1, self.tolerance.atol_v)))
     }
 
+    /// Changes what errors are measured against, when lanes take up other trajectories.
+    pub fn set_measure(&mut self, tolerance: Tolerance<S>, reference: Reference<S>) {
+        self.tolerance = tolerance;
+        self.reference = reference;
+    }
+
     /// Starts the lanes of `fresh`: evaluates their first derivative and chooses their first step
     /// (Hairer, Nørsett & Wanner, II.4, with scaled sizes of the largest particle).
     ///

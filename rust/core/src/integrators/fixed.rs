@@ -91,13 +91,14 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
 
 /// Advances `state` through the places of the outputs, in order, and hands each state to `record`.
 ///
-/// Returns the number of steps taken. `record` may refuse a state, which ends the run.
+/// Returns the number of steps taken; it stops short at `max_steps`. `record` may refuse a state, which ends the run.
 ///
 /// # Errors
 /// What `record` returns, or [`Error::Interrupted`].
 pub fn run<S: Element>(
     method: &Method,
     h: f64,
+    max_steps: u64,
     state: &mut State<S>,
     dynamics: &mut Dynamics<S>,
     places: impl Iterator<Item = Place>,
@@ -110,6 +111,9 @@ pub fn run<S: Element>(
         let (mut between, mut shadow) = (state.clone(), stepper.clone());
         for (index, place) in places.enumerate() {
             while taken < place.node {
+                if taken == max_steps {
+                    return Ok(());
+                }
                 stepper.step(state, dynamics, ticker)?;
                 taken += 1;
                 ticker.advance(1);

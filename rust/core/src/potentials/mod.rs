@@ -11,6 +11,7 @@ pub mod yukawa;
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::central_field::CentralField;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
@@ -74,6 +75,8 @@ pub trait Potential: Debug + Send + Sync {
     fn singular(&self) -> bool;
     /// V(r), −dV/dr and d²V/dr² at each distance.
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3];
+    /// V(r) to about thirty digits.
+    fn precise_value(&self, r: DoubleDouble) -> DoubleDouble;
     /// The same potential when lengths are divided by `2^length` and energies by `2^energy`.
     fn scaled(&self, length: i32, energy: i32) -> Arc<dyn Potential>;
     /// `k` if V = k/r.
@@ -95,6 +98,9 @@ impl<P: Formula> Potential for P {
             r.iter().map(|&r| self.force(r)).collect(),
             r.iter().map(|&r| self.curvature(r)).collect(),
         ]
+    }
+    fn precise_value(&self, r: DoubleDouble) -> DoubleDouble {
+        self.value(r)
     }
     fn scaled(&self, length: i32, energy: i32) -> Arc<dyn Potential> {
         Arc::new(Formula::scaled(self, length, energy))
