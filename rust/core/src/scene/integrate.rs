@@ -403,7 +403,8 @@ fn set_lane(
 fn start_outputs(slots: &Slots<'_>, slot: &mut Slot, state: &State<Lanes>, lane: usize) -> bool {
     let job = slots.job;
     while slot.next_output < slots.outputs.len() && slots.outputs[slot.next_output] == 0.0 {
-        slot.unit.record(job.writer, slot.next_output, state, job.plan.layout, lane, job.plan.units, 0.0);
+        let _: bool =
+            slot.unit.record(job.writer, slot.next_output, state, job.plan.layout, lane, job.plan.units, 0.0);
         slot.next_output += 1;
     }
     slot.next_output < slots.outputs.len()
@@ -526,7 +527,16 @@ fn record(
             let t = job.times[slot.next_output];
             let source = if inside.lane(lane) { &*scratch } else { engine.next() };
             let elapsed = t - job.scene.t0;
-            slot.unit.record(job.writer, slot.next_output, source, job.plan.layout, lane, job.plan.units, elapsed);
+            // A step is only accepted with a finite error, so its states are finite.
+            let _: bool = slot.unit.record(
+                job.writer,
+                slot.next_output,
+                source,
+                job.plan.layout,
+                lane,
+                job.plan.units,
+                elapsed,
+            );
             slot.next_output += 1;
         }
     }
