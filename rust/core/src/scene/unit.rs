@@ -6,7 +6,9 @@
 use super::columns::{Entry, Writer};
 use super::frame::{Origin, Units};
 use super::plan::Plan;
+use super::request::Request;
 use super::{ForceSpec, Scene, distance};
+use crate::error::Result;
 use crate::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles};
 use crate::forces::uniform_field::UniformField;
 use crate::forces::{Dynamics, Force};
@@ -15,6 +17,7 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
+use crate::parallel::Ticker;
 
 /// Padding lanes stand far out, each elsewhere, where nothing they feel or exert is felt.
 const FAR_OUT: f64 = 1.267_650_600_228_229_4e30; // 2^100
@@ -310,4 +313,45 @@ impl Prepared {
         }
         finite
     }
+}
+
+/// The acceleration of every particle of a scene of one copy.
+///
+/// # Errors
+/// What [`Scene::validate`] refuses; [`Error::Interrupted`](crate::Error::Interrupted).
+pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> Result<Vec<[f64; 3]>> {
+    let request = Request {
+        times: vec![scene.t0],
+        method: "rk4".to_owned(),
+        dt: Some(1.0),
+        rtol: 1e-9,
+        atol: None,
+        max_step: None,
+        max_steps: None,
+        record: Vec::new(),
+        threads,
+    };
+    let plan = Plan::new(scene, &request)?;
+    let mut result = vec![[0.0; 3]; scene.particles];
+    for unit in plan.unit_list() {
+        let prepared = Prepared::new(&plan, scene, unit);
+        // Packed whatever the plan's layout: it is one state of one unit.
+        let layout = if plan.gravity.is_some() { Layout::Packed } else { plan.layout };
+        let mut dynamics = Prepared::dynamics(&plan, &[&prepared], layout, threads);
+        let zeros = vec![Lanes::zero(); dynamics.shape.len()];
+        let mut state = State::new(dynamics.shape, &zeros, &zeros);
+        for lane in 0..if layout == Layout::Packed { 1 } else { WIDTH } {
+            prepared.write(&mut state, layout, lane);
+        }
+        let mut a = zeros;
+        dynamics.acceleration(state.q(), state.v(), &mut a, ticker)?;
+        for slot in prepared.unit.recorded.clone() {
+            let (row, lane) = prepared.locate(slot, layout, 0);
+            for c in 0..dynamics.shape.components {
+                let value = a[c * dynamics.shape.rows + row].0[lane];
+                result[prepared.unit.bodies[slot]][c] = scale(value, -plan.units.acceleration());
+            }
+        }
+    }
+    Ok(result)
 }
