@@ -26,7 +26,10 @@ fn points(values: &[f64]) -> Vec<[f64; 3]> {
     values.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect()
 }
 
-fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(dict: &Bound<'py, PyDict>, key: &str) -> PyResult<T> {
+fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
+    dict: &Bound<'py, PyDict>,
+    key: &str,
+) -> PyResult<T> {
     let value = dict
         .get_item(key)?
         .ok_or_else(|| raised(dict.py(), Error::invalid("forces", format!("a force lacks '{key}'"))))?;
@@ -221,7 +224,10 @@ fn output_dict<'py>(
     dict.set_item("columns", columns)?;
     dict.set_item("plan", plan_dict(py, &output.plan)?)?;
     let per_copy = |of: &dyn Fn(&Outcome) -> i64| moved(py, outcomes.iter().map(of).collect(), &[copies]);
-    dict.set_item("status", moved(py, outcomes.iter().map(|o| status(&o.ending)).collect::<Vec<i8>>(), &[copies])?)?;
+    dict.set_item(
+        "status",
+        moved(py, outcomes.iter().map(|o| status(&o.ending)).collect::<Vec<i8>>(), &[copies])?,
+    )?;
     dict.set_item("rows", per_copy(&|outcome| outcome.rows as i64)?)?;
     let stats = PyDict::new(py);
     stats.set_item("steps", per_copy(&|outcome| outcome.steps as i64)?)?;
@@ -232,15 +238,21 @@ fn output_dict<'py>(
     stats.set_item("simd", tier().name())?;
     dict.set_item("stats", stats)?;
     let flat = |of: &dyn Fn(&Outcome) -> &Vec<[f64; 3]>| {
-        let values: Vec<f64> = outcomes.iter().flat_map(|outcome| of(outcome).iter().flatten().copied()).collect();
+        let values: Vec<f64> =
+            outcomes.iter().flat_map(|outcome| of(outcome).iter().flatten().copied()).collect();
         moved(py, values, &[copies, particles, 3])
     };
-    dict.set_item("final_time", moved(py, outcomes.iter().map(|o| o.time).collect::<Vec<f64>>(), &[copies])?)?;
+    dict.set_item(
+        "final_time",
+        moved(py, outcomes.iter().map(|o| o.time).collect::<Vec<f64>>(), &[copies])?,
+    )?;
     dict.set_item("final_position", flat(&|outcome| &outcome.position)?)?;
     dict.set_item("final_velocity", flat(&|outcome| &outcome.velocity)?)?;
     let errors: Vec<Py<PyAny>> = outcomes
         .iter()
-        .map(|outcome| error(outcome).map_or_else(|| py.None(), |error| raised(py, error).into_value(py).into_any()))
+        .map(|outcome| {
+            error(outcome).map_or_else(|| py.None(), |error| raised(py, error).into_value(py).into_any())
+        })
         .collect();
     dict.set_item("errors", errors)?;
     Ok(dict)
