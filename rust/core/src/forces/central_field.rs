@@ -58,7 +58,14 @@ tiered! {
 }
 
 impl<P: Formula> Force<Lanes> for CentralField<P> {
-    fn apply(&mut self, q: &[Lanes], _: &[Lanes], a: &mut [Lanes], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+    fn apply(
+        &mut self,
+        q: &[Lanes],
+        _: &[Lanes],
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         kernel_tier(self, q, a, first);
         Ok(())
     }

@@ -196,13 +196,13 @@ impl<S: Element> Adaptive<S> {
         let guess = S::select(slope2.less_equal(S::zero()), span, guess).min(span).min(self.max_step);
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         self.stages.evaluate_at(end_stage, state, guess * direction, &first, dynamics, ticker)?;
-        let change =
-            [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
+        let change = [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
         let curvature2 = self.scaled_size(y, S::one() / guess, &change, reduce);
         let largest = slope2.max(curvature2);
         // (0.01 / size)^(1/8), the size being the larger of |f| and |df/dt|.
         let by_order = self.root(S::splat(1e-4) / largest);
-        let by_order = S::select(largest.less_equal(S::splat(1e-30)), guess.max(S::splat(1e-3) * span), by_order);
+        let by_order =
+            S::select(largest.less_equal(S::splat(1e-30)), guess.max(S::splat(1e-3) * span), by_order);
         let h = (S::splat(100.0) * guess).min(by_order).min(span).min(self.max_step);
         clock.h = S::select(fresh, h * direction, clock.h);
         Ok(())
@@ -249,7 +249,8 @@ impl<S: Element> Adaptive<S> {
         let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
         let from = clock.elapsed;
         let proposed = h * factor;
-        let proposed = S::select(self.max_step.less(proposed.abs()), clamp(proposed, self.max_step), proposed);
+        let proposed =
+            S::select(self.max_step.less(proposed.abs()), clamp(proposed, self.max_step), proposed);
         clock.h = S::select(running, proposed, clock.h);
         self.rejected = S::Mask::and(accepted.not(), running);
 
@@ -261,7 +262,8 @@ impl<S: Element> Adaptive<S> {
         let stuck = clock.h.abs().less_equal(smallest).and(running).and(finished.not());
         if accepted.any() {
             let end_stage = self.end_stage();
-            let next = core::mem::replace(&mut self.next, State::new(Shape { rows: 0, components: 0 }, &[], &[]));
+            let next =
+                core::mem::replace(&mut self.next, State::new(Shape { rows: 0, components: 0 }, &[], &[]));
             let evaluated = self.stages.evaluate(end_stage, next.all().0, dynamics, ticker);
             self.next = next;
             evaluated?;

@@ -29,9 +29,7 @@ impl<S: Element> FixedStep<S> {
     pub fn new(method: &Method, h: f64, state: &State<S>) -> Result<Self> {
         let h = S::splat(h);
         match &method.scheme {
-            Scheme::Splitting(table) => {
-                Ok(Self::Splitting(SplittingStep::new(table, h, state.shape.len())))
-            }
+            Scheme::Splitting(table) => Ok(Self::Splitting(SplittingStep::new(table, h, state.shape.len()))),
             Scheme::RungeKutta(tableau) => Ok(Self::RungeKutta(RungeKuttaStep::new(tableau, h, state))),
             Scheme::Embedded(_) => {
                 Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)))

@@ -30,9 +30,7 @@ impl<S: Element> SplittingStep<S> {
         let zero = |index: usize| table.kicks[index].to_f64() == 0.0;
         let stages = table.drifts.len();
         Self {
-            pairs: (0..stages)
-                .map(|i| (h.scaled_by(table.kicks[i]), h.scaled_by(table.drifts[i])))
-                .collect(),
+            pairs: (0..stages).map(|i| (h.scaled_by(table.kicks[i]), h.scaled_by(table.drifts[i]))).collect(),
             last_kick: h.scaled_by(table.kicks[stages]),
             idle: (0..stages).map(zero).collect(),
             last_idle: zero(stages),

@@ -280,13 +280,7 @@ fn combine_lanes<V: Vector8>(
     terms: &[Term<Lanes>],
     k: &[Lanes],
 ) {
-    combine::<V>(
-        V::view_mut(out),
-        (V::view(y.0), V::view(y.1)),
-        V::load(h),
-        view_terms(terms),
-        V::view(k),
-    );
+    combine::<V>(V::view_mut(out), (V::view(y.0), V::view(y.1)), V::load(h), view_terms(terms), V::view(k));
 }
 #[inline(always)]
 fn combine_compensated_lanes<V: Vector8>(

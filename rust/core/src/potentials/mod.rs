@@ -82,7 +82,12 @@ pub trait Potential: Debug + Send + Sync {
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64>;
     /// The force of a fixed centre, ready to run.
-    fn central_force(&self, shape: Shape, center: [f64; 3], inverse_mass: Vec<Lanes>) -> Box<dyn Force<Lanes>>;
+    fn central_force(
+        &self,
+        shape: Shape,
+        center: [f64; 3],
+        inverse_mass: Vec<Lanes>,
+    ) -> Box<dyn Force<Lanes>>;
 }
 
 impl<P: Formula> Potential for P {
@@ -108,7 +113,12 @@ impl<P: Formula> Potential for P {
     fn inverse_distance_strength(&self) -> Option<f64> {
         Formula::inverse_distance_strength(self)
     }
-    fn central_force(&self, shape: Shape, center: [f64; 3], inverse_mass: Vec<Lanes>) -> Box<dyn Force<Lanes>> {
+    fn central_force(
+        &self,
+        shape: Shape,
+        center: [f64; 3],
+        inverse_mass: Vec<Lanes>,
+    ) -> Box<dyn Force<Lanes>> {
         Box::new(CentralField::new(*self, shape, center, inverse_mass))
     }
 }

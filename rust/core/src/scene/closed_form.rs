@@ -3,10 +3,10 @@
 //! Straight lines and parabolas are evaluated in double-double and rounded once. Kepler orbits come from
 //! [`KeplerOrbit`]: a few units in the last place times the conditioning of the problem.
 
+use super::Scene;
 use super::columns::{Entry, Writer};
 use super::plan::{Plan, Solution};
 use super::run::Outcome;
-use super::Scene;
 use crate::error::Result;
 use crate::nbody::kepler::KeplerOrbit;
 use crate::numerics::double_double::DoubleDouble;

@@ -21,7 +21,14 @@ pub struct Columns {
 
 impl Columns {
     /// Arrays full of NaN; `derived` asks for all four.
-    pub fn new(copies: usize, times: usize, particles: usize, position: bool, velocity: bool, derived: bool) -> Self {
+    pub fn new(
+        copies: usize,
+        times: usize,
+        particles: usize,
+        position: bool,
+        velocity: bool,
+        derived: bool,
+    ) -> Self {
         let array = |wanted: bool| vec![f64::NAN; if wanted { copies * times * particles * 3 } else { 0 }];
         Self {
             times,

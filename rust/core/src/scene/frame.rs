@@ -83,10 +83,7 @@ impl Origin {
             return Self::default();
         }
         let mass = scene.masses(copy);
-        Self {
-            center: far_mean(mass, scene.positions(copy)),
-            drift: far_mean(mass, scene.velocities(copy)),
-        }
+        Self { center: far_mean(mass, scene.positions(copy)), drift: far_mean(mass, scene.velocities(copy)) }
     }
 
     /// A coordinate of the scene from one relative to this origin, as (nearest number, rest).

@@ -139,7 +139,12 @@ fn report(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize, tim
     }
 }
 
-fn fixed_steps(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+fn fixed_steps(
+    job: &Job<'_>,
+    units: &[Unit],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Report>> {
     let lanes = if job.plan.layout == Layout::Batched { WIDTH } else { 1 };
     let mut reports = Vec::with_capacity(units.len());
     for group in units.chunks(lanes) {
@@ -149,7 +154,12 @@ fn fixed_steps(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticke
 }
 
 /// Up to eight units in lockstep.
-fn fixed_group(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+fn fixed_group(
+    job: &Job<'_>,
+    units: &[Unit],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Report>> {
     let plan = job.plan;
     let prepared: Vec<Prepared> = units.iter().map(|unit| prepare(job, unit)).collect();
     let views: Vec<&Prepared> = prepared.iter().collect();
@@ -330,8 +340,16 @@ fn adaptive(
         let Ok(outcome) = stepped else {
             return Ok(interrupted(job, slots, reports, units, &state, &clock));
         };
-        if record(&mut slots, &engine_outputs(&outcome, &clock), &mut engine, &state, &mut scratch, &mut dynamics, ticker)
-            .is_err()
+        if record(
+            &mut slots,
+            &engine_outputs(&outcome, &clock),
+            &mut engine,
+            &state,
+            &mut scratch,
+            &mut dynamics,
+            ticker,
+        )
+        .is_err()
         {
             return Ok(interrupted(job, slots, reports, units, &state, &clock));
         }

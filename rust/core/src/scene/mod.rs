@@ -186,7 +186,9 @@ impl Scene {
                 let name = self.name("position", index / self.particles, index % self.particles);
                 Err(Error::invalid(
                     "position",
-                    format!("{name} = {center:?} is the singular center of CentralField; move one of the two"),
+                    format!(
+                        "{name} = {center:?} is the singular center of CentralField; move one of the two"
+                    ),
                 ))
             }
         }

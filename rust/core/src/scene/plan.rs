@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::forces::gravity::RING_MAX;
 use crate::integrators::{Method, Scheme};
 use crate::numerics::lanes::WIDTH;
+use core::fmt;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
@@ -102,9 +103,9 @@ impl Plan {
             Some(_) => (0..scene.particles).partition(massive),
             None => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solution =
-            if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
-        let closed = !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
+        let solution = if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
+        let closed =
+            !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
         let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
         let interacting = gravity.is_some();
         let layout = if interacting && (scene.copies == 1 || scene.particles > RING_MAX) {
@@ -202,7 +203,11 @@ impl Plan {
                 None => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
-            row("force evaluations per step", self.method.stages.to_string(), "the method's stages".to_owned());
+            row(
+                "force evaluations per step",
+                self.method.stages.to_string(),
+                "the method's stages".to_owned(),
+            );
             if self.gravity.is_some() {
                 row(
                     "pairs per evaluation",
@@ -210,16 +215,35 @@ impl Plan {
                     format!("{} massive, {} massless bodies", self.active.len(), self.passive.len()),
                 );
             }
-            let (decision, reason) = match (self.layout, self.gravity.is_some()) {
-                (Layout::Packed, _) => ("over bodies", "one system at a time"),
-                (Layout::Batched, true) => ("over copies", "small systems, each with its own steps"),
-                (Layout::Batched, false) => ("over particles", "they do not interact: each has its own steps"),
+            let reason = match (self.layout, self.gravity.is_some()) {
+                (Layout::Packed, _) => "one system at a time",
+                (Layout::Batched, true) => "small systems, each with its own steps",
+                (Layout::Batched, false) => "they do not interact: each has its own steps",
             };
-            row("SIMD lanes", decision.to_owned(), reason.to_owned());
+            row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
             let (over, inside) = self.threads;
-            row("threads", over.max(inside).to_string(), if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned());
+            row(
+                "threads",
+                over.max(inside).to_string(),
+                if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned(),
+            );
         }
         rows
+    }
+
+    /// What the SIMD lanes are.
+    pub fn lanes(&self) -> &'static str {
+        match (self.solution == Solution::Integration, self.layout, self.gravity.is_some()) {
+            (false, ..) => "none",
+            (_, Layout::Packed, _) => "over bodies",
+            (_, Layout::Batched, true) => "over copies",
+            (_, Layout::Batched, false) => "over particles",
+        }
+    }
+
+    /// The method that runs; a closed form needs none.
+    pub fn method_name(&self) -> &'static str {
+        if self.solution == Solution::Integration { self.method.name } else { "closed form" }
     }
 
     /// What will not be done, and why.
@@ -237,7 +261,10 @@ impl Plan {
             }
             if !self.passive.is_empty() && self.gravity.is_some() {
                 let massless = self.passive.len() as u64;
-                skip("pairs of massless bodies", format!("{} pairs exert nothing", massless * (massless - 1) / 2));
+                skip(
+                    "pairs of massless bodies",
+                    format!("{} pairs exert nothing", massless * (massless - 1) / 2),
+                );
             }
             if self.gravity.is_none() && self.particles > 1 {
                 skip("pairs", "the particles do not interact".to_owned());
@@ -259,7 +286,9 @@ impl Plan {
         let (decision, reason) = match &self.solution {
             Solution::Free => ("closed form: straight lines", "no force acts"),
             Solution::Uniform(_) => ("closed form: parabolas", "the only force is a uniform field"),
-            Solution::TwoBody => ("closed form: Kepler's two-body problem", "two bodies and unsoftened gravity"),
+            Solution::TwoBody => {
+                ("closed form: Kepler's two-body problem", "two bodies and unsoftened gravity")
+            }
             Solution::OneMassive(_) => {
                 ("closed form: Kepler orbits", "one massive body, unsoftened gravity, the rest massless")
             }
@@ -275,6 +304,20 @@ impl Plan {
             ),
         };
         (decision.to_owned(), reason.to_owned())
+    }
+}
+
+impl fmt::Display for Plan {
+    /// A table of what will be done, then a list of what is skipped.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.rows();
+        let width = rows.iter().map(|row| row.what.len()).max().unwrap_or_default();
+        for Row { what, decision, reason } in &rows {
+            writeln!(formatter, "{what:width$}  {decision}  ({reason})")?;
+        }
+        let skipped: Vec<String> =
+            self.skipped().into_iter().map(|(what, why)| format!("  {what}: {why}")).collect();
+        write!(formatter, "skipped\n{}", skipped.join("\n"))
     }
 }
 
@@ -318,7 +361,9 @@ fn closed_form(scene: &Scene, forces: &[ForceSpec], active: &[usize]) -> Solutio
         return Solution::Uniform(g);
     }
     match forces {
-        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && scene.particles == 2 => Solution::TwoBody,
+        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && scene.particles == 2 => {
+            Solution::TwoBody
+        }
         [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && active.len() == 1 => {
             Solution::OneMassive(active[0])
         }

@@ -111,13 +111,19 @@ impl Request {
         }
         match self.atol {
             Some(atol) if !(atol >= 0.0 && atol.is_finite()) => {
-                return Err(Error::invalid("atol", format!("expected a number of at least 0 or None, got {atol}")));
+                return Err(Error::invalid(
+                    "atol",
+                    format!("expected a number of at least 0 or None, got {atol}"),
+                ));
             }
             _ => {}
         }
         match self.max_step {
             Some(step) if step.is_nan() || step <= 0.0 => {
-                return Err(Error::invalid("max_step", format!("expected a positive time or None, got {step}")));
+                return Err(Error::invalid(
+                    "max_step",
+                    format!("expected a positive time or None, got {step}"),
+                ));
             }
             _ => {}
         }
@@ -137,7 +143,10 @@ impl Request {
             return Err(Error::invalid("t", "expected an end time or at least one output time, got none"));
         }
         if let Some(index) = times.iter().position(|t| !t.is_finite()) {
-            return Err(Error::invalid("t", format!("expected finite times, got t[{index}] = {}", times[index])));
+            return Err(Error::invalid(
+                "t",
+                format!("expected finite times, got t[{index}] = {}", times[index]),
+            ));
         }
         let end = times[times.len() - 1];
         let direction = if end < scene.t0 { -1.0 } else { 1.0 };

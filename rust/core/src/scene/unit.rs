@@ -84,7 +84,8 @@ impl Prepared {
             unit.bodies.iter().map(|&i| relative(velocities[i], origin.drift, units.velocity())).collect();
         let mass: Vec<f64> = unit.bodies.iter().map(|&i| scale(masses[i], -units.mass)).collect();
         let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
-        let strength = unit.bodies[..unit.active].iter().map(|&i| units.strength(constant, masses[i])).collect();
+        let strength =
+            unit.bodies[..unit.active].iter().map(|&i| units.strength(constant, masses[i])).collect();
         let mut prepared = Self {
             unit,
             position,
@@ -185,8 +186,9 @@ impl Prepared {
                     let softening = scale(*softening, -exponents.length);
                     match layout {
                         Layout::Batched => {
-                            let strength =
-                                (0..first.unit.active).map(|slot| lanes(&|unit| unit.strength[slot])).collect();
+                            let strength = (0..first.unit.active)
+                                .map(|slot| lanes(&|unit| unit.strength[slot]))
+                                .collect();
                             Box::new(FewBodies::new(shape, strength, softening))
                         }
                         Layout::Packed if first.unit.active <= RING_MAX => {
@@ -194,7 +196,8 @@ impl Prepared {
                         }
                         Layout::Packed => {
                             let mut strength = vec![Lanes::zero(); first.unit.active.div_ceil(WIDTH)];
-                            as_numbers_mut(&mut strength)[..first.unit.active].copy_from_slice(&first.strength);
+                            as_numbers_mut(&mut strength)[..first.unit.active]
+                                .copy_from_slice(&first.strength);
                             Box::new(Tiles::new(shape, strength, first.unit.active, softening, threads))
                         }
                     }
@@ -210,9 +213,7 @@ impl Prepared {
         let bodies = self.unit.bodies.len();
         let rows = match layout {
             Layout::Batched => bodies,
-            Layout::Packed => {
-                self.unit.active.div_ceil(WIDTH) + (bodies - self.unit.active).div_ceil(WIDTH)
-            }
+            Layout::Packed => self.unit.active.div_ceil(WIDTH) + (bodies - self.unit.active).div_ceil(WIDTH),
         };
         Shape { rows, components }
     }
@@ -242,9 +243,8 @@ impl Prepared {
         if layout == Layout::Packed {
             for c in 0..shape.components {
                 for row in 0..shape.rows {
-                    q[c * shape.rows + row] = Lanes(core::array::from_fn(|lane| {
-                        FAR_OUT * (1 + lane + row * WIDTH) as f64
-                    }));
+                    q[c * shape.rows + row] =
+                        Lanes(core::array::from_fn(|lane| FAR_OUT * (1 + lane + row * WIDTH) as f64));
                 }
             }
         }

@@ -85,8 +85,8 @@ fn kernel<S: Real, const PLANAR: bool, const SOFT: bool>(
             sum[i]
         } else {
             let at = |c: usize, i: usize| if c < components { q[c * rows + i] } else { S::zero() };
-            let sources = (0..n)
-                .map(|j| Source { position: [at(0, j), at(1, j), at(2, j)], strength: strength[j] });
+            let sources =
+                (0..n).map(|j| Source { position: [at(0, j), at(1, j), at(2, j)], strength: strength[j] });
             attraction::<S, PLANAR, SOFT>([at(0, i), at(1, i), at(2, i)], sources, softening2)
         };
         for c in 0..components {

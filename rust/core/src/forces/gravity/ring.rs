@@ -9,7 +9,6 @@ use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
-use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -53,7 +52,8 @@ impl Ring {
             })
             .collect();
         let softening2 = softening * softening;
-        let softening2_first_row = Lanes(core::array::from_fn(|lane| if lane < n { softening2 } else { 1.0 }));
+        let softening2_first_row =
+            Lanes(core::array::from_fn(|lane| if lane < n { softening2 } else { 1.0 }));
         Self { shape, turns, strength, softening2_first_row, softening2 }
     }
 }
@@ -127,8 +127,7 @@ fn passive_rows<V: Vector8, const PLANAR: bool, const SOFT: bool>(
             position: [body(0, j), body(1, j), body(2, j)],
             strength: V::splat(strength),
         });
-        let term =
-            attraction::<V, PLANAR, SOFT>([at(0), at(1), at(2)], sources, V::splat(ring.softening2));
+        let term = attraction::<V, PLANAR, SOFT>([at(0), at(1), at(2)], sources, V::splat(ring.softening2));
         for c in 0..components {
             let a = &mut a[c * rows + row];
             *a = if first { term[c] } else { V::load(*a) + term[c] }.store();
