@@ -188,11 +188,13 @@ def test_other_python_threads_go_on_meanwhile() -> None:
     assert during > 10
 
 
-def test_a_panic_is_an_internal_error() -> None:
-    for threads in (1, 2):
-        with pytest.raises(errors.InternalError, match="on request"):
-            _core._busy(0.01, threads, panic=True)
-        assert _core._busy(0.01, threads) == (10 * threads, False)
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("where", ["in the first chunk", "in the last chunk", "outside the chunks"])
+def test_a_panic_is_an_internal_error(threads: int, where: str) -> None:
+    chunk = {"in the first chunk": 0, "in the last chunk": 10 * threads - 1}.get(where, 10 * threads)
+    with pytest.raises(errors.InternalError, match="on request"):
+        _core._busy(0.01, threads, panic=chunk)
+    assert _core._busy(0.01, threads) == (10 * threads, False)
 
 
 @needs_signals
