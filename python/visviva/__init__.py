@@ -41,7 +41,7 @@ _HOME = {
     "load": "io",
     "methods": "methods",
 }
-_ROOMS = ("datasets", "errors", "potentials", "problems", "scattering")
+_ROOMS = ("datasets", "errors", "forces", "potentials", "problems", "scattering")
 
 __all__ = [
     "CentralField",
@@ -65,6 +65,7 @@ __all__ = [
     "UniformField",
     "datasets",
     "errors",
+    "forces",
     "load",
     "methods",
     "potentials",
@@ -73,7 +74,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, potentials, problems, scattering
+    from visviva import datasets, errors, forces, potentials, problems, scattering
     from visviva.conservation import Conservation
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

@@ -82,13 +82,13 @@ class Conservation:
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
 
     def __str__(self) -> str:
-        lines = [f"{'':<28}{'max':>10}{'end':>10}{'rms':>10}{'relative to':>14}"]
+        lines = [f"{'':<34}{'max':>10}{'end':>10}{'rms':>10}{'relative to':>14}"]
         for row in self.rows:
             name = row.name if row is not self.angular_momentum else f"{row.name} ({self.about})"
             values = "".join(f"{value:>10.1e}" for value in (row.max, row.end, row.rms))
             note = "" if row.conserved else "  not conserved by these forces"
-            lines.append(f"{name:<28}{values}{row.scale:>14.6g}{note}")
-        lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<28}{self.virial:>10.1e}")
+            lines.append(f"{name:<34}{values}{row.scale:>14.6g}{note}")
+        lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<34}{self.virial:>10.1e}")
         return "\n".join(lines)
 
 
@@ -118,20 +118,24 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     else:
         steady = all(force.conserves_angular_momentum(point) for force in scene.forces)
     return Conservation(
-        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, True),
+        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, conserved=True),
         momentum=_drift(
-            "momentum", t, trajectory.momentum - start.momentum, fsum(mass * np.linalg.norm(velocity, axis=1)), closed
+            "momentum",
+            t,
+            trajectory.momentum - start.momentum,
+            fsum(mass * np.linalg.norm(velocity, axis=1)),
+            conserved=closed,
         ),
         angular_momentum=_drift(
-            "angular momentum", t, angular - start.angular_momentum, fsum(mass * distances * speeds), steady
+            "angular momentum", t, angular - start.angular_momentum, fsum(mass * distances * speeds), conserved=steady
         ),
-        center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, closed),
+        center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
         virial=_virial(trajectory, closed),
         about="centre of mass" if point is None else "origin" if about_origin else "given point",
     )
 
 
-def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale: float, conserved: bool) -> Drift:
+def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale: float, *, conserved: bool) -> Drift:
     sizes = np.abs(change) if change.ndim == 1 else np.linalg.norm(change, axis=1)
     reached = np.isfinite(sizes)
     if not reached.any():

@@ -122,9 +122,16 @@ def _picture(
         axes.plot(np.degrees(angles), counts, marker, markerfacecolor="none", label=f"{metal}, Geiger & Marsden 1913")
         axes.plot(np.degrees(fine), scale / np.sin(fine / 2.0) ** 4, linewidth=0.8, color="0.4")
         if metal == "gold":
-            axes.plot(np.degrees(angles), simulated * np.exp(np.mean(np.log(counts / simulated))), "+", label="simulated")
+            axes.plot(
+                np.degrees(angles), simulated * np.exp(np.mean(np.log(counts / simulated))), "+", label="simulated"
+            )
     axes.plot([], [], linewidth=0.8, color="0.4", label="1 / sin⁴(φ/2)")
-    axes.set(xlabel="angle in the laboratory φ [degrees]", ylabel="scintillations", yscale="log", title="Rutherford scattering")
+    axes.set(
+        xlabel="angle in the laboratory φ [degrees]",
+        ylabel="scintillations",
+        yscale="log",
+        title="Rutherford scattering",
+    )
     axes.legend(fontsize="small")
     figure.savefig(path, dpi=150)
     return path

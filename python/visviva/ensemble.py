@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.request import Progress
+    from visviva._progress import Progress
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
@@ -77,7 +77,7 @@ class EnsembleScene:
         self._keywords: dict[str, Any] = {**scene._keywords, **full, "ensemble": True}
 
     def __len__(self) -> int:
-        return self.mass.shape[0]
+        return len(self.mass)
 
     def __getitem__(self, index: int) -> Scene:
         from visviva.scene import Scene
@@ -275,9 +275,7 @@ class EnsembleTrajectory:
         """
         if self.status.any():
             failed = np.flatnonzero(self.status)[:8].tolist()
-            raise InvalidInput(
-                "final", f"copies {failed} failed, so the copies do not share a time; use out[i].final"
-            )
+            raise InvalidInput("final", f"copies {failed} failed, so the copies do not share a time; use out[i].final")
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)

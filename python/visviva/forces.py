@@ -252,7 +252,9 @@ def force_from_core(description: dict[str, Any]) -> Force:
     """The force of a dictionary made by ``_to_core``; used when a file is loaded."""
     kind = description["kind"]
     if kind not in _FORCES:
-        raise InvalidInput("path", f"the file holds a force {kind!r} that this version does not know; use a newer visviva")
+        raise InvalidInput(
+            "path", f"the file holds a force {kind!r} that this version does not know; use a newer visviva"
+        )
     return _FORCES[kind]._from_core(description)
 
 

@@ -102,7 +102,9 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
         header = json.loads(arrays.pop("header").tobytes())
         found, version = header["format"], int(header["version"])
     except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise InvalidInput("path", f"{os.fspath(path)!r} is not a saved visviva run, or is damaged ({error})") from error
+        raise InvalidInput(
+            "path", f"{os.fspath(path)!r} is not a saved visviva run, or is damaged ({error})"
+        ) from error
     if found != FORMAT:
         raise InvalidInput("path", f"{os.fspath(path)!r} holds {found!r}, not a {FORMAT!r}")
     if version > VERSION:

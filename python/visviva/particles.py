@@ -12,6 +12,8 @@ from visviva._arrays import float_array
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._arrays import Shape, Sizes
+
 __all__ = ["Particles"]
 
 
@@ -50,17 +52,15 @@ class Particles:
     velocity: NDArray[np.float64]
 
     def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
-        masses = _frozen("mass", mass, (None,))
-        count = masses.shape[0]
-        positions = _frozen("position", position, (count, 3))
+        sizes: Sizes = {}
+        object.__setattr__(self, "mass", _frozen("mass", mass, ("N",), sizes))
+        object.__setattr__(self, "position", _frozen("position", position, ("N", 3), sizes))
         if velocity is None:
-            velocity = np.zeros((count, 3))
-        object.__setattr__(self, "mass", masses)
-        object.__setattr__(self, "position", positions)
-        object.__setattr__(self, "velocity", _frozen("velocity", velocity, (count, 3)))
+            velocity = np.zeros(self.position.shape)
+        object.__setattr__(self, "velocity", _frozen("velocity", velocity, ("N", 3), sizes))
 
     def __len__(self) -> int:
-        return self.mass.shape[0]
+        return len(self.mass)
 
     def __repr__(self) -> str:
         massless = int(np.count_nonzero(self.mass == 0.0))
@@ -137,9 +137,10 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
 
 
-def _frozen(name: str, value: ArrayLike, shape: tuple[int | None, ...]) -> NDArray[np.float64]:
-    array = float_array(name, value, shape)
-    if array is value or array.flags.writeable:
+def _frozen(name: str, value: ArrayLike, shape: Shape, sizes: Sizes) -> NDArray[np.float64]:
+    array = float_array(name, value, shape, sizes)
+    if array.flags.writeable or array is value:
+        # Read-only views of somebody's writeable array are copied too: they have a base.
         array = array.copy()
         array.flags.writeable = False
     return array

@@ -10,8 +10,6 @@ from __future__ import annotations
 from dataclasses import make_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
-import numpy as np
-
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva.errors import InvalidInput
@@ -19,6 +17,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -124,8 +123,10 @@ def _document(entry: dict[str, Any]) -> str:
 
 
 _BY_NAME = {entry["name"]: _make(entry) for entry in _core.potentials()}
-globals().update({made.__name__: made for made in _BY_NAME.values()})
-__all__ = ["Potential", "potential_by_name", *(made.__name__ for made in _BY_NAME.values())]
+_CLASSES = {made.__name__: made for made in _BY_NAME.values()}
+globals().update(_CLASSES)
+__all__ = ["Potential", "potential_by_name"]
+__all__ += list(_CLASSES)
 
 
 def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:

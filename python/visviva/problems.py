@@ -218,9 +218,7 @@ def pleiades() -> Problem:
     x, y = (3, 3, -1, -3, 2, -2, 2), (3, -3, 2, 0, 0, -4, 4)
     vx, vy = (0, 0, 0, 0, 0, 1.75, -1.5), (0, 0, 0, -1.25, 1, 0, 0)
     zero = (0.0,) * 7
-    scene = Scene(
-        Particles([1, 2, 3, 4, 5, 6, 7], np.array([x, y, zero]).T, np.array([vx, vy, zero]).T), Gravity(1.0)
-    )
+    scene = Scene(Particles([1, 2, 3, 4, 5, 6, 7], np.array([x, y, zero]).T, np.array([vx, vy, zero]).T), Gravity(1.0))
     return Problem(
         "pleiades",
         "seven stars in a plane",

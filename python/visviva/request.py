@@ -6,7 +6,6 @@ by the core (signs, ranges, names, order of times) is left to the core.
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
@@ -16,11 +15,12 @@ from visviva._arrays import float_array, number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
     from numpy.typing import ArrayLike
 
-Progress = bool | Callable[[int, int], object]
+    from visviva._progress import Progress
+
 _Result = TypeVar("_Result")
 
 
@@ -39,7 +39,8 @@ def keywords(
     """Keywords of ``_core.run`` and ``_core.plan`` that both understand."""
     if events:
         raise InvalidInput("events", "events are not offered yet; leave events=() and look at the recorded columns")
-    end_only = isinstance(t, float | int) or np.ndim(t) == 0
+    # An array or a sequence is output times; anything else must be one number, and `number` says so.
+    end_only = getattr(t, "ndim", int(hasattr(t, "__len__"))) == 0
     return {
         **prepared,
         "times": np.array([number("t", t)]) if end_only else float_array("t", t, (None,)),

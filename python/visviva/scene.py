@@ -25,9 +25,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._progress import Progress
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
-    from visviva.request import Progress
 
 __all__ = ["Scene"]
 
@@ -398,9 +398,7 @@ class Scene:
         >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
         array([2., 6., 0.])
         """
-        return Scene(
-            Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0
-        )
+        return Scene(Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0)
 
 
 def _rebuild(particles: Particles, forces: tuple[Force, ...], t0: float) -> Scene:

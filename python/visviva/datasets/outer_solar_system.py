@@ -89,7 +89,9 @@ class OuterSolarSystem:
     source: str
 
 
-def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner") -> OuterSolarSystem:
+def outer_solar_system(
+    variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner",
+) -> OuterSolarSystem:
     """The Sun with the inner planets, Jupiter, Saturn, Uranus, Neptune and Pluto.
 
     Parameters
