@@ -5,5 +5,6 @@
 
 pub mod error;
 pub mod numerics;
+pub mod parallel;
 
 pub use error::{Error, Result};
