@@ -97,7 +97,8 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     1.0
     """
     try:
-        with np.load(path, allow_pickle=False) as file:
+        # Opened here because NumPy leaves the file open when it finds it damaged.
+        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         header = json.loads(arrays.pop("header").tobytes())
         found, version = header["format"], int(header["version"])

@@ -31,7 +31,7 @@ def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFi
     for word in ("Neptune", "angular momentum", "quadruple-precision", "χ²", "gold, 1913"):
         assert word in shown
     pictures = {path.name: path.read_bytes()[:8] for path in tmp_path.glob("*.png")}
-    assert pictures == {name: b"\x89PNG\r\n\x1a\n" for name in ("outer_solar_system.png", "rutherford.png")}
+    assert pictures == dict.fromkeys(("outer_solar_system.png", "rutherford.png"), b"\x89PNG\r\n\x1a\n")
     assert isinstance(vv.load(tmp_path / "outer_solar_system.npz"), vv.Trajectory)
 
 
