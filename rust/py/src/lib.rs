@@ -8,6 +8,8 @@ mod diagnostic;
 mod errors;
 mod gate;
 mod info;
+mod registry;
+mod scene;
 
 use pyo3::prelude::*;
 
@@ -21,6 +23,10 @@ mod _core {
     use crate::diagnostic::{_busy, _echo};
     #[pymodule_export]
     use crate::info::info;
+    #[pymodule_export]
+    use crate::registry::{methods, potential, potentials};
+    #[pymodule_export]
+    use crate::scene::{acceleration, conserved, plan, run};
 
     /// A wrong `VISVIVA_SIMD` is refused here, before anything runs on another tier than was asked for.
     #[pymodule_init]
