@@ -65,6 +65,9 @@ impl<S: Element> FixedStep<S> {
     }
 }
 
+/// Steps between two counts of progress.
+const PROGRESS_STEPS: u64 = 64;
+
 /// Where a time lies among the nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Place {
@@ -114,7 +117,9 @@ pub fn run<S: Element>(
                 }
                 stepper.step(state, dynamics, ticker)?;
                 taken += 1;
-                ticker.advance(1);
+                if taken % PROGRESS_STEPS == 0 {
+                    ticker.advance(PROGRESS_STEPS);
+                }
                 ticker.tick()?;
             }
             match place.past {

@@ -1,4 +1,4 @@
-//! What a run records: arrays that trajectories fill side by side, NaN where one has failed.
+//! What a run records: arrays that trajectories fill side by side, with NaN where one has failed.
 
 use core::marker::PhantomData;
 
@@ -20,7 +20,7 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Arrays full of NaN; `derived` asks for all four.
+    /// Arrays of zeros, whose memory is first touched when it is written; `derived` asks for all four.
     pub fn new(
         copies: usize,
         times: usize,
@@ -29,7 +29,7 @@ impl Columns {
         velocity: bool,
         derived: bool,
     ) -> Self {
-        let array = |wanted: bool| vec![f64::NAN; if wanted { copies * times * particles * 3 } else { 0 }];
+        let array = |wanted: bool| vec![0.0; if wanted { copies * times * particles * 3 } else { 0 }];
         Self {
             times,
             particles,
@@ -37,6 +37,21 @@ impl Columns {
             velocity: array(velocity || derived),
             position_rest: array(derived),
             velocity_rest: array(derived),
+        }
+    }
+
+    /// Puts NaN where nothing was recorded: a particle from an output time on.
+    pub fn forget(&mut self, copy: usize, from_time: usize, particle: usize) {
+        let Self { times, particles, .. } = *self;
+        for array in
+            [&mut self.position, &mut self.velocity, &mut self.position_rest, &mut self.velocity_rest]
+        {
+            for time in from_time..times {
+                let at = ((copy * times + time) * particles + particle) * 3;
+                if let Some(entry) = array.get_mut(at..at + 3) {
+                    entry.fill(f64::NAN);
+                }
+            }
         }
     }
 
@@ -85,21 +100,38 @@ pub struct Entry {
 }
 
 impl Writer<'_> {
+    /// Whether what the values leave out is kept.
+    pub fn keeps_rest(&self) -> bool {
+        self.position_rest.1 > 0
+    }
+
+    #[inline(always)]
+    fn put(&self, (array, len): (*mut f64, usize), copy: usize, time: usize, particle: usize, values: [f64; 3]) {
+        let at = ((copy * self.times + time) * self.particles + particle) * 3;
+        if at + 3 <= len {
+            // SAFETY: in bounds by the test; no other thread writes this particle (see `write`).
+            unsafe { array.add(at).cast::<[f64; 3]>().write(values) };
+        }
+    }
+
     /// Writes a particle of a copy at an output time. Only one thread may write a given particle.
     pub fn write(&self, copy: usize, time: usize, particle: usize, entry: &Entry) {
-        let at = ((copy * self.times + time) * self.particles + particle) * 3;
-        for ((array, len), values) in [
-            (self.position, entry.position),
-            (self.velocity, entry.velocity),
-            (self.position_rest, entry.position_rest),
-            (self.velocity_rest, entry.velocity_rest),
-        ] {
-            if at + 3 <= len {
-                for (c, value) in values.into_iter().enumerate() {
-                    // SAFETY: in bounds by the test above; not shared by the contract of `write`.
-                    unsafe { array.add(at + c).write(value) };
-                }
-            }
-        }
+        self.write_rounded(copy, time, particle, entry.position, entry.velocity);
+        self.put(self.position_rest, copy, time, particle, entry.position_rest);
+        self.put(self.velocity_rest, copy, time, particle, entry.velocity_rest);
+    }
+
+    /// As [`write`](Self::write), without what the values leave out.
+    #[inline(always)]
+    pub fn write_rounded(
+        &self,
+        copy: usize,
+        time: usize,
+        particle: usize,
+        position: [f64; 3],
+        velocity: [f64; 3],
+    ) {
+        self.put(self.position, copy, time, particle, position);
+        self.put(self.velocity, copy, time, particle, velocity);
     }
 }

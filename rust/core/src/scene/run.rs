@@ -85,6 +85,11 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
             writer: &writer,
         };
         let reports = integrate::run(&job, ticker)?;
+        for report in &reports {
+            for slot in report.unit.recorded.clone() {
+                columns.forget(report.unit.copy, report.rows, report.unit.bodies[slot]);
+            }
+        }
         gather(scene, request, &reports)
     } else {
         closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?
