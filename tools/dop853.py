@@ -7,6 +7,8 @@ satisfies: first the step and its estimate of order 5, then the continuous exten
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from mpmath import mp, mpf, sqrt
 
 import published_coefficients as published
@@ -94,7 +96,7 @@ class Table:
                 residual.append(mp.fdot(row, weights[tree]) - exact[k] / density(tree))
         return residual
 
-    def polish(self, kinds: set[tuple[str, int]], conditions: object) -> None:
+    def polish(self, kinds: set[tuple[str, int]], conditions: Callable[[], Row]) -> None:
         """Move the entries of these rows that are not exact onto the conditions."""
         free = [key for key in self.entries if key[:2] in kinds and self.exact[key] is None]
 

@@ -7,6 +7,8 @@
 pub mod dop853;
 pub mod kahan_li8;
 pub mod leapfrog;
+#[cfg(test)]
+mod order_conditions;
 pub mod rk4;
 pub mod yoshida4;
 
