@@ -20,16 +20,12 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Arrays of zeros, whose memory is first touched when it is written; `derived` asks for all four.
-    pub fn new(
-        copies: usize,
-        times: usize,
-        particles: usize,
-        position: bool,
-        velocity: bool,
-        derived: bool,
-    ) -> Self {
-        let array = |wanted: bool| vec![0.0; if wanted { copies * times * particles * 3 } else { 0 }];
+    /// Room for the arrays; `derived` asks for all four.
+    ///
+    /// The room is not initialised (touching it twice would cost as much as the steps between two
+    /// outputs): the arrays are empty until [`finish`](Self::finish).
+    pub fn new(copies: usize, times: usize, particles: usize, position: bool, velocity: bool, derived: bool) -> Self {
+        let array = |wanted: bool| Vec::with_capacity(if wanted { copies * times * particles * 3 } else { 0 });
         Self {
             times,
             particles,
@@ -40,24 +36,36 @@ impl Columns {
         }
     }
 
-    /// Puts NaN where nothing was recorded: a particle from an output time on.
-    pub fn forget(&mut self, copy: usize, from_time: usize, particle: usize) {
+    /// Makes the arrays whole: NaN for a (particle, copy) from the output time at which its record ends.
+    ///
+    /// # Safety
+    /// Every entry that is not in `missing` has been written, for each of the `copies` copies.
+    pub unsafe fn finish(&mut self, copies: usize, missing: &[Missing]) {
         let Self { times, particles, .. } = *self;
+        let len = copies * times * particles * 3;
         for array in
             [&mut self.position, &mut self.velocity, &mut self.position_rest, &mut self.velocity_rest]
         {
-            for time in from_time..times {
-                let at = ((copy * times + time) * particles + particle) * 3;
-                if let Some(entry) = array.get_mut(at..at + 3) {
-                    entry.fill(f64::NAN);
+            if array.capacity() < len || len == 0 {
+                continue;
+            }
+            for &Missing { copy, from_time, particle } in missing {
+                for time in from_time..times {
+                    let at = ((copy * times + time) * particles + particle) * 3;
+                    for entry in &mut array.spare_capacity_mut()[at..at + 3] {
+                        let _: &mut f64 = entry.write(f64::NAN);
+                    }
                 }
             }
+            // SAFETY: the capacity is there (tested above) and everything was written, by the contract or
+            // by the loop above.
+            unsafe { array.set_len(len) };
         }
     }
 
     /// A writer that threads may share, each for particles of its own.
     pub fn writer(&mut self) -> Writer<'_> {
-        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.len());
+        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.capacity());
         Writer {
             times: self.times,
             particles: self.particles,
@@ -68,6 +76,17 @@ impl Columns {
             columns: PhantomData,
         }
     }
+}
+
+/// A particle whose record ends before the last output time.
+#[derive(Clone, Copy, Debug)]
+pub struct Missing {
+    /// Which copy.
+    pub copy: usize,
+    /// The first output time that was not recorded.
+    pub from_time: usize,
+    /// Which particle.
+    pub particle: usize,
 }
 
 /// Writes single entries of [`Columns`].
