@@ -4,6 +4,7 @@
 //! numerics ← potentials ← forces ← nbody, scattering ← scene.
 
 pub mod error;
+pub mod nbody;
 pub mod numerics;
 
 pub use error::{Error, Result};

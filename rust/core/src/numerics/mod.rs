@@ -1,6 +1,9 @@
 //! The numerical ground: scalars and SIMD lanes, double-double, elementary functions, random numbers.
 
+pub mod angles;
 pub mod double_double;
+pub mod exponentials;
 pub mod lanes;
 pub mod real;
 pub mod simd;
+pub mod stumpff;
