@@ -34,10 +34,10 @@ pub struct KeplerOrbit {
     position: Vector3<f64>,
     velocity: Vector3<f64>,
     /// Exponents of the internal units of length and velocity.
-    length: i32,
-    speed: i32,
+    pub(super) length: i32,
+    pub(super) speed: i32,
     scaled: Scaled,
-    conic: Option<Conic>,
+    pub(super) conic: Option<Conic>,
 }
 
 /// The epoch in internal units, and how far from it the series about the epoch is used.
