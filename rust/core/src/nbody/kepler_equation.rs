@@ -56,7 +56,11 @@ pub(super) fn solve(
         let square = delta * delta;
         if (square <= reach_squared * s * s && square * beta.abs() <= reach_squared) || steps >= 120 {
             let functions = if delta.is_finite() { g.shifted(beta, delta) } else { g };
-            return Reached { functions, s: s + if delta.is_finite() { delta } else { 0.0 }, r: r + (eta * functions.g1 + zeta * functions.g2) };
+            return Reached {
+                functions,
+                s: s + if delta.is_finite() { delta } else { 0.0 },
+                r: r + (eta * functions.g1 + zeta * functions.g2),
+            };
         }
         if residual > 0.0 {
             upper = s;
