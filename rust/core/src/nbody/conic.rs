@@ -144,8 +144,8 @@ impl Conic {
         let mut since = self.since_apsis + DoubleDouble::from(time);
         let mut at_apocentre = false;
         if let Some(period) = self.period {
-            // A time beyond 2^53 periods needs the reduction again; 31 digits end at 1e31 periods.
-            for _ in 0..4 {
+            // Each pass takes 52 bits off; the phase keeps its meaning up to 2^106 periods, its range always.
+            for _ in 0..32 {
                 let turns = (since.to_f64() / period.to_f64()).round();
                 if turns == 0.0 {
                     break;

@@ -94,7 +94,8 @@ pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low
     let mut guess = if zeta > 1e-30 * r {
         let p = 2.0 * r / zeta;
         let k = 3.0 * (high / zeta);
-        let w = cbrt(k + (k * k + p * p * p).sqrt());
+        // Beyond 1e100, p³ is nothing beside k², which would overflow.
+        let w = if k > 1e100 { cbrt(2.0 * k) } else { cbrt(k + (k * k + p * p * p).sqrt()) };
         2.0 * k / (w * w + p + (p / w) * (p / w))
     } else {
         high / r

@@ -108,8 +108,10 @@ pub fn cbrt(x: f64) -> f64 {
 mod tests {
     use super::*;
 
+    type Exact = (f64, f64);
+
     /// (x, e^x, ln|x|, cbrt x) as (high, low), by mpmath with 60 digits.
-    const VALUES: [(f64, (f64, f64), (f64, f64), (f64, f64)); 60] = [
+    const VALUES: [(f64, Exact, Exact, Exact); 60] = [
         (
             1.0032079707398203,
             (2.7270159990187897, 1.2221583797043281e-16),
