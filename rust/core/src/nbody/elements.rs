@@ -13,7 +13,7 @@ use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::exponentials::scale_by_power_of_two;
 use crate::numerics::real::Real;
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 
 /// The elements of an orbit about a fixed centre, all per unit mass.
@@ -229,10 +229,4 @@ pub fn free_fall_time(mu: f64, from: f64, to: f64) -> Result<f64> {
     let (fallen, left) = ((from - to) / from, to / from);
     let angle = if to == 0.0 { FRAC_PI_2 } else { atan2(fallen.sqrt(), left.sqrt()) };
     Ok(from * (from / mu * 0.5).sqrt() * (angle + (fallen * left).sqrt()))
-}
-
-/// The angle in (−π, π] equal to `angle` up to whole turns.
-pub fn principal_angle(angle: f64) -> f64 {
-    let turns = (angle / (2.0 * PI)).round();
-    (DoubleDouble::from(angle) - DoubleDouble::PI.scale(2.0) * DoubleDouble::from(turns)).to_f64()
 }
