@@ -1,6 +1,7 @@
 """What the gate promises, kept by real runs: interrupts, callbacks, threads."""
 
 import itertools
+import signal
 import subprocess
 import sys
 import time
@@ -63,19 +64,43 @@ try:
 except vv.Interrupted as error:
     elapsed = time.perf_counter() - sent[0]
     out = error.trajectory
-    print(elapsed, len(out.t), np.isfinite(out.position).all(axis=(-2, -1)).sum(), bool(np.isfinite(out.position[..., 0, :, :]).all()))
+    print(elapsed, len(out.t), np.isfinite(out.position[..., 0, :, :]).all())
 """
     best = float("inf")
     for _ in range(3):  # another user of the machine may delay one attempt
-        done = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, timeout=60)
+        done = subprocess.run([sys.executable, "-c", script], check=False, capture_output=True, text=True, timeout=60)
         assert done.stderr == ""
-        elapsed, times, _, begins = done.stdout.split()
+        elapsed, times, begins = done.stdout.split()
         assert begins == "True"
         assert int(times) >= 1
         best = min(best, float(elapsed))
         if best < 0.2:
             break
     assert best < 0.2
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4"])
+@pytest.mark.parametrize("delay", [0.1, 0.13])
+def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> None:
+    """A large scene is stopped in the middle of a force evaluation; its last state is still one of the run's."""
+    large = scene(3000)
+
+    def handler(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, delay)
+        with pytest.raises(errors.Interrupted) as caught:
+            large.run(1e9, method=method, dt=1e-3)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    out = caught.value.trajectory
+    assert out.stats.steps > 0
+    again = large.run(out.final.t0, method=method, dt=1e-3).final
+    assert out.final.particles.position.tobytes() == again.particles.position.tobytes()
+    assert out.final.particles.velocity.tobytes() == again.particles.velocity.tobytes()
 
 
 @pytest.mark.parametrize("run", ["fixed steps", "adaptive steps", "large", "batch"])
@@ -97,7 +122,7 @@ def test_an_exception_of_the_callback_is_raised_again(run: str) -> None:
 def test_progress_grows_to_the_total(method: str) -> None:
     calls: list[tuple[int, int]] = []
     scene(300).run(
-        2.0 if method == "leapfrog" else 20.0,
+        2.0,
         method=method,
         dt=1e-3 if method == "leapfrog" else None,
         progress=lambda done, total: calls.append((done, total)),
