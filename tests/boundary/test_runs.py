@@ -97,8 +97,8 @@ def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> N
     finally:
         signal.signal(signal.SIGALRM, before)
     out = caught.value.trajectory
-    assert out.stats.steps > 0
-    again = large.run(out.final.t0, method=method, dt=1e-3).final
+    # On a busy machine not even one step may have been whole; the last state is then the first.
+    again = large.run(out.final.t0, method=method, dt=1e-3).final if out.stats.steps else large
     assert out.final.particles.position.tobytes() == again.particles.position.tobytes()
     assert out.final.particles.velocity.tobytes() == again.particles.velocity.tobytes()
 
