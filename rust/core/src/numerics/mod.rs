@@ -3,5 +3,6 @@
 pub mod double_double;
 pub mod elementary;
 pub mod lanes;
+pub mod philox;
 pub mod real;
 pub mod simd;
