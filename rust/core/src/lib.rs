@@ -3,8 +3,15 @@
 //! A room knows the rooms below it and never those above:
 //! numerics ← potentials ← forces ← nbody, scattering ← scene.
 
+pub mod conservation;
 pub mod error;
+pub mod forces;
+pub mod integrators;
+pub mod nbody;
 pub mod numerics;
 pub mod parallel;
+pub mod potentials;
+pub mod registry;
+pub mod scene;
 
 pub use error::{Error, Result};

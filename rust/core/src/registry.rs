@@ -1,6 +1,7 @@
 //! What the package offers, one line each: methods and potentials.
 
 use crate::integrators::{Method, dop853, kahan_li8, leapfrog, rk4, yoshida4};
+use crate::potentials::{Declaration, coulomb, lennard_jones, yukawa};
 
 /// Every integration method, in the order of the documentation.
 pub static METHODS: &[&Method] =
@@ -9,4 +10,13 @@ pub static METHODS: &[&Method] =
 /// The method of a name.
 pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().copied().find(|method| method.name == name)
+}
+
+/// Every potential, in the order of the documentation.
+pub static POTENTIALS: &[&Declaration] =
+    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION];
+
+/// The potential of a name.
+pub fn potential(name: &str) -> Option<&'static Declaration> {
+    POTENTIALS.iter().copied().find(|declaration| declaration.name == name)
 }

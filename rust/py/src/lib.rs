@@ -1,6 +1,38 @@
-//! The only place that knows Python.
+//! The only place that knows Python: no mathematics here, and nothing but plain data handed down.
+//!
+//! Arrays come in through [`arrays`], every computation goes through [`gate`], errors leave through
+//! [`errors`]. One file per room of the core holds its functions; one `use` line below exports them.
+
+mod arrays;
+mod diagnostic;
+mod errors;
+mod gate;
+mod info;
+mod registry;
+mod scene;
 
 use pyo3::prelude::*;
 
+/// The compiled core of visviva.
 #[pymodule]
-mod _core {}
+mod _core {
+    use super::{PyModule, PyResult, errors};
+    use pyo3::prelude::*;
+
+    #[pymodule_export]
+    use crate::diagnostic::{_busy, _echo};
+    #[pymodule_export]
+    use crate::info::info;
+    #[pymodule_export]
+    use crate::registry::{methods, potential, potentials};
+    #[pymodule_export]
+    use crate::scene::{acceleration, conserved, plan, run};
+
+    /// A wrong `VISVIVA_SIMD` is refused here, before anything runs on another tier than was asked for.
+    #[pymodule_init]
+    fn init(module: &Bound<'_, PyModule>) -> PyResult<()> {
+        let _tier =
+            visviva_core::numerics::simd::resolve().map_err(|error| errors::raised(module.py(), error))?;
+        Ok(())
+    }
+}

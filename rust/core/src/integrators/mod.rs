@@ -4,10 +4,15 @@
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
+pub mod adaptive;
 pub mod dop853;
+pub mod fixed;
 pub mod kahan_li8;
 pub mod leapfrog;
 pub mod rk4;
+pub mod runge_kutta;
+pub mod splitting;
+pub mod state;
 pub mod yoshida4;
 
 use crate::numerics::double_double::DoubleDouble;
@@ -87,6 +92,14 @@ pub struct Embedded {
     /// `w = θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`, which loses no digits at either end.
     pub dense: &'static [&'static [DoubleDouble]],
 }
+
+/// A coefficient, as the generated tables write it.
+const fn dd(high: f64, low: f64) -> DoubleDouble {
+    DoubleDouble::new(high, low)
+}
+
+/// An absent coefficient.
+const ZERO: DoubleDouble = dd(0.0, 0.0);
 
 impl Method {
     /// Whether the method chooses its own steps.

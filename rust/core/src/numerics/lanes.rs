@@ -55,7 +55,7 @@ impl Bits {
 }
 
 /// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
-pub trait Vector8: Real {
+pub trait Vector8: Real<Mask = Bits> {
     /// From memory.
     fn load(lanes: Lanes) -> Self;
     /// To memory.

@@ -1,8 +1,10 @@
 //! The numerical ground: scalars and SIMD lanes, double-double, elementary functions, random numbers.
 
 pub mod double_double;
+pub mod element;
 pub mod elementary;
 pub mod lanes;
 pub mod philox;
+pub mod power_of_two;
 pub mod real;
 pub mod simd;

@@ -1,0 +1,180 @@
+"""Check every array and number that a user hands in.
+
+The one idea: one function decides what an array argument may be, so that every entry accepts the same things and
+refuses the rest with the same words: the name of the argument, what was expected, what came, and what to do. What it
+returns can go to the core as it is.
+"""
+
+import math
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from visviva.errors import InvalidInput
+
+__all__ = ["Shape", "Sizes", "float_array", "number"]
+
+Shape: TypeAlias = tuple[int | str | None, ...]
+"""Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
+
+Sizes: TypeAlias = dict[str, tuple[int, str]]
+"""For each named length: its value and the argument that set it."""
+
+_EXACT = 2**53
+_ADVICE = {
+    "b": "a mask is not a number; pass x.astype(float) if zeros and ones are meant",
+    "c": "pass x.real if the imaginary part is to be dropped",
+    "O": "build it with np.asarray(x, dtype=float), which will show the element that is not a number",
+    "U": "convert the text with np.asarray(x, dtype=float)",
+    "S": "convert the text with np.asarray(x, dtype=float)",
+    "T": "convert the text with np.asarray(x, dtype=float)",
+    "M": "pass times as numbers in the units of the scene",
+    "m": "pass times as numbers in the units of the scene",
+    "V": "pass one plain array per argument",
+}
+
+
+def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | None = None) -> NDArray[np.float64]:
+    """Check an array argument and return it as C-contiguous float64.
+
+    Parameters
+    ----------
+    name : str
+        The name of the argument, for the message.
+    value : array_like
+        Floats of at most 64 bits or integers in any memory layout and byte order, or nested sequences of numbers.
+    shape : tuple or None
+        Expected lengths: numbers, names such as ``"N"``, or None for any length. None in place of the tuple allows
+        any shape.
+    sizes : dict, optional
+        The named lengths of the call. Pass one dict for all arguments that must agree; it is filled in as they come.
+
+    Returns
+    -------
+    ndarray
+        Native, aligned, C-contiguous float64. It is the argument itself if that is all of this already.
+
+    Raises
+    ------
+    InvalidInput
+        For any other type, shape, NaN or infinity.
+
+    Examples
+    --------
+    >>> from visviva._arrays import float_array
+    >>> sizes = {}
+    >>> float_array("mass", [1, 2], ("N",), sizes)
+    array([1., 2.])
+    >>> float_array("position", [[0, 0, 0]], ("N", 3), sizes)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: position: expected shape (N, 3) with N = 2 as in mass, got (1, 3)
+    """
+    array = _real(name, value)
+    if shape is not None:
+        _check_shape(name, array.shape, shape, {} if sizes is None else sizes)
+    result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
+    finite = np.isfinite(result)
+    if not finite.all():
+        where = tuple(int(i) for i in np.argwhere(~finite)[0])
+        label = name + (f"[{', '.join(map(str, where))}]" if where else "")
+        raise InvalidInput(name, f"expected finite numbers, but {label} is {result[where]}; remove or replace it")
+    return result
+
+
+def number(name: str, value: object) -> float:
+    """Check a scalar argument and return it as a float.
+
+    Parameters
+    ----------
+    name : str
+        The name of the argument, for the message.
+    value : real number
+        A Python or NumPy number, or an array without axes.
+
+    Returns
+    -------
+    float
+        Its value.
+
+    Raises
+    ------
+    InvalidInput
+        For anything else, NaN or infinity.
+
+    Examples
+    --------
+    >>> from visviva._arrays import number
+    >>> number("dt", 1)
+    1.0
+    """
+    if type(value) is float and math.isfinite(value):
+        return value
+    if type(value) is int:
+        try:
+            return float(value)
+        except OverflowError:
+            raise InvalidInput(name, "expected a number within the range of float64, got a larger integer") from None
+    array = _real(name, value)
+    if array.shape != ():
+        raise InvalidInput(name, f"expected one real number, got an array of shape {array.shape}")
+    return float(float_array(name, array, ()))
+
+
+def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
+    """Give an array of a type that float64 holds exactly."""
+    if hasattr(value, "units") or hasattr(value, "unit"):
+        raise InvalidInput(
+            name,
+            f"expected plain numbers, got {_article(value)} with a unit; pass its value in the scene's units",
+        )
+    if isinstance(value, np.ndarray) and hasattr(value, "mask"):  # not np.ma, which would be imported for this
+        raise InvalidInput(name, "expected plain numbers, got a masked array; pass x.compressed() or x.filled(…)")
+    try:
+        array = np.asarray(value)
+    except (ValueError, TypeError, OverflowError) as error:
+        raise InvalidInput(
+            name, f"expected an array of real numbers, got {_article(value)} that is none: {error}"
+        ) from None
+    kind, dtype = array.dtype.kind, array.dtype
+    if kind in _ADVICE:
+        what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{_article(value)} (dtype {dtype.name})"
+        raise InvalidInput(name, f"expected real numbers, got {what}; {_ADVICE[kind]}")
+    if kind == "f" and dtype.itemsize > 8:
+        raise InvalidInput(name, f"expected at most float64, got {dtype.name}; round it with x.astype(np.float64)")
+    if dtype.itemsize == 8 and kind in "iu" and array.size and (array.max() > _EXACT or array.min() < -_EXACT):
+        raise InvalidInput(
+            name,
+            "expected integers up to 2**53, which float64 holds exactly, got larger; round them with x.astype(float)",
+        )
+    return array
+
+
+def _article(value: object) -> str:
+    kind = type(value).__name__
+    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
+
+
+def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -> None:
+    """Compare shapes, looking up and filling in the named lengths."""
+    set_here: Sizes = {}
+    agrees = len(came) == len(shape)
+    for length, wanted in zip(came, shape, strict=False):
+        if isinstance(wanted, str):
+            known = sizes.get(wanted) or set_here.setdefault(wanted, (length, name))
+            agrees = agrees and known[0] == length
+        elif wanted is not None:
+            agrees = agrees and wanted == length
+    if agrees:
+        sizes.update(set_here)
+        return
+    expected = ", ".join("any" if length is None else str(length) for length in shape) + (
+        "," if len(shape) == 1 else ""
+    )
+    known_names = (part for part in dict.fromkeys(shape) if isinstance(part, str) and part in sizes)
+    known_lengths = " and ".join(f"{part} = {sizes[part][0]} as in {sizes[part][1]}" for part in known_names)
+    message = f"expected shape ({expected})" + (f" with {known_lengths}" if known_lengths else "") + f", got {came}"
+    if len(shape) == 2 and came[::-1][1:] == shape[1:] and came[1:] != shape[1:]:
+        message += "; the vector axis is the last: pass x.T"
+    raise InvalidInput(name, message)

@@ -1,0 +1,83 @@
+"""Turn the ``progress`` argument into what the core calls.
+
+The core calls ``f(done, total)`` about every 50 ms and once at the end, on the caller's thread. ``progress=True`` is a
+tqdm bar, notebook-aware, if tqdm is installed, and else one plain line on standard error.
+"""
+
+import sys
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from typing import TypeAlias
+
+from visviva.errors import InvalidInput
+
+__all__ = ["Progress", "Report", "callback"]
+
+Report: TypeAlias = Callable[[int, int], object]
+Progress: TypeAlias = bool | Report
+
+
+@contextmanager
+def callback(progress: Progress) -> Iterator[Report | None]:
+    """Give the callable for the core, and close what it shows when the run ends.
+
+    Parameters
+    ----------
+    progress : bool or callable
+        True for a bar, False for nothing, or a callable ``f(done, total)``.
+
+    Yields
+    ------
+    callable or None
+        What to hand to the core.
+
+    Raises
+    ------
+    InvalidInput
+        For anything else.
+
+    Examples
+    --------
+    >>> from visviva._progress import callback
+    >>> with callback(print) as report:
+    ...     report(3, 10)
+    3 10
+    """
+    if progress is False:
+        yield None
+    elif callable(progress):
+        yield progress
+    elif progress is True:
+        with _bar() as report:
+            yield report
+    else:
+        raise InvalidInput("progress", f"expected True, False or a callable f(done, total), got {progress!r}")
+
+
+@contextmanager
+def _bar() -> Iterator[Report]:
+    try:
+        from tqdm.auto import tqdm
+    except ImportError:
+        with _line() as report:
+            yield report
+        return
+    with tqdm(total=0) as bar:
+
+        def report(done: int, total: int) -> None:
+            bar.total = total
+            bar.update(done - bar.n)
+
+        yield report
+
+
+@contextmanager
+def _line() -> Iterator[Report]:
+    def report(done: int, total: int) -> None:
+        share = f"{100 * done // total} %" if total else f"{done}"
+        print(f"\rvisviva: {share}", end="", file=sys.stderr, flush=True)
+
+    try:
+        yield report
+    finally:
+        print(file=sys.stderr)

@@ -1,0 +1,23 @@
+//! Newtonian gravity, summed directly.
+//!
+//! Every kernel computes a pair as `d = x_j - x_i`, `r² = ((dx² [+ ε²]) + dy²) + dz²`, `w = 1/(r²·√r²)`
+//! with IEEE operations only. The order in which a body's terms are added is canonical:
+//!
+//! - up to eight massive bodies ([`few`]): partners `i+1, i-1, i+2, i-2, …` around the ring of indices,
+//!   whether the lanes are bodies ([`ring`]) or trajectories ([`few`]): the same bits alone and in a batch;
+//! - more ([`tiles`]): by third-law tiles in fixed shards, the same on any number of threads;
+//! - a massless body adds the massive ones in order of index ([`passive`]).
+//!
+//! A massless body exerts nothing, so pairs of them are never formed.
+
+pub mod few;
+mod passive;
+pub mod ring;
+pub mod tiles;
+
+pub use few::FewBodies;
+pub use ring::Ring;
+pub use tiles::Tiles;
+
+/// The most massive bodies that the ring order serves.
+pub const RING_MAX: usize = 8;

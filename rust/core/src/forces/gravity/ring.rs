@@ -1,0 +1,163 @@
+//! Up to eight massive bodies of one trajectory, the lanes over the bodies.
+//!
+//! The one idea: with the bodies on a ring of `n` lanes, turning it by `k` lines up every pair at ring
+//! distance `k`, so `n/2` vector square roots and divisions serve all `n(n-1)/2` pairs and the third law
+//! gives the other half. Same bits as [`few`](super::few).
+
+use super::passive::{Source, attraction};
+use crate::error::Result;
+use crate::forces::Force;
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
+use crate::parallel::Ticker;
+use crate::tiered;
+
+/// What one turn of the ring needs.
+#[derive(Debug)]
+struct Turn {
+    forward: [i64; WIDTH],
+    backward: [i64; WIDTH],
+    /// `G·m` of the body ahead, zero in the lanes without a body.
+    strength_ahead: Lanes,
+    /// `G·m` of the body behind; `None` when ahead and behind are the same body.
+    strength_behind: Option<Lanes>,
+}
+
+/// Gravity among the first `n ≤ 8` bodies (row 0) and on the massless ones (rows from 1).
+#[derive(Debug)]
+pub struct Ring {
+    shape: Shape,
+    turns: Vec<Turn>,
+    strength: Vec<f64>,
+    /// `ε²`, and 1 in the lanes without a body, which keeps their distance to themselves from being 0.
+    softening2_first_row: Lanes,
+    softening2: f64,
+}
+
+impl Ring {
+    /// From `G·m` of the massive bodies, at most [`RING_MAX`](super::RING_MAX) of them.
+    pub fn new(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
+        let n = strength.len();
+        let body = |lane: usize, distance: usize| if lane < n { (lane + distance) % n } else { lane };
+        let weight = |lane: usize, distance: usize| {
+            if lane < n { strength[(lane + distance) % n] } else { 0.0 }
+        };
+        let turns = (1..=n / 2)
+            .map(|k| Turn {
+                forward: core::array::from_fn(|lane| body(lane, k) as i64),
+                backward: core::array::from_fn(|lane| body(lane, n - k) as i64),
+                strength_ahead: Lanes(core::array::from_fn(|lane| weight(lane, k))),
+                strength_behind: (2 * k != n)
+                    .then(|| Lanes(core::array::from_fn(|lane| weight(lane, n - k)))),
+            })
+            .collect();
+        let softening2 = softening * softening;
+        let softening2_first_row =
+            Lanes(core::array::from_fn(|lane| if lane < n { softening2 } else { 1.0 }));
+        Self { shape, turns, strength, softening2_first_row, softening2 }
+    }
+}
+
+#[inline(always)]
+fn kernel<V: Vector8, const PLANAR: bool>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
+    let rows = ring.shape.rows;
+    let softening2 = V::load(ring.softening2_first_row);
+    let x = V::load(q[0]);
+    let y = V::load(q[rows]);
+    let z = if PLANAR { V::zero() } else { V::load(q[2 * rows]) };
+    let (mut ax, mut ay, mut az) = (V::zero(), V::zero(), V::zero());
+    for turn in &ring.turns {
+        let dx = x.permute(&turn.forward) - x;
+        let dy = y.permute(&turn.forward) - y;
+        let dz = if PLANAR { V::zero() } else { z.permute(&turn.forward) - z };
+        let mut r2 = (dx * dx + softening2) + dy * dy;
+        if !PLANAR {
+            r2 += dz * dz;
+        }
+        let w = V::one() / (r2 * r2.sqrt());
+        let (px, py, pz) = (dx * w, dy * w, dz * w);
+        let ahead = V::load(turn.strength_ahead);
+        ax += ahead * px;
+        ay += ahead * py;
+        if !PLANAR {
+            az += ahead * pz;
+        }
+        if let Some(behind) = turn.strength_behind {
+            let behind = V::load(behind);
+            ax -= behind * px.permute(&turn.backward);
+            ay -= behind * py.permute(&turn.backward);
+            if !PLANAR {
+                az -= behind * pz.permute(&turn.backward);
+            }
+        }
+    }
+    let mut write = |index: usize, term: V| {
+        a[index] = if first { term } else { V::load(a[index]) + term }.store();
+    };
+    write(0, ax);
+    write(rows, ay);
+    if !PLANAR {
+        write(2 * rows, az);
+    }
+    if rows > 1 {
+        if ring.softening2 > 0.0 {
+            passive_rows::<V, PLANAR, true>(ring, q, a, first);
+        } else {
+            passive_rows::<V, PLANAR, false>(ring, q, a, first);
+        }
+    }
+}
+
+#[inline(always)]
+fn passive_rows<V: Vector8, const PLANAR: bool, const SOFT: bool>(
+    ring: &Ring,
+    q: &[Lanes],
+    a: &mut [Lanes],
+    first: bool,
+) {
+    let rows = ring.shape.rows;
+    let numbers = as_numbers(q);
+    let components = if PLANAR { 2 } else { 3 };
+    for row in 1..rows {
+        let at = |c: usize| if c < components { V::load(q[c * rows + row]) } else { V::zero() };
+        let body = |c: usize, j: usize| {
+            if c < components { V::splat(numbers[c * rows * WIDTH + j]) } else { V::zero() }
+        };
+        let sources = ring.strength.iter().enumerate().map(|(j, &strength)| Source {
+            position: [body(0, j), body(1, j), body(2, j)],
+            strength: V::splat(strength),
+        });
+        let term = attraction::<V, PLANAR, SOFT>([at(0), at(1), at(2)], sources, V::splat(ring.softening2));
+        for c in 0..components {
+            let a = &mut a[c * rows + row];
+            *a = if first { term[c] } else { V::load(*a) + term[c] }.store();
+        }
+    }
+}
+
+#[inline(always)]
+fn apply<V: Vector8>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
+    if ring.shape.components == 2 {
+        kernel::<V, true>(ring, q, a, first);
+    } else {
+        kernel::<V, false>(ring, q, a, first);
+    }
+}
+
+tiered! {
+    fn apply_tier[][](ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) = apply;
+}
+
+impl Force<Lanes> for Ring {
+    fn apply(
+        &mut self,
+        q: &[Lanes],
+        _: &[Lanes],
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        apply_tier(self, q, a, first);
+        Ok(())
+    }
+}

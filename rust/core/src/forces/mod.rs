@@ -1,0 +1,54 @@
+//! Forces: what turns positions and velocities into accelerations.
+//!
+//! The one idea: a force evaluation is one indirect call per force ([`Force::apply`]); everything hot is
+//! inside it. A state is two blocks of coordinates laid out by [`Shape`]; lanes are particles (packed) or
+//! trajectories (batch), which only the pair kernels and the reductions need to know.
+
+pub mod central_field;
+pub mod gravity;
+pub mod uniform_field;
+
+use crate::error::Result;
+use crate::numerics::element::{Element, Shape};
+use crate::parallel::Ticker;
+
+/// One force of a scene, ready to run.
+pub trait Force<S: Element>: Send {
+    /// Writes its accelerations into `a` if `first`, else adds them.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted) when the caller asked to stop; `a` is then unfinished.
+    fn apply(&mut self, q: &[S], v: &[S], a: &mut [S], first: bool, ticker: &mut Ticker<'_>) -> Result<()>;
+}
+
+/// All forces of a scene: the right-hand side of the equations of motion.
+pub struct Dynamics<S: Element> {
+    /// How the coordinates lie.
+    pub shape: Shape,
+    /// The forces, in the scene's order, which is the order of summation.
+    pub forces: Vec<Box<dyn Force<S>>>,
+    /// Force evaluations so far.
+    pub evaluations: u64,
+}
+
+impl<S: Element> Dynamics<S> {
+    /// From the forces of a scene.
+    pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
+        Self { shape, forces, evaluations: 0 }
+    }
+
+    /// The acceleration of every particle.
+    ///
+    /// # Errors
+    /// As [`Force::apply`].
+    pub fn acceleration(&mut self, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        self.evaluations += 1;
+        if self.forces.is_empty() {
+            a.fill(S::zero());
+        }
+        for (index, force) in self.forces.iter_mut().enumerate() {
+            force.apply(q, v, a, index == 0, ticker)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,133 @@
+//! Runs with a fixed step: nodes at `t0 + n·h`, outputs that never touch them.
+//!
+//! An output on a node is the node's state, to the bit; one between nodes comes from a sub-step on a
+//! copy, of the method's own order. So does an end that is not a node.
+
+use super::runge_kutta::RungeKuttaStep;
+use super::splitting::SplittingStep;
+use super::state::State;
+use super::{Method, Scheme};
+use crate::error::{Error, Result};
+use crate::forces::Dynamics;
+use crate::numerics::element::Element;
+use crate::parallel::Ticker;
+
+/// A method with a step, ready to advance a state.
+#[derive(Clone, Debug)]
+pub enum FixedStep<S> {
+    /// Kicks and drifts.
+    Splitting(SplittingStep<S>),
+    /// Explicit Runge–Kutta.
+    RungeKutta(RungeKuttaStep<S>),
+}
+
+impl<S: Element> FixedStep<S> {
+    /// The method with step `h`, for states like `state`.
+    ///
+    /// # Errors
+    /// A method that chooses its own steps.
+    pub fn new(method: &Method, h: f64, state: &State<S>) -> Result<Self> {
+        let h = S::splat(h);
+        match &method.scheme {
+            Scheme::Splitting(table) => Ok(Self::Splitting(SplittingStep::new(table, h, state.shape.len()))),
+            Scheme::RungeKutta(tableau) => Ok(Self::RungeKutta(RungeKuttaStep::new(tableau, h, state))),
+            Scheme::Embedded(_) => {
+                Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)))
+            }
+        }
+    }
+
+    /// Becomes the method with step `h`, at the state where `other` stands.
+    fn follow(&mut self, method: &Method, h: f64, other: &Self) {
+        match (self, &method.scheme, other) {
+            (Self::Splitting(step), Scheme::Splitting(table), Self::Splitting(other)) => {
+                step.follow(table, S::splat(h), other);
+            }
+            (Self::RungeKutta(step), ..) => step.set_step(S::splat(h)),
+            _ => {}
+        }
+    }
+
+    /// Advances the state by one step.
+    ///
+    /// # Errors
+    /// As [`Dynamics::acceleration`].
+    pub fn step(
+        &mut self,
+        state: &mut State<S>,
+        dynamics: &mut Dynamics<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        match self {
+            Self::Splitting(step) => step.step(state, dynamics, ticker),
+            Self::RungeKutta(step) => step.step(state, dynamics, ticker),
+        }
+    }
+}
+
+/// Where a time lies among the nodes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// The last node not after it.
+    pub node: u64,
+    /// The time past that node; `None` on the node.
+    pub past: Option<f64>,
+}
+
+/// Finds the place of `elapsed = t - t0` among the nodes `n·h`.
+///
+/// Within two units in the last place of the time itself (`magnitude` is the larger of |t|, |t0|) a time
+/// is on the node: it cannot be told from it, and a grid such as `linspace` hits nodes only that closely.
+pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
+    let nearest = (elapsed / h).round();
+    if (elapsed - nearest * h).abs() <= 2.0 * f64::EPSILON * magnitude.max(elapsed.abs()) {
+        return Place { node: nearest as u64, past: None };
+    }
+    let node = (elapsed / h).floor();
+    Place { node: node as u64, past: Some(elapsed - node * h) }
+}
+
+/// Advances `state` through the places of the outputs, in order, and hands each state to `record`.
+///
+/// Returns the number of steps taken; it stops short at `max_steps`. `record` may refuse a state, which ends the run.
+///
+/// # Errors
+/// What `record` returns, or [`Error::Interrupted`].
+pub fn run<S: Element>(
+    method: &Method,
+    h: f64,
+    max_steps: u64,
+    state: &mut State<S>,
+    dynamics: &mut Dynamics<S>,
+    places: impl Iterator<Item = Place>,
+    ticker: &mut Ticker<'_>,
+    mut record: impl FnMut(usize, &State<S>) -> Result<()>,
+) -> (u64, Result<()>) {
+    let mut taken = 0;
+    let outcome = (|| {
+        let mut stepper = FixedStep::new(method, h, state)?;
+        let (mut between, mut shadow) = (state.clone(), stepper.clone());
+        for (index, place) in places.enumerate() {
+            while taken < place.node {
+                if taken == max_steps {
+                    return Ok(());
+                }
+                stepper.step(state, dynamics, ticker)?;
+                taken += 1;
+                ticker.advance(1);
+                ticker.tick()?;
+            }
+            match place.past {
+                None => record(index, state)?,
+                Some(past) => {
+                    between.copy_from(state);
+                    shadow.follow(method, past, &stepper);
+                    shadow.step(&mut between, dynamics, ticker)?;
+                    record(index, &between)?;
+                }
+            }
+        }
+        Ok(())
+    })();
+    (taken, outcome)
+}

@@ -1,0 +1,373 @@
+//! `Element`: what the arrays of an integrator's state are made of, and the loops over such arrays.
+//!
+//! The one idea: every pass over the state that an integrator needs is one function here, written once
+//! over [`Real`] and compiled for every SIMD tier. A packed state (lanes are particles) and a batch
+//! (lanes are trajectories) are both slices of [`Lanes`] and run through the same code.
+//!
+//! Updates are compensated (Kahan, Comm. ACM 8 (1965) 40; Knuth's two-sum): `y + e` carries the state
+//! with about twice the digits, so that round-off grows like a random walk of the *increments*.
+
+use super::double_double::{DoubleDouble, two_sum};
+use super::lanes::{Lanes, Vector8};
+use super::real::Real;
+use crate::tiered;
+
+/// A coefficient times the step, as an unevaluated sum.
+pub type Scaled<S> = (S, S);
+
+/// One term of a weighted sum of stages.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct Term<S> {
+    /// Which stage.
+    pub stage: usize,
+    /// Its weight.
+    pub weight: S,
+}
+
+/// A scalar that an integrator's state can be made of.
+pub trait Element: Real {
+    /// `v += kick·a`, then `q += drift·v`, both compensated.
+    fn kick_drift(
+        q: (&mut [Self], &mut [Self]),
+        v: (&mut [Self], &mut [Self]),
+        a: &[Self],
+        kick: Scaled<Self>,
+        drift: Scaled<Self>,
+    );
+    /// `y += step·k`, compensated.
+    fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: Scaled<Self>);
+    /// `out = y + (e + h Σ weight·k[stage])`; `k` holds the stages one after another.
+    fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]);
+    /// `y += h Σ weight·k[stage]`, compensated, into a new state `(out, out_e)`.
+    fn combine_compensated(
+        out: (&mut [Self], &mut [Self]),
+        y: (&[Self], &[Self]),
+        h: Self,
+        terms: &[Term<Self>],
+        k: &[Self],
+    );
+    /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the
+    /// rows (particles); each row is a vector of `shape.components` components.
+    fn largest_error(
+        shape: Shape,
+        y: &[Self],
+        reference: &[Self],
+        tolerance: (Self, Self),
+        h: Self,
+        terms: &[Term<Self>],
+        k: &[Self],
+        stride: usize,
+    ) -> Self;
+    /// `if mask { from } else { into }`, element by element.
+    fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
+}
+
+/// How a block of coordinates lies: component after component, each of `rows` elements.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shape {
+    /// Elements per component.
+    pub rows: usize,
+    /// Components per particle: 3, or 2 in a plane.
+    pub components: usize,
+}
+
+impl Shape {
+    /// Elements in the block.
+    pub const fn len(self) -> usize {
+        self.rows * self.components
+    }
+    /// Whether there is nothing in it.
+    pub const fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+}
+
+#[inline(always)]
+fn add_compensated<S: Real>(y: &mut S, e: &mut S, increment: S) {
+    let (sum, error) = two_sum(*y, increment + *e);
+    *y = sum;
+    *e = error;
+}
+
+#[inline(always)]
+fn kick_drift<S: Real>(
+    (q, q_error): (&mut [S], &mut [S]),
+    (v, v_error): (&mut [S], &mut [S]),
+    a: &[S],
+    kick: Scaled<S>,
+    drift: Scaled<S>,
+) {
+    let n = a.len();
+    let (q, q_error, v, v_error) = (&mut q[..n], &mut q_error[..n], &mut v[..n], &mut v_error[..n]);
+    for i in 0..n {
+        add_compensated(&mut v[i], &mut v_error[i], kick.0 * a[i] + kick.1 * a[i]);
+        add_compensated(&mut q[i], &mut q_error[i], drift.0 * v[i] + (drift.1 * v[i] + drift.0 * v_error[i]));
+    }
+}
+
+#[inline(always)]
+fn advance<S: Real>((y, e): (&mut [S], &mut [S]), k: &[S], step: Scaled<S>) {
+    let n = k.len();
+    let (y, e) = (&mut y[..n], &mut e[..n]);
+    for i in 0..n {
+        add_compensated(&mut y[i], &mut e[i], step.0 * k[i] + step.1 * k[i]);
+    }
+}
+
+/// `Σ weight·k[stage]` at element `i`, in the order of the terms.
+#[inline(always)]
+fn weighted<S: Real>(terms: &[Term<S>], k: &[S], stride: usize, i: usize) -> S {
+    let mut sum = S::zero();
+    for &Term { stage, weight } in terms {
+        sum += weight * k[stage * stride + i];
+    }
+    sum
+}
+
+#[inline(always)]
+fn combine<S: Real>(out: &mut [S], (y, e): (&[S], &[S]), h: S, terms: &[Term<S>], k: &[S]) {
+    let n = out.len();
+    let (y, e) = (&y[..n], &e[..n]);
+    for i in 0..n {
+        out[i] = y[i] + (e[i] + h * weighted(terms, k, n, i));
+    }
+}
+
+#[inline(always)]
+fn combine_compensated<S: Real>(
+    (out, out_error): (&mut [S], &mut [S]),
+    (y, e): (&[S], &[S]),
+    h: S,
+    terms: &[Term<S>],
+    k: &[S],
+) {
+    let n = out.len();
+    let (y, e, out_error) = (&y[..n], &e[..n], &mut out_error[..n]);
+    for i in 0..n {
+        (out[i], out_error[i]) = two_sum(y[i], e[i] + h * weighted(terms, k, n, i));
+    }
+}
+
+/// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
+const HUGE: f64 = 1e300;
+
+#[inline(always)]
+fn largest_error<S: Real>(
+    shape: Shape,
+    y: &[S],
+    reference: &[S],
+    (atol, rtol): (S, S),
+    h: S,
+    terms: &[Term<S>],
+    k: &[S],
+    stride: usize,
+) -> S {
+    let mut largest = S::zero();
+    for row in 0..shape.rows {
+        let mut error2 = S::zero();
+        let mut distance2 = S::zero();
+        for component in 0..shape.components {
+            let i = component * shape.rows + row;
+            let error = h * weighted(terms, k, stride, i);
+            let distance = y[i] - reference[component];
+            error2 += error * error;
+            distance2 += distance * distance;
+        }
+        let scale = atol + rtol * distance2.sqrt();
+        let ratio = error2 / (scale * scale);
+        let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
+        let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
+        largest = largest.max(ratio);
+    }
+    largest
+}
+
+#[inline(always)]
+fn replace<S: Real>(into: &mut [S], from: &[S], mask: S::Mask) {
+    for (into, from) in into.iter_mut().zip(from) {
+        *into = S::select(mask, *from, *into);
+    }
+}
+
+macro_rules! plain_element {
+    ($type:ty) => {
+        impl Element for $type {
+            fn kick_drift(
+                q: (&mut [Self], &mut [Self]),
+                v: (&mut [Self], &mut [Self]),
+                a: &[Self],
+                kick: Scaled<Self>,
+                drift: Scaled<Self>,
+            ) {
+                kick_drift(q, v, a, kick, drift);
+            }
+            fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: Scaled<Self>) {
+                advance(y, k, step);
+            }
+            fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]) {
+                combine(out, y, h, terms, k);
+            }
+            fn combine_compensated(
+                out: (&mut [Self], &mut [Self]),
+                y: (&[Self], &[Self]),
+                h: Self,
+                terms: &[Term<Self>],
+                k: &[Self],
+            ) {
+                combine_compensated(out, y, h, terms, k);
+            }
+            fn largest_error(
+                shape: Shape,
+                y: &[Self],
+                reference: &[Self],
+                tolerance: (Self, Self),
+                h: Self,
+                terms: &[Term<Self>],
+                k: &[Self],
+                stride: usize,
+            ) -> Self {
+                largest_error(shape, y, reference, tolerance, h, terms, k, stride)
+            }
+            fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
+                replace(into, from, mask);
+            }
+        }
+    };
+}
+plain_element!(f64);
+plain_element!(DoubleDouble);
+
+#[inline(always)]
+fn load<V: Vector8>((high, low): Scaled<Lanes>) -> Scaled<V> {
+    (V::load(high), V::load(low))
+}
+
+/// Terms as the tier's vectors: same layout, so a view and not a copy.
+#[inline(always)]
+fn view_terms<V: Vector8>(terms: &[Term<Lanes>]) -> &[Term<V>] {
+    const { assert!(size_of::<Term<V>>() == size_of::<Term<Lanes>>()) }
+    // SAFETY: `V` has the size, alignment and validity of `Lanes` (see `Vector8::view`), and `Term` is
+    // `repr(C)`, so the two have the same layout.
+    unsafe { core::slice::from_raw_parts(terms.as_ptr().cast(), terms.len()) }
+}
+
+#[inline(always)]
+fn kick_drift_lanes<V: Vector8>(
+    q: (&mut [Lanes], &mut [Lanes]),
+    v: (&mut [Lanes], &mut [Lanes]),
+    a: &[Lanes],
+    kick: Scaled<Lanes>,
+    drift: Scaled<Lanes>,
+) {
+    kick_drift::<V>(
+        (V::view_mut(q.0), V::view_mut(q.1)),
+        (V::view_mut(v.0), V::view_mut(v.1)),
+        V::view(a),
+        load(kick),
+        load(drift),
+    );
+}
+#[inline(always)]
+fn advance_lanes<V: Vector8>(y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: Scaled<Lanes>) {
+    advance::<V>((V::view_mut(y.0), V::view_mut(y.1)), V::view(k), load(step));
+}
+#[inline(always)]
+fn combine_lanes<V: Vector8>(
+    out: &mut [Lanes],
+    y: (&[Lanes], &[Lanes]),
+    h: Lanes,
+    terms: &[Term<Lanes>],
+    k: &[Lanes],
+) {
+    combine::<V>(V::view_mut(out), (V::view(y.0), V::view(y.1)), V::load(h), view_terms(terms), V::view(k));
+}
+#[inline(always)]
+fn combine_compensated_lanes<V: Vector8>(
+    out: (&mut [Lanes], &mut [Lanes]),
+    y: (&[Lanes], &[Lanes]),
+    h: Lanes,
+    terms: &[Term<Lanes>],
+    k: &[Lanes],
+) {
+    combine_compensated::<V>(
+        (V::view_mut(out.0), V::view_mut(out.1)),
+        (V::view(y.0), V::view(y.1)),
+        V::load(h),
+        view_terms(terms),
+        V::view(k),
+    );
+}
+#[inline(always)]
+fn largest_error_lanes<V: Vector8>(
+    shape: Shape,
+    y: &[Lanes],
+    reference: &[Lanes],
+    tolerance: (Lanes, Lanes),
+    h: Lanes,
+    terms: &[Term<Lanes>],
+    k: &[Lanes],
+    stride: usize,
+) -> Lanes {
+    largest_error::<V>(
+        shape,
+        V::view(y),
+        V::view(reference),
+        load(tolerance),
+        V::load(h),
+        view_terms(terms),
+        V::view(k),
+        stride,
+    )
+    .store()
+}
+
+tiered! {
+    fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: Scaled<Lanes>, drift: Scaled<Lanes>) = kick_drift_lanes;
+    fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: Scaled<Lanes>) = advance_lanes;
+    fn combine_tier[][](out: &mut [Lanes], y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_lanes;
+    fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_compensated_lanes;
+    fn largest_error_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (Lanes, Lanes), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes], stride: usize) -> Lanes = largest_error_lanes;
+}
+
+impl Element for Lanes {
+    fn kick_drift(
+        q: (&mut [Self], &mut [Self]),
+        v: (&mut [Self], &mut [Self]),
+        a: &[Self],
+        kick: Scaled<Self>,
+        drift: Scaled<Self>,
+    ) {
+        kick_drift_tier(q, v, a, kick, drift);
+    }
+    fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: Scaled<Self>) {
+        advance_tier(y, k, step);
+    }
+    fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]) {
+        combine_tier(out, y, h, terms, k);
+    }
+    fn combine_compensated(
+        out: (&mut [Self], &mut [Self]),
+        y: (&[Self], &[Self]),
+        h: Self,
+        terms: &[Term<Self>],
+        k: &[Self],
+    ) {
+        combine_compensated_tier(out, y, h, terms, k);
+    }
+    fn largest_error(
+        shape: Shape,
+        y: &[Self],
+        reference: &[Self],
+        tolerance: (Self, Self),
+        h: Self,
+        terms: &[Term<Self>],
+        k: &[Self],
+        stride: usize,
+    ) -> Self {
+        largest_error_tier(shape, y, reference, tolerance, h, terms, k, stride)
+    }
+    fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
+        replace(into, from, mask);
+    }
+}

@@ -1,0 +1,156 @@
+//! Scenes whose motion is known in closed form: any time costs the same, and nothing is stepped.
+//!
+//! Straight lines and parabolas are evaluated in double-double and rounded once. Kepler orbits come from
+//! [`KeplerOrbit`]: a few units in the last place times the conditioning of the problem.
+
+use super::Scene;
+use super::columns::{Entry, Writer};
+use super::plan::{Plan, Solution};
+use super::run::Outcome;
+use crate::error::Result;
+use crate::nbody::kepler::KeplerOrbit;
+use crate::numerics::double_double::DoubleDouble;
+use crate::parallel::Ticker;
+use nalgebra::Vector3;
+
+/// The motion of one particle relative to another point.
+enum Path {
+    /// Uniform acceleration (which may be zero).
+    Parabola { position: [f64; 3], velocity: [f64; 3], acceleration: [f64; 3] },
+    /// A Kepler orbit about a point, scaled by a fraction, seen from a moving base.
+    Orbit { orbit: Box<KeplerOrbit>, fraction: DoubleDouble, base: Box<Path> },
+}
+
+impl Path {
+    fn line(position: [f64; 3], velocity: [f64; 3]) -> Self {
+        Self::Parabola { position, velocity, acceleration: [0.0; 3] }
+    }
+
+    /// Position and velocity at `t`, unrounded where they can be.
+    fn state(&self, t: f64, t0: f64) -> ([DoubleDouble; 3], [DoubleDouble; 3]) {
+        let elapsed = DoubleDouble::sum(t, -t0);
+        match self {
+            Self::Parabola { position, velocity, acceleration } => {
+                let at = |c: usize| {
+                    let (x, v) = (DoubleDouble::from(position[c]), DoubleDouble::from(velocity[c]));
+                    let a = DoubleDouble::from(acceleration[c]);
+                    (x + elapsed * (v + a * elapsed.scale(0.5)), v + a * elapsed)
+                };
+                let states: [_; 3] = core::array::from_fn(at);
+                (states.map(|state| state.0), states.map(|state| state.1))
+            }
+            Self::Orbit { orbit, fraction, base } => {
+                let (mut position, mut velocity) = base.state(t, t0);
+                let (relative, rate) = orbit.state(elapsed.to_f64());
+                for c in 0..3 {
+                    position[c] = position[c] + *fraction * DoubleDouble::from(relative[c]);
+                    velocity[c] = velocity[c] + *fraction * DoubleDouble::from(rate[c]);
+                }
+                (position, velocity)
+            }
+        }
+    }
+}
+
+fn orbit(mu: f64, from: ([f64; 3], [f64; 3]), to: ([f64; 3], [f64; 3])) -> Result<Box<KeplerOrbit>> {
+    let difference = |a: [f64; 3], b: [f64; 3]| Vector3::from_fn(|c, _| b[c] - a[c]);
+    Ok(Box::new(KeplerOrbit::new(mu, difference(from.0, to.0), difference(from.1, to.1))?))
+}
+
+/// The paths of the particles of a copy.
+fn paths(scene: &Scene, plan: &Plan, copy: usize) -> Result<Vec<Path>> {
+    let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
+    let state = |i: usize| (position[i], velocity[i]);
+    let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
+    let all = 0..scene.particles;
+    match &plan.solution {
+        Solution::Uniform(g) => Ok(all
+            .map(|i| Path::Parabola { position: position[i], velocity: velocity[i], acceleration: *g })
+            .collect()),
+        Solution::TwoBody => {
+            let total = DoubleDouble::sum(mass[0], mass[1]);
+            let mu = DoubleDouble::from(constant) * total;
+            // The centre of mass, from the first body by the second's share of the way between them.
+            let share = |i: usize| DoubleDouble::from(mass[i]) / total;
+            let mean = |values: &[[f64; 3]]| {
+                core::array::from_fn(|c| {
+                    let way = DoubleDouble::sum(values[1][c], -values[0][c]);
+                    (DoubleDouble::from(values[0][c]) + share(1) * way).to_f64()
+                })
+            };
+            let base = || Box::new(Path::line(mean(position), mean(velocity)));
+            let path = |fraction: DoubleDouble| -> Result<Path> {
+                Ok(Path::Orbit { orbit: orbit(mu.to_f64(), state(0), state(1))?, fraction, base: base() })
+            };
+            Ok(vec![path(-share(1))?, path(share(0))?])
+        }
+        Solution::OneMassive(center) => all
+            .map(|i| {
+                let base = Path::line(position[*center], velocity[*center]);
+                if i == *center {
+                    return Ok(base);
+                }
+                let orbit = orbit(constant * mass[*center], state(*center), state(i))?;
+                Ok(Path::Orbit { orbit, fraction: DoubleDouble::from(1.0), base: Box::new(base) })
+            })
+            .collect(),
+        Solution::FixedCenter { k, center } => all
+            .map(|i| {
+                let still = (*center, [0.0; 3]);
+                let orbit = orbit(-k / mass[i], still, state(i))?;
+                let base = Box::new(Path::line(*center, [0.0; 3]));
+                Ok(Path::Orbit { orbit, fraction: DoubleDouble::from(1.0), base })
+            })
+            .collect(),
+        Solution::Free | Solution::Integration => {
+            Ok(all.map(|i| Path::line(position[i], velocity[i])).collect())
+        }
+    }
+}
+
+/// Fills the columns from the closed form.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted), or what the closed form refuses.
+pub fn run(
+    scene: &Scene,
+    plan: &Plan,
+    times: &[f64],
+    writer: &Writer<'_>,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Outcome>> {
+    let mut outcomes = Vec::with_capacity(scene.copies);
+    for copy in 0..scene.copies {
+        let paths = paths(scene, plan, copy)?;
+        let mut last = Vec::new();
+        for (index, &t) in times.iter().enumerate() {
+            last.clear();
+            for (particle, path) in paths.iter().enumerate() {
+                let entry = entry(scene, copy, particle, path, t);
+                writer.write(copy, index, particle, &entry);
+                last.push(entry);
+            }
+            ticker.tick()?;
+        }
+        outcomes.push(Outcome::closed_form(times.len(), times[times.len() - 1], &last));
+    }
+    Ok(outcomes)
+}
+
+fn entry(scene: &Scene, copy: usize, particle: usize, path: &Path, t: f64) -> Entry {
+    if t == scene.t0 {
+        // The state at the start is the one that was given, to the bit.
+        return Entry {
+            position: scene.positions(copy)[particle],
+            velocity: scene.velocities(copy)[particle],
+            ..Entry::default()
+        };
+    }
+    let (position, velocity) = path.state(t, scene.t0);
+    Entry {
+        position: position.map(DoubleDouble::high),
+        velocity: velocity.map(DoubleDouble::high),
+        position_rest: position.map(DoubleDouble::low),
+        velocity_rest: velocity.map(DoubleDouble::low),
+    }
+}

@@ -1,0 +1,376 @@
+//! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
+
+use super::frame::{Origin, Units};
+use super::request::{Checked, Request};
+use super::unit::{Layout, Unit};
+use super::{ForceSpec, Scene};
+use crate::error::Result;
+use crate::forces::gravity::RING_MAX;
+use crate::integrators::{Method, Scheme};
+use crate::numerics::lanes::WIDTH;
+use core::fmt;
+
+/// From this many pairs per evaluation on, one force evaluation is shared out over threads.
+const PAIRS_FOR_THREADS: u64 = 60_000;
+/// Massless bodies that share the steps of one adaptive unit.
+const PASSIVE_PER_UNIT: usize = 64;
+
+/// How the motion is found.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Solution {
+    /// No force acts: straight lines.
+    Free,
+    /// The same acceleration on everything: parabolas.
+    Uniform([f64; 3]),
+    /// Two bodies, at least one of them massive.
+    TwoBody,
+    /// One massive body, and massless ones that orbit it.
+    OneMassive(usize),
+    /// An inverse-distance potential `k/r` of a fixed centre.
+    FixedCenter {
+        /// Its strength.
+        k: f64,
+        /// Its place.
+        center: [f64; 3],
+    },
+    /// Step by step.
+    Integration,
+}
+
+/// A line of the plan.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Row {
+    /// What it is about.
+    pub what: String,
+    /// What will be done.
+    pub decision: String,
+    /// Why.
+    pub reason: String,
+}
+
+/// What will be done.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    /// The method of an integration.
+    pub method: &'static Method,
+    /// The signed step of a fixed-step method.
+    pub dt: Option<f64>,
+    /// +1 forward, -1 backward.
+    pub direction: f64,
+    /// How the motion is found.
+    pub solution: Solution,
+    /// The forces that do something, in order.
+    pub forces: Vec<ForceSpec>,
+    /// Gravity among them: (constant, softening).
+    pub gravity: Option<(f64, f64)>,
+    /// Bodies that attract.
+    pub active: Vec<usize>,
+    /// Bodies that do not.
+    pub passive: Vec<usize>,
+    /// Whether everything stays in the plane z = 0.
+    pub planar: bool,
+    /// Units of the integration.
+    pub units: Units,
+    /// Its origin, for each copy.
+    pub origins: Vec<Origin>,
+    /// How units lie in lanes.
+    pub layout: Layout,
+    /// Threads over units, and inside one force evaluation.
+    pub threads: (usize, usize),
+    /// Output times.
+    pub outputs: usize,
+    /// Columns to be computed.
+    pub record: Vec<String>,
+    copies: usize,
+    particles: usize,
+}
+
+impl Plan {
+    /// Plans a run.
+    ///
+    /// # Errors
+    /// As [`Scene::validate`] and [`Request::check`]: bad input is refused here, before anything runs.
+    pub fn new(scene: &Scene, request: &Request) -> Result<Self> {
+        scene.validate()?;
+        let Checked { method, automatic, direction, dt } = request.check(scene)?;
+        let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
+        let forces = effective_forces(scene);
+        let gravity = forces.iter().find_map(|force| match force {
+            ForceSpec::Gravity { constant, softening } => Some((*constant, *softening)),
+            _ => None,
+        });
+        let (active, passive) = match gravity {
+            Some(_) => (0..scene.particles).partition(massive),
+            None => (Vec::new(), (0..scene.particles).collect()),
+        };
+        let solution = if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
+        let closed =
+            !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
+        let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
+        let interacting = gravity.is_some();
+        let layout = if interacting && (scene.copies == 1 || scene.particles > RING_MAX) {
+            Layout::Packed
+        } else {
+            Layout::Batched
+        };
+        let mut plan = Self {
+            method,
+            dt,
+            direction,
+            solution,
+            planar: planar(scene, &forces),
+            units: Units::of(scene, &origins),
+            forces,
+            gravity,
+            active,
+            passive,
+            origins,
+            layout,
+            threads: (1, 1),
+            outputs: request.times.len(),
+            record: request.record.clone(),
+            copies: scene.copies,
+            particles: scene.particles,
+        };
+        plan.threads = plan.share_threads(request.threads);
+        Ok(plan)
+    }
+
+    fn share_threads(&self, threads: usize) -> (usize, usize) {
+        if self.solution != Solution::Integration {
+            return (1, 1);
+        }
+        let units = self.unit_list().len();
+        let groups = if self.layout == Layout::Batched { units.div_ceil(WIDTH) } else { units };
+        if groups == 1 && self.pairs_per_evaluation() >= PAIRS_FOR_THREADS {
+            (1, threads)
+        } else {
+            (threads.min(groups), 1)
+        }
+    }
+
+    /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
+    pub fn passive_apart(&self) -> bool {
+        self.method.adaptive() && !self.active.is_empty() && !self.passive.is_empty()
+    }
+
+    /// The units of the integration, in the order in which they are begun.
+    pub fn unit_list(&self) -> Vec<Unit> {
+        let mut units = Vec::new();
+        for copy in 0..self.copies {
+            let active = self.active.len();
+            if self.gravity.is_none() {
+                let lone = |&i: &usize| Unit { copy, bodies: vec![i], active: 0, recorded: 0..1 };
+                units.extend(self.passive.iter().map(lone));
+            } else if self.passive_apart() {
+                units.push(Unit { copy, bodies: self.active.clone(), active, recorded: 0..active });
+                for run in self.passive.chunks(PASSIVE_PER_UNIT) {
+                    let bodies: Vec<usize> = self.active.iter().chain(run).copied().collect();
+                    let recorded = active..bodies.len();
+                    units.push(Unit { copy, bodies, active, recorded });
+                }
+            } else {
+                let bodies: Vec<usize> = self.active.iter().chain(&self.passive).copied().collect();
+                let recorded = 0..bodies.len();
+                units.push(Unit { copy, bodies, active, recorded });
+            }
+        }
+        units
+    }
+
+    /// Pairs that one force evaluation of one copy forms.
+    pub fn pairs_per_evaluation(&self) -> u64 {
+        let (active, passive) = (self.active.len() as u64, self.passive.len() as u64);
+        if self.gravity.is_some() { active * active.saturating_sub(1) / 2 + active * passive } else { 0 }
+    }
+
+    /// Whether a column that is computed from the recorded states is asked for.
+    pub fn derived(&self) -> bool {
+        self.record.iter().any(|name| name != "position" && name != "velocity")
+    }
+
+    /// The plan, line by line.
+    pub fn rows(&self) -> Vec<Row> {
+        let mut rows = Vec::new();
+        let mut row = |what: &str, decision: String, reason: String| {
+            rows.push(Row { what: what.to_owned(), decision, reason });
+        };
+        let (decision, reason) = self.describe_solution();
+        row("solution", decision, reason);
+        if self.solution == Solution::Integration {
+            let steps = match self.dt {
+                Some(dt) => format!("fixed step {dt}"),
+                None => "steps chosen by the error estimate".to_owned(),
+            };
+            row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
+            row(
+                "force evaluations per step",
+                self.method.stages.to_string(),
+                "the method's stages".to_owned(),
+            );
+            if self.gravity.is_some() {
+                row(
+                    "pairs per evaluation",
+                    self.pairs_per_evaluation().to_string(),
+                    format!("{} massive, {} massless bodies", self.active.len(), self.passive.len()),
+                );
+            }
+            let reason = match (self.layout, self.gravity.is_some()) {
+                (Layout::Packed, _) => "one system at a time",
+                (Layout::Batched, true) => "small systems, each with its own steps",
+                (Layout::Batched, false) => "they do not interact: each has its own steps",
+            };
+            row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
+            let (over, inside) = self.threads;
+            row(
+                "threads",
+                over.max(inside).to_string(),
+                if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned(),
+            );
+        }
+        rows
+    }
+
+    /// What the SIMD lanes are.
+    pub fn lanes(&self) -> &'static str {
+        match (self.solution == Solution::Integration, self.layout, self.gravity.is_some()) {
+            (false, ..) => "none",
+            (_, Layout::Packed, _) => "over bodies",
+            (_, Layout::Batched, true) => "over copies",
+            (_, Layout::Batched, false) => "over particles",
+        }
+    }
+
+    /// The method that runs; a closed form needs none.
+    pub fn method_name(&self) -> &'static str {
+        if self.solution == Solution::Integration { self.method.name } else { "closed form" }
+    }
+
+    /// What will not be done, and why.
+    pub fn skipped(&self) -> Vec<(String, String)> {
+        let mut skipped = Vec::new();
+        let mut skip = |what: &str, why: String| skipped.push((what.to_owned(), why));
+        if self.solution != Solution::Integration {
+            skip("stepping", "the motion has a closed form".to_owned());
+        } else {
+            if self.planar {
+                skip("the z components", "z and v_z are zero and no force acts along z".to_owned());
+            }
+            if matches!(self.gravity, Some((_, softening)) if softening == 0.0) {
+                skip("softening terms", "softening is 0".to_owned());
+            }
+            if !self.passive.is_empty() && self.gravity.is_some() {
+                let massless = self.passive.len() as u64;
+                skip(
+                    "pairs of massless bodies",
+                    format!("{} pairs exert nothing", massless * (massless - 1) / 2),
+                );
+            }
+            if self.gravity.is_none() && self.particles > 1 {
+                skip("pairs", "the particles do not interact".to_owned());
+            }
+            if self.method.adaptive() && self.outputs <= 1 {
+                skip("dense output", "no time before the end is asked for".to_owned());
+            }
+            skip("event location", "no events are asked for".to_owned());
+        }
+        for column in super::request::COLUMNS {
+            if !self.record.iter().any(|name| name == column) {
+                skip(&format!("the {column} column"), "not asked for".to_owned());
+            }
+        }
+        skipped
+    }
+
+    fn describe_solution(&self) -> (String, String) {
+        let (decision, reason) = match &self.solution {
+            Solution::Free => ("closed form: straight lines", "no force acts"),
+            Solution::Uniform(_) => ("closed form: parabolas", "the only force is a uniform field"),
+            Solution::TwoBody => {
+                ("closed form: Kepler's two-body problem", "two bodies and unsoftened gravity")
+            }
+            Solution::OneMassive(_) => {
+                ("closed form: Kepler orbits", "one massive body, unsoftened gravity, the rest massless")
+            }
+            Solution::FixedCenter { .. } => {
+                ("closed form: Kepler orbits", "the only force is an inverse-distance centre")
+            }
+            Solution::Integration => (
+                "integration",
+                match self.method.scheme {
+                    Scheme::Embedded(_) => "no closed form applies, or a method was named",
+                    _ => "the method was named",
+                },
+            ),
+        };
+        (decision.to_owned(), reason.to_owned())
+    }
+}
+
+impl fmt::Display for Plan {
+    /// A table of what will be done, then a list of what is skipped.
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rows = self.rows();
+        let width = rows.iter().map(|row| row.what.len()).max().unwrap_or_default();
+        for Row { what, decision, reason } in &rows {
+            writeln!(formatter, "{what:width$}  {decision}  ({reason})")?;
+        }
+        let skipped: Vec<String> =
+            self.skipped().into_iter().map(|(what, why)| format!("  {what}: {why}")).collect();
+        write!(formatter, "skipped\n{}", skipped.join("\n"))
+    }
+}
+
+/// The forces that do anything in this scene.
+fn effective_forces(scene: &Scene) -> Vec<ForceSpec> {
+    let attracts = scene.particles > 1 && scene.mass.iter().any(|&mass| mass > 0.0);
+    let does_something = |force: &&ForceSpec| match force {
+        ForceSpec::Gravity { constant, .. } => *constant != 0.0 && attracts,
+        ForceSpec::UniformField { g } => g.iter().any(|&g| g != 0.0),
+        ForceSpec::CentralField { potential, .. } => potential.inverse_distance_strength() != Some(0.0),
+    };
+    scene.forces.iter().filter(does_something).cloned().collect()
+}
+
+fn planar(scene: &Scene, forces: &[ForceSpec]) -> bool {
+    scene.position.iter().chain(&scene.velocity).all(|x| x[2] == 0.0)
+        && forces.iter().all(|force| match force {
+            ForceSpec::Gravity { .. } => true,
+            ForceSpec::UniformField { g } => g[2] == 0.0,
+            ForceSpec::CentralField { center, .. } => center[2] == 0.0,
+        })
+}
+
+fn closed_form(scene: &Scene, forces: &[ForceSpec], active: &[usize]) -> Solution {
+    if forces.is_empty() {
+        return Solution::Free;
+    }
+    let mut g = [0.0; 3];
+    let mut uniform = true;
+    for force in forces {
+        match force {
+            ForceSpec::UniformField { g: term } => {
+                for c in 0..3 {
+                    g[c] += term[c];
+                }
+            }
+            _ => uniform = false,
+        }
+    }
+    if uniform {
+        return Solution::Uniform(g);
+    }
+    match forces {
+        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && scene.particles == 2 => {
+            Solution::TwoBody
+        }
+        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && active.len() == 1 => {
+            Solution::OneMassive(active[0])
+        }
+        [ForceSpec::CentralField { potential, center }] => match potential.inverse_distance_strength() {
+            Some(k) => Solution::FixedCenter { k, center: *center },
+            None => Solution::Integration,
+        },
+        _ => Solution::Integration,
+    }
+}

@@ -1,0 +1,57 @@
+//! Arrays in by copy, arrays out by move.
+//!
+//! Inputs are copied while the GIL is held: another Python thread may write to them during the run, and
+//! one pass over them is nothing against the steps of the run. The copy goes through strides, so Fortran
+//! order can never be read as C order. Results move into NumPy without a copy. The full check of what a
+//! user gave, with its messages, is `visviva._arrays`; this is the second line.
+
+use crate::errors::raised;
+use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::npyffi::NPY_ARRAY_ALIGNED;
+use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::prelude::*;
+use visviva_core::Error;
+
+/// The values in row-major order and the shape, which must match `shape` wherever that says a length.
+///
+/// # Errors
+/// `InvalidInput` with the name of the argument.
+pub(crate) fn copied<T: Element + Copy, const D: usize>(
+    name: &str,
+    array: &PyReadonlyArrayDyn<'_, T>,
+    shape: [Option<usize>; D],
+) -> PyResult<(Vec<T>, [usize; D])> {
+    let refused = |message: String| raised(array.py(), Error::invalid(name, message));
+    let came = array.shape();
+    let matches = |found: &[usize; D]| {
+        found.iter().zip(shape).all(|(&length, wanted)| wanted.is_none_or(|wanted| wanted == length))
+    };
+    let found = <[usize; D]>::try_from(came).ok().filter(matches).ok_or_else(|| {
+        let expected = shape.map(|length| length.map_or("any".to_owned(), |length| length.to_string()));
+        refused(format!("expected shape ({}), got {came:?}", expected.join(", ")))
+    })?;
+    // SAFETY: the array is alive and its flags are only read.
+    let flags = unsafe { (*array.as_array_ptr()).fields.flags };
+    if flags & NPY_ARRAY_ALIGNED == 0 {
+        return Err(refused("the array is not aligned in memory; pass a copy of it".to_owned()));
+    }
+    let view = array.as_array();
+    let values = view.as_slice().map_or_else(|| view.iter().copied().collect(), <[T]>::to_vec);
+    Ok((values, found))
+}
+
+/// A NumPy array of that shape which owns `values`.
+///
+/// # Errors
+/// `InternalError` if there are not as many values as the shape says.
+pub(crate) fn moved<'py, T: Element>(
+    py: Python<'py>,
+    values: Vec<T>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<T>>> {
+    let length = values.len();
+    let array = ArrayD::from_shape_vec(IxDyn(shape), values).map_err(|_| {
+        raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}")))
+    })?;
+    Ok(array.into_pyarray(py))
+}
