@@ -194,7 +194,7 @@ const QUARTER_PI_LOW: f64 = 3.061_616_997_868_383e-17;
 
 /// The angle of the vector (x, y), in (-π, π], for finite components below 8e307 in size.
 ///
-/// Within 1.6 units in the last place (measured 1.5); small angles keep their relative precision. 0 for the null vector;
+/// Within two units in the last place, usually one; small angles keep their relative precision. 0 for the null vector;
 /// the sign of a zero is not looked at.
 #[inline(always)]
 pub fn atan2<S: Real>(y: S, x: S) -> S {
@@ -216,7 +216,8 @@ pub fn atan2<S: Real>(y: S, x: S) -> S {
     };
     let (quarters, part) = reflect(steep, 2.0, (quarters, part));
     let (quarters, part) = reflect(x.less(S::zero()), 4.0, (quarters, part));
-    let angle = quarters * S::splat(core::f64::consts::FRAC_PI_4) + (part + quarters * S::splat(QUARTER_PI_LOW));
+    let angle =
+        quarters * S::splat(core::f64::consts::FRAC_PI_4) + (part + quarters * S::splat(QUARTER_PI_LOW));
     S::select(y.less(S::zero()), -angle, angle)
 }
 
@@ -245,7 +246,7 @@ const COSINE: [f64; 8] = [
     -1.0 / 6_402_373_705_728_000.0,
 ];
 
-/// (sin x, cos x) for |x| ≤ 10⁶, within one unit in the last place (measured 0.81), also near the zeros.
+/// (sin x, cos x) for |x| ≤ 10⁶, within two units in the last place, usually one, also near the zeros.
 #[inline(always)]
 pub fn sin_cos<S: Real>(x: S) -> (S, S) {
     let n = nearest_integer(x * S::splat(core::f64::consts::FRAC_2_PI));
@@ -257,8 +258,8 @@ pub fn sin_cos<S: Real>(x: S) -> (S, S) {
     let sine = r + (square * r * polynomial(square, &SINE) + rest);
     let half = S::splat(0.5) * square;
     let head = S::one() - half;
-    let cosine = head
-        + (((S::one() - head) - half) + (square * square * polynomial(square, &COSINE) - r * rest));
+    let cosine =
+        head + (((S::one() - head) - half) + (square * square * polynomial(square, &COSINE) - r * rest));
     // Quarter turns: n mod 4 as -2, -1, 0, 1 or 2.
     let quarter = n - S::splat(4.0) * nearest_integer(n * S::splat(0.25));
     let odd = S::zero().less(quarter * (S::splat(2.0) - quarter.abs()) * quarter);

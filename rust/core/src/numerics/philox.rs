@@ -60,10 +60,16 @@ pub const fn draw(key: Key, event: u64) -> u64 {
 /// Events whose draws one step of [`fill_draws`] makes.
 pub const DRAWS: usize = 2 * WIDTH;
 
-/// The draws of the events from `2 * block` on, as [`draw`] gives them, for any length that is a
-/// multiple of [`DRAWS`]; the words of the keys and products stay in the low halves of 64-bit lanes.
+crate::tiered! {
+    /// The draws of the events from `2 * block` on, as [`draw`] gives them.
+    pub fn fill_draws[][](key: Key, block: u64, draws: &mut [[u64; DRAWS]]) = draws_body;
+}
+
+/// Eight blocks at a time, written so that the compiler makes vectors of it: each 32-bit word stays in
+/// the low half of a 64-bit lane.
+#[expect(clippy::extra_unused_type_parameters, reason = "integers know no tier, but `tiered!` names one")]
 #[inline(always)]
-pub fn fill_draws(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
+fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
     for sixteen in draws {
         let low = |x: u64| x & 0xffff_ffff;
         let mut x0 = [0_u64; WIDTH];
@@ -121,14 +127,6 @@ mod tests {
         assert_eq!(draw(key(0), 1), 0x9b00_dbd8_bc57_ac4c >> 11);
     }
 
-    #[inline(always)]
-    fn body<V>(key: Key, block: u64, draws: &mut [[u64; DRAWS]]) {
-        fill_draws(key, block, draws);
-    }
-    crate::tiered! {
-        fn filled[][](key: Key, block: u64, draws: &mut [[u64; DRAWS]]) = body;
-    }
-
     proptest! {
         #[test]
         fn lanes_give_the_draws_of_the_scalar_cipher(
@@ -136,7 +134,7 @@ mod tests {
             block in prop_oneof![0..100_u64, (u64::from(u32::MAX) - 20)..(1_u64 << 33), 0..(1_u64 << 62)],
         ) {
             let mut draws = [[0; DRAWS]; 3];
-            filled(key(seed), block, &mut draws);
+            fill_draws(key(seed), block, &mut draws);
             let expected: Vec<u64> = (0..48).map(|event| draw(key(seed), 2 * block + event)).collect();
             prop_assert_eq!(draws.as_flattened(), expected);
         }
