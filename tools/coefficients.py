@@ -14,21 +14,17 @@ import re
 import sys
 from pathlib import Path
 
-from mpmath import cbrt, mp, mpf, sqrt
+from mpmath import cbrt, mp, mpf
 
 import published_coefficients as published
+from dop853 import dop853
+from polish import Row, composition_residuals, polish
 
 mp.dps = 80
 INTEGRATORS = Path(__file__).resolve().parents[1] / "rust/core/src/integrators"
 BLOCK = re.compile(r"(// <coefficients>[^\n]*\n).*?(// </coefficients>)", re.DOTALL)
 
-Row = list[mpf]
 Table = dict[str, "Row | list[Row]"]
-
-
-def rows_of(table: dict[int, dict[int, str]], width: int) -> dict[int, Row]:
-    """Dense rows of a sparse published table."""
-    return {i: [mpf(row.get(j, 0)) for j in range(width)] for i, row in table.items()}
 
 
 def rk4() -> Table:
@@ -60,37 +56,14 @@ def yoshida4() -> Table:
 
 
 def kahan_li8() -> Table:
-    half = [mpf(digits) for digits in published.KAHAN_LI8]
-    return composition(half + half[-2::-1])
+    """The printed 26 digits, polished as a palindrome."""
 
+    def palindrome(half: Row) -> Row:
+        return half + half[-2::-1]
 
-def dop853() -> Table:
-    root = sqrt(mpf(6))
-    c = [mpf(0), (12 - 2 * root) / 135, (6 - root) / 45, (6 - root) / 30, (6 + root) / 30]
-    c += [mpf(p) / q for p, q in ((1, 3), (1, 4), (4, 13), (127, 195), (3, 5), (6, 7), (1, 1))]
-    dense_c = [mpf(p) / q for p, q in ((1, 10), (1, 5), (7, 9))]
-    a = rows_of(published.DOP853_A, 16)
-    b = a[12][:12]
-    e5 = [mpf(published.DOP853_E5.get(j, 0)) for j in range(12)]
-    e3 = [b[j] - mpf(published.DOP853_B3.get(j, 0)) for j in range(12)]
-    d = rows_of(published.DOP853_D, 16)
-    weights = b + 4 * [mpf(0)]
-    dense = []
-    for i in range(16):
-        first = mpf(i == 0)
-        last = mpf(i == 12)
-        ends = [weights[i], first - weights[i], 2 * weights[i] - first - last]
-        dense.append(ends + [d[k][i] for k in range(3, 7)])
-    return {
-        "A": [[]] + [a[i][:i] for i in range(1, 12)],
-        "B": b,
-        "C": c,
-        "ERROR": e5,
-        "SECOND_ERROR": e3,
-        "DENSE_A": [a[i][:i] for i in range(13, 16)],
-        "DENSE_C": dense_c,
-        "DENSE": dense,
-    }
+    printed = [mpf(digits) for digits in published.KAHAN_LI8]
+    half = polish(lambda half: composition_residuals(palindrome(half), 8), printed)
+    return composition(palindrome(half))
 
 
 METHODS = {

@@ -60,4 +60,4 @@ def test_the_core_raises_these_classes() -> None:
         _core._busy(-1.0)
     assert (refused.value.argument, refused.value.message) == ("seconds", "expected a duration, got -1")
     with pytest.raises(errors.InternalError, match=r"on request.*please report"):
-        _core._busy(0.0, 1, panic=True)
+        _core._busy(0.0, 1, panic=0)

@@ -15,6 +15,8 @@ from visviva import _core, errors
 # The gate looks every 50 ms and threads notice within a tick; the promise is 0.2 s on a machine with a core to spare.
 PROMISE = 0.2
 
+needs_signals = pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
+
 
 class Stop(Exception):
     """A callback's own exception."""
@@ -34,6 +36,7 @@ def interrupted_child(code: str, threads: int) -> tuple[float, str]:
     return elapsed, line
 
 
+@needs_signals
 @pytest.mark.parametrize("threads", [1, 2, 3])
 def test_ctrl_c_stops_a_run(threads: int) -> None:
     best = float("inf")
@@ -56,6 +59,7 @@ def test_ctrl_c_stops_a_run(threads: int) -> None:
     assert best < PROMISE
 
 
+@needs_signals
 @pytest.mark.parametrize("threads", [1, 2])
 def test_ctrl_c_keeps_what_was_computed(threads: int) -> None:
     _, line = interrupted_child(
@@ -70,6 +74,7 @@ def test_ctrl_c_keeps_what_was_computed(threads: int) -> None:
     assert line == "True True\n"
 
 
+@needs_signals
 def test_ctrl_c_on_the_main_thread_only() -> None:
     """A run on another thread goes on; the main thread gets its KeyboardInterrupt as always."""
     _, line = interrupted_child(
@@ -117,6 +122,7 @@ def test_an_exception_of_the_last_call_is_raised_too() -> None:
     assert caught.value is stop
 
 
+@needs_signals
 def test_a_signal_handlers_own_exception_is_raised() -> None:
     timeout = TimeoutError("alarm")
 
@@ -182,13 +188,16 @@ def test_other_python_threads_go_on_meanwhile() -> None:
     assert during > 10
 
 
-def test_a_panic_is_an_internal_error() -> None:
-    for threads in (1, 2):
-        with pytest.raises(errors.InternalError, match="on request"):
-            _core._busy(0.01, threads, panic=True)
-        assert _core._busy(0.01, threads) == (10 * threads, False)
+@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("where", ["in the first chunk", "in the last chunk", "outside the chunks"])
+def test_a_panic_is_an_internal_error(threads: int, where: str) -> None:
+    chunk = {"in the first chunk": 0, "in the last chunk": 10 * threads - 1}.get(where, 10 * threads)
+    with pytest.raises(errors.InternalError, match="on request"):
+        _core._busy(0.01, threads, panic=chunk)
+    assert _core._busy(0.01, threads) == (10 * threads, False)
 
 
+@needs_signals
 def test_this_process_still_gets_its_interrupts() -> None:
     with pytest.raises(KeyboardInterrupt):
         os.kill(os.getpid(), signal.SIGINT)

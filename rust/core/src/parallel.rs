@@ -182,10 +182,9 @@ pub fn for_chunks<R: Send>(
     let control = ticker.control;
     let next = AtomicUsize::new(0);
     let failed = AtomicBool::new(false);
-    let finished = Mutex::new(Vec::with_capacity(chunks));
-    let work = |ticker: &mut Ticker<'_>| {
+    let take_chunks = |ticker: &mut Ticker<'_>| {
         let outside = INSIDE.replace(true);
-        let mut own = Vec::new();
+        let mut results = Vec::new();
         // A failure ends the handing out. All lower chunks are out by then, so the lowest failing one
         // is always among the results.
         while !failed.load(Ordering::Relaxed) {
@@ -197,17 +196,21 @@ pub fn for_chunks<R: Send>(
             if result.is_err() {
                 failed.store(true, Ordering::Relaxed);
             }
-            own.push((chunk, result));
+            results.push((chunk, result));
         }
-        finished.lock().unwrap_or_else(PoisonError::into_inner).append(&mut own);
         INSIDE.set(outside);
+        results
     };
-    let helper = || work(&mut Ticker::quiet(control));
-    pool::join_in(threads - 1, &helper, ticker, work)?;
-
-    let mut finished = finished.into_inner().unwrap_or_else(PoisonError::into_inner);
-    finished.sort_unstable_by_key(|(chunk, _)| *chunk);
-    finished.into_iter().map(|(_, result)| result).collect()
+    let helped = Mutex::new(Vec::new());
+    let helper = || {
+        let mut results = take_chunks(&mut Ticker::quiet(control));
+        helped.lock().unwrap_or_else(PoisonError::into_inner).append(&mut results);
+    };
+    // The calling thread stays away from the helpers' lock, which a fork may leave locked in the child.
+    let mut results = pool::join_in(threads - 1, &helper, ticker, take_chunks)?;
+    results.append(&mut helped.into_inner().unwrap_or_else(PoisonError::into_inner));
+    results.sort_unstable_by_key(|(chunk, _)| *chunk);
+    results.into_iter().map(|(_, result)| result).collect()
 }
 
 /// One body, its panic made an error, and a look at the monitor for bodies too short to tick.

@@ -15,16 +15,17 @@ const CHUNKS_PER_THREAD: usize = 10;
 /// Keeps `threads` threads busy for `seconds` through the gate, in ten chunks each.
 ///
 /// Returns the number of chunks done and whether Ctrl-C ended it (only with `keep`, which asks for what was
-/// done until then instead of an exception). With `panic` the last chunk panics.
+/// done until then instead of an exception). Chunk `panic` panics; if there are
+/// just so many chunks, the work panics after them.
 #[pyfunction]
-#[pyo3(signature = (seconds, threads=None, progress=None, *, keep=false, panic=false))]
+#[pyo3(signature = (seconds, threads=None, progress=None, *, keep=false, panic=None))]
 pub(crate) fn _busy(
     py: Python<'_>,
     seconds: f64,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
     keep: bool,
-    panic: bool,
+    panic: Option<usize>,
 ) -> PyResult<(u64, bool)> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
     let each = Duration::try_from_secs_f64(seconds / CHUNKS_PER_THREAD as f64)
@@ -40,12 +41,16 @@ pub(crate) fn _busy(
                 }
             }
             #[expect(clippy::panic, reason = "the only way to see that no panic reaches Python")]
-            if panic && chunk + 1 == chunks {
+            if panic == Some(chunk) {
                 panic!("on request");
             }
             ticker.advance(1);
             Ok(1)
         })?;
+        #[expect(clippy::panic, reason = "as above, outside the chunks")]
+        if panic == Some(chunks) {
+            panic!("on request");
+        }
         Ok(done.iter().sum())
     })?;
     if keep { outcome.partial(py) } else { outcome.whole(py).map(|done| (done, false)) }

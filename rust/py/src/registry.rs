@@ -1,6 +1,7 @@
 //! What the registry offers: methods and potentials, as Python's tables and classes are made from them.
 
 use crate::arrays::{copied, moved};
+use crate::gate::compute;
 use crate::scene::potential as build;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -60,6 +61,6 @@ pub(crate) fn potential<'py>(
 ) -> PyResult<(Column<'py>, Column<'py>, Column<'py>)> {
     let potential = build(py, name, &parameters)?;
     let (r, shape) = copied("r", &r, [None])?;
-    let [value, force, curvature] = potential.evaluate(&r);
+    let [value, force, curvature] = compute(py, 0, None, |_| Ok(potential.evaluate(&r)))?.whole(py)?;
     Ok((moved(py, value, &shape)?, moved(py, force, &shape)?, moved(py, curvature, &shape)?))
 }

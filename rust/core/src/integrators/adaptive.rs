@@ -322,6 +322,11 @@ impl<S: Element> Adaptive<S> {
         S::combine_compensated(into.all_mut(), state.all(), h, &weights, &self.stages.k);
     }
 
+    /// Force evaluations of the continuous extension beyond the step's own.
+    pub fn dense_stages(&self) -> u64 {
+        self.dense_rows.len() as u64
+    }
+
     /// The state at the end of the step tried last.
     pub fn next(&self) -> &State<S> {
         &self.next

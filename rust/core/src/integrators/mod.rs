@@ -9,6 +9,8 @@ pub mod dop853;
 pub mod fixed;
 pub mod kahan_li8;
 pub mod leapfrog;
+#[cfg(test)]
+mod order_conditions;
 pub mod rk4;
 pub mod runge_kutta;
 pub mod splitting;

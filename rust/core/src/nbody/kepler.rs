@@ -1,11 +1,192 @@
+//! Kepler's problem r̈ = −μ r/|r|³ in closed form: every conic, both signs of μ, any time.
+//!
+//! The one idea: an orbit is prepared once, in double-double, from inputs taken as exact numbers; a time then costs
+//! one reduction modulo the period (106 bits) and one solution of Kepler's equation in `f64`. Errors stay at a
+//! few ulps of |r| and |v| however far away the time is; the digits that the *rounding of the inputs* cost
+//! (relative phase 1.5·2π·N·ulp after N periods, and dx/dt·ulp(t)) are the caller's, none are added here.
+//!
+//! Radial motion (r×v = 0): the orbit is the limit e → 1 of the conic, so an attracted body falls to the centre
+//! and returns on the side it came from. At the very instant of the collision the state is r = 0 and v = 0, the
+//! mean of the opposite infinite velocities before and after. μ = 0, or |μ| below 2⁻³⁰⁰ r v², is a straight line.
+
+use super::conic::Conic;
+use super::kepler_equation::{Anchor, solve};
+use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::exponentials::{exponent, power_of_two, scale_by_power_of_two};
 use nalgebra::Vector3;
+
+/// Beyond this many dynamical times an unbound orbit is its asymptote.
+const FAR: f64 = 2.582_249_878_086_908_6e120; // 2^400
+
+/// An orbit about a fixed centre, ready to be asked for its state at any time.
+///
+/// ```
+/// use nalgebra::Vector3;
+/// use visviva_core::nbody::kepler::KeplerOrbit;
+/// let orbit = KeplerOrbit::new(1.0, Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.0, 1.0, 0.0))?;
+/// let (position, _) = orbit.state(core::f64::consts::FRAC_PI_2);
+/// assert!((position - Vector3::new(0.0, 1.0, 0.0)).norm() < 1e-15);
+/// # Ok::<(), visviva_core::Error>(())
+/// ```
 #[derive(Clone, Debug)]
-pub struct KeplerOrbit;
+pub struct KeplerOrbit {
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    /// Exponents of the internal units of length and velocity.
+    length: i32,
+    speed: i32,
+    scaled: Scaled,
+    conic: Option<Conic>,
+}
+
+/// The epoch in internal units, and how far from it the series about the epoch is used.
+#[derive(Clone, Debug)]
+struct Scaled {
+    mu: f64,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    beta: f64,
+    anchor: Anchor,
+    near: f64,
+}
+
 impl KeplerOrbit {
-    pub fn new(_mu: f64, _position: Vector3<f64>, _velocity: Vector3<f64>) -> crate::Result<Self> {
-        Ok(Self)
+    /// The orbit with the given state at the epoch.
+    ///
+    /// `mu` is positive for attraction (G·M), negative for repulsion, zero for none.
+    ///
+    /// # Errors
+    /// [`Error::InvalidInput`] if an argument is not finite, or `position` is zero.
+    pub fn new(mu: f64, position: Vector3<f64>, velocity: Vector3<f64>) -> Result<Self> {
+        if !mu.is_finite() {
+            return Err(Error::invalid("mu", format!("expected a finite number, got {mu}")));
+        }
+        for (name, vector) in [("position", &position), ("velocity", &velocity)] {
+            if !vector.iter().all(|component| component.is_finite()) {
+                return Err(Error::invalid(
+                    name,
+                    format!("expected three finite numbers, got [{}, {}, {}]", vector.x, vector.y, vector.z),
+                ));
+            }
+        }
+        let size = position.amax();
+        if size == 0.0 {
+            return Err(Error::invalid(
+                "position",
+                "expected a point away from the centre of force, got the centre itself, where the force has no value",
+            ));
+        }
+        let length = exponent(size);
+        let field = exponent(mu) - length;
+        let speed = match (velocity.amax() > 0.0, mu != 0.0) {
+            (true, true) => exponent(velocity.amax()).max(field.div_euclid(2)),
+            (true, false) => exponent(velocity.amax()),
+            (false, true) => field.div_euclid(2),
+            (false, false) => 0,
+        };
+        let mu_scaled = scale_by_power_of_two(mu, -length - 2 * speed);
+        let r = position.map(|component| scale_by_power_of_two(component, -length));
+        let v = velocity.map(|component| scale_by_power_of_two(component, -speed));
+        let conic = (mu_scaled.abs() > power_of_two(-300)).then(|| Conic::new(mu_scaled, &r, &v));
+        let distance = r.norm();
+        let beta = conic.as_ref().map_or(0.0, |conic| conic.beta.to_f64());
+        // |μ|/r³ + v²/r² bounds how fast anything changes near the epoch.
+        let rate = ((mu_scaled.abs() / distance + v.norm_squared()) / (distance * distance)).sqrt();
+        let scaled = Scaled {
+            mu: mu_scaled,
+            position: r,
+            velocity: v,
+            beta,
+            anchor: Anchor { r: distance, eta: r.dot(&v), zeta: mu_scaled - beta * distance },
+            near: 1.0 / (256.0 * rate),
+        };
+        Ok(Self { position, velocity, length, speed, scaled, conic })
     }
-    pub fn state(&self, _t: f64) -> (Vector3<f64>, Vector3<f64>) {
-        (Vector3::zeros(), Vector3::zeros())
+
+    /// Position and velocity at the time `t` since the epoch, to a few ulps of |r| and |v|.
+    ///
+    /// `t = 0` gives the input bits. A result beyond the range of `f64` is infinite; an infinite or NaN `t` gives NaN.
+    pub fn state(&self, t: f64) -> (Vector3<f64>, Vector3<f64>) {
+        if t == 0.0 {
+            return (self.position, self.velocity);
+        }
+        if !t.is_finite() {
+            return (Vector3::repeat(f64::NAN), Vector3::repeat(f64::NAN));
+        }
+        // Times whose count of dynamical times would overflow are taken as 2^960 of them.
+        let limit = power_of_two(960);
+        let time = scale_by_power_of_two(t, self.speed - self.length).clamp(-limit, limit);
+        let (position, velocity) = match &self.conic {
+            None => (straight(&self.scaled.position, &self.scaled.velocity, time), self.scaled.velocity),
+            Some(_) if time.abs() <= self.scaled.near => self.scaled.near_epoch(time),
+            Some(conic) if conic.period.is_none() && time.abs() > FAR => {
+                let (position, velocity) = conic.state(FAR.copysign(time));
+                (position + velocity * (time - FAR.copysign(time)), velocity)
+            }
+            Some(conic) => conic.state(time),
+        };
+        (
+            position.map(|component| scale_by_power_of_two(component, self.length)),
+            velocity.map(|component| scale_by_power_of_two(component, self.speed)),
+        )
     }
+
+    /// The period; infinite for an unbound orbit.
+    pub fn period(&self) -> f64 {
+        match self.conic.as_ref().and_then(|conic| conic.period) {
+            Some(period) => scale_by_power_of_two(period.to_f64(), self.length - self.speed),
+            None => f64::INFINITY,
+        }
+    }
+}
+
+impl Scaled {
+    /// r = r₀ + (f − 1) r₀ + g v₀ and its derivative: what is added is below 1/256 of what is there.
+    fn near_epoch(&self, time: f64) -> (Vector3<f64>, Vector3<f64>) {
+        let Anchor { r, eta, zeta } = self.anchor;
+        let size = time.abs();
+        let anchor = Anchor { r, eta: if time < 0.0 { -eta } else { eta }, zeta };
+        let first = size / r;
+        let guess = first * (1.0 - 0.5 * anchor.eta * first / r);
+        let reached = solve(anchor, self.beta, (size, 0.0), guess, 2.0 * first);
+        let functions = reached.functions;
+        let g1 = functions.g1.copysign(time);
+        let f_less_one = -self.mu * functions.g2 / r;
+        let g = time - self.mu * functions.g3.copysign(time);
+        let f_rate = -self.mu * g1 / (r * reached.r);
+        let g_rate_less_one = -self.mu * functions.g2 / reached.r;
+        (
+            self.position + (self.position * f_less_one + self.velocity * g),
+            self.velocity + (self.position * f_rate + self.velocity * g_rate_less_one),
+        )
+    }
+}
+
+/// r + v t with one rounding of each component.
+fn straight(position: &Vector3<f64>, velocity: &Vector3<f64>, time: f64) -> Vector3<f64> {
+    position.zip_map(velocity, |r, v| {
+        let moved = v * time;
+        if moved.abs() > power_of_two(900) {
+            return r + moved;
+        }
+        (DoubleDouble::product(v, time) + DoubleDouble::from(r)).to_f64()
+    })
+}
+
+/// Position and velocity at each of `times` since the epoch.
+///
+/// # Errors
+/// [`Error::InvalidInput`] if an argument is not finite, or `position` is zero.
+pub fn propagate(
+    mu: f64,
+    position: Vector3<f64>,
+    velocity: Vector3<f64>,
+    times: &[f64],
+) -> Result<Vec<(Vector3<f64>, Vector3<f64>)>> {
+    let orbit = KeplerOrbit::new(mu, position, velocity)?;
+    if let Some(bad) = times.iter().find(|time| !time.is_finite()) {
+        return Err(Error::invalid("times", format!("expected finite numbers, got {bad}")));
+    }
+    Ok(times.iter().map(|&time| orbit.state(time)).collect())
 }

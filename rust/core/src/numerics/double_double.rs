@@ -60,6 +60,10 @@ impl DoubleDouble {
     pub const fn high(self) -> f64 {
         self.high
     }
+    /// The two parts, (high, low).
+    pub const fn parts(self) -> (f64, f64) {
+        (self.high, self.low)
+    }
     /// What the nearest `f64` leaves out.
     pub const fn low(self) -> f64 {
         self.low

@@ -1,10 +1,13 @@
 //! The numerical ground: scalars and SIMD lanes, double-double, elementary functions, random numbers.
 
+pub mod angles;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
+pub mod exponentials;
 pub mod lanes;
 pub mod philox;
 pub mod power_of_two;
 pub mod real;
 pub mod simd;
+pub mod stumpff;

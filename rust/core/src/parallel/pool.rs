@@ -177,22 +177,22 @@ impl Drop for Invited<'_> {
     }
 }
 
-/// Does `work(ticker)` here while up to `helpers` workers do `helper()`; returns when all have ended.
+/// Does `work(ticker)` here while up to `helpers` workers do `helper()`; returns its value when all have ended.
 /// `helper` must not unwind.
 ///
 /// # Errors
 /// [`Error::Internal`] in a child that was forked while the run was under way.
-pub(super) fn join_in(
+pub(super) fn join_in<T>(
     helpers: usize,
     helper: &(dyn Fn() + Sync),
     ticker: &mut Ticker<'_>,
-    work: impl FnOnce(&mut Ticker<'_>),
-) -> Result<()> {
+    work: impl FnOnce(&mut Ticker<'_>) -> T,
+) -> Result<T> {
     let pool = Pool::current();
     let job = Job { work: helper, inside: AtomicUsize::new(0), caller: thread::current() };
     let invited = Invited { pool, job: &job, invitation: Invitation(ptr::from_ref(&job).cast()) };
     pool.invite(helpers, invited.invitation);
-    work(ticker);
+    let result = work(ticker);
     if !invited.orphaned() {
         pool.withdraw(invited.invitation);
         let started = Instant::now();
@@ -207,5 +207,5 @@ pub(super) fn join_in(
         thread::park_timeout(ticker.patience());
         ticker.watch_at(Instant::now());
     }
-    Ok(())
+    Ok(result)
 }

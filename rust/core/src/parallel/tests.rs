@@ -135,10 +135,30 @@ fn the_lowest_error_wins_and_a_panic_is_an_error() {
 }
 
 #[test]
+fn nothing_is_begun_after_an_error() {
+    for threads in 1..=3 {
+        let begun = AtomicUsize::new(0);
+        let outcome = run(threads, 1000, |chunk, _| {
+            let _: usize = begun.fetch_add(1, Ordering::Relaxed);
+            if chunk == 5 {
+                return Err(Error::Interrupted);
+            }
+            sleep(Duration::from_millis(1));
+            Ok(())
+        });
+        assert_eq!(outcome, Err(Error::Interrupted));
+        assert!(begun.into_inner() <= 6 + threads);
+    }
+}
+
+#[test]
 fn nested_runs_are_serial() {
     let outcome = run(3, 6, |_, ticker| {
         let here = std::thread::current().id();
-        let there = for_chunks(3, 4, ticker, |_, _| Ok(std::thread::current().id()))?;
+        let there = for_chunks(3, 4, ticker, |_, _| {
+            sleep(Duration::from_millis(2)); // time for others to join in
+            Ok(std::thread::current().id())
+        })?;
         Ok(there.iter().all(|id| *id == here))
     });
     assert_eq!(outcome, Ok(vec![true; 6]));

@@ -1,4 +1,4 @@
-//! What a run records: arrays that trajectories fill side by side, NaN where one has failed.
+//! What a run records: arrays that trajectories fill side by side, with NaN where one has failed.
 
 use core::marker::PhantomData;
 
@@ -20,16 +20,12 @@ pub struct Columns {
 }
 
 impl Columns {
-    /// Arrays full of NaN; `derived` asks for all four.
-    pub fn new(
-        copies: usize,
-        times: usize,
-        particles: usize,
-        position: bool,
-        velocity: bool,
-        derived: bool,
-    ) -> Self {
-        let array = |wanted: bool| vec![f64::NAN; if wanted { copies * times * particles * 3 } else { 0 }];
+    /// Room for the arrays; `derived` asks for all four.
+    ///
+    /// The room is not initialised (touching it twice would cost as much as the steps between two
+    /// outputs): the arrays are empty until [`finish`](Self::finish).
+    pub fn new(copies: usize, times: usize, particles: usize, position: bool, velocity: bool, derived: bool) -> Self {
+        let array = |wanted: bool| Vec::with_capacity(if wanted { copies * times * particles * 3 } else { 0 });
         Self {
             times,
             particles,
@@ -40,9 +36,36 @@ impl Columns {
         }
     }
 
+    /// Makes the arrays whole: NaN for a (particle, copy) from the output time at which its record ends.
+    ///
+    /// # Safety
+    /// Every entry that is not in `missing` has been written, for each of the `copies` copies.
+    pub unsafe fn finish(&mut self, copies: usize, missing: &[Missing]) {
+        let Self { times, particles, .. } = *self;
+        let len = copies * times * particles * 3;
+        for array in
+            [&mut self.position, &mut self.velocity, &mut self.position_rest, &mut self.velocity_rest]
+        {
+            if array.capacity() < len || len == 0 {
+                continue;
+            }
+            for &Missing { copy, from_time, particle } in missing {
+                for time in from_time..times {
+                    let at = ((copy * times + time) * particles + particle) * 3;
+                    for entry in &mut array.spare_capacity_mut()[at..at + 3] {
+                        let _: &mut f64 = entry.write(f64::NAN);
+                    }
+                }
+            }
+            // SAFETY: the capacity is there (tested above) and everything was written, by the contract or
+            // by the loop above.
+            unsafe { array.set_len(len) };
+        }
+    }
+
     /// A writer that threads may share, each for particles of its own.
     pub fn writer(&mut self) -> Writer<'_> {
-        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.len());
+        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.capacity());
         Writer {
             times: self.times,
             particles: self.particles,
@@ -53,6 +76,17 @@ impl Columns {
             columns: PhantomData,
         }
     }
+}
+
+/// A particle whose record ends before the last output time.
+#[derive(Clone, Copy, Debug)]
+pub struct Missing {
+    /// Which copy.
+    pub copy: usize,
+    /// The first output time that was not recorded.
+    pub from_time: usize,
+    /// Which particle.
+    pub particle: usize,
 }
 
 /// Writes single entries of [`Columns`].
@@ -85,21 +119,38 @@ pub struct Entry {
 }
 
 impl Writer<'_> {
+    /// Whether what the values leave out is kept.
+    pub fn keeps_rest(&self) -> bool {
+        self.position_rest.1 > 0
+    }
+
+    #[inline(always)]
+    fn put(&self, (array, len): (*mut f64, usize), copy: usize, time: usize, particle: usize, values: [f64; 3]) {
+        let at = ((copy * self.times + time) * self.particles + particle) * 3;
+        if at + 3 <= len {
+            // SAFETY: in bounds by the test; no other thread writes this particle (see `write`).
+            unsafe { array.add(at).cast::<[f64; 3]>().write(values) };
+        }
+    }
+
     /// Writes a particle of a copy at an output time. Only one thread may write a given particle.
     pub fn write(&self, copy: usize, time: usize, particle: usize, entry: &Entry) {
-        let at = ((copy * self.times + time) * self.particles + particle) * 3;
-        for ((array, len), values) in [
-            (self.position, entry.position),
-            (self.velocity, entry.velocity),
-            (self.position_rest, entry.position_rest),
-            (self.velocity_rest, entry.velocity_rest),
-        ] {
-            if at + 3 <= len {
-                for (c, value) in values.into_iter().enumerate() {
-                    // SAFETY: in bounds by the test above; not shared by the contract of `write`.
-                    unsafe { array.add(at + c).write(value) };
-                }
-            }
-        }
+        self.write_rounded(copy, time, particle, entry.position, entry.velocity);
+        self.put(self.position_rest, copy, time, particle, entry.position_rest);
+        self.put(self.velocity_rest, copy, time, particle, entry.velocity_rest);
+    }
+
+    /// As [`write`](Self::write), without what the values leave out.
+    #[inline(always)]
+    pub fn write_rounded(
+        &self,
+        copy: usize,
+        time: usize,
+        particle: usize,
+        position: [f64; 3],
+        velocity: [f64; 3],
+    ) {
+        self.put(self.position, copy, time, particle, position);
+        self.put(self.velocity, copy, time, particle, velocity);
     }
 }

@@ -48,6 +48,8 @@ impl Units {
             _ if speed > 0.0 => length - exponent(speed),
             _ => 0,
         };
+        // One factor then takes a length or a velocity back to the scene's units.
+        let time = time.clamp(length - 1000, length + 1000);
         Self { length, time, mass }
     }
     /// The exponent that turns a velocity of the scene into one of these units.

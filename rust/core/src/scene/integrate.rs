@@ -21,6 +21,9 @@ use crate::parallel::{Ticker, for_chunks};
 /// Units that one thread takes at a time: enough that lanes seldom run dry, few enough for balance.
 const UNITS_PER_CHUNK: usize = 256;
 
+/// Units of progress of an adaptive unit.
+const THOUSANDTHS: u64 = 1000;
+
 /// How a unit ended.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Ending {
@@ -100,11 +103,21 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     }) {
         runs.extend(run.chunks(per_chunk));
     }
+    ticker.control().set_total(total_progress(job, units.len(), lanes));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
         Scheme::Embedded(method) => adaptive(job, method, runs[chunk], inside, ticker),
         _ => fixed_steps(job, runs[chunk], inside, ticker),
     })?;
     Ok(reports.into_iter().flatten().collect())
+}
+
+/// Progress is counted in steps if they are fixed, else in thousandths of each unit's time.
+fn total_progress(job: &Job<'_>, units: usize, lanes: usize) -> u64 {
+    let span = (job.times[job.times.len() - 1] - job.scene.t0).abs();
+    match job.plan.dt {
+        Some(dt) => units.div_ceil(lanes) as u64 * (span / dt.abs()) as u64,
+        None => THOUSANDTHS * units as u64,
+    }
 }
 
 fn prepare(job: &Job<'_>, unit: &Unit) -> Prepared {
@@ -245,6 +258,8 @@ struct Slot {
     steps: u64,
     rejected: u64,
     evaluations: u64,
+    /// Thousandths of its time that were counted as progress.
+    progress: u64,
 }
 
 /// The lanes of an adaptive run.
@@ -305,7 +320,8 @@ fn adaptive(
                 let unit = prepare(job, unit);
                 unit.write(&mut state, plan.layout, lane);
                 set_lane(job, &unit, lane, slots.mask(lane), &mut tolerance, &mut reference);
-                let mut slot = Slot { unit, index, next_output: 0, steps: 0, rejected: 0, evaluations: 0 };
+                let mut slot =
+                    Slot { unit, index, next_output: 0, steps: 0, rejected: 0, evaluations: 2, progress: 0 };
                 if start_outputs(&slots, &mut slot, &state, lane) {
                     slots.slots[lane] = Some(slot);
                     fresh = fresh.or(slots.mask(lane));
@@ -331,11 +347,7 @@ fn adaptive(
             if engine.start(fresh, &state, &mut clock, &mut dynamics, &plan.layout, ticker).is_err() {
                 return Ok(interrupted(job, slots, reports, units, &state, &clock));
             }
-            for slot in slots.slots.iter_mut().flatten().filter(|slot| slot.steps == 0) {
-                slot.evaluations += 2;
-            }
         }
-        let before = dynamics.evaluations;
         let stepped = engine.step(running, &mut state, &mut clock, &mut dynamics, &plan.layout, ticker);
         let Ok(outcome) = stepped else {
             return Ok(interrupted(job, slots, reports, units, &state, &clock));
@@ -354,12 +366,17 @@ fn adaptive(
             return Ok(interrupted(job, slots, reports, units, &state, &clock));
         }
         engine.commit(outcome.accepted, &mut state);
-        let spent = dynamics.evaluations - before;
         for lane in 0..lanes {
             let Some(slot) = slots.slots[lane].as_mut() else { continue };
-            slot.evaluations += spent;
+            // What the step costs this unit, whatever the other lanes do: the derivative at its end is
+            // only taken when it is kept.
+            slot.evaluations += u64::from(method.tableau.b.len() as u32) - 1;
             if outcome.accepted.lane(lane) {
                 slot.steps += 1;
+                slot.evaluations += 1;
+                let done = (clock.elapsed.0[lane] / slots.outputs[slots.outputs.len() - 1] * 1000.0) as u64;
+                ticker.advance(done - slot.progress);
+                slot.progress = done;
             } else {
                 slot.rejected += 1;
             }
@@ -379,7 +396,6 @@ fn adaptive(
             };
             reports[slot.index] = Some(finish(job, slot, &state, lane, time, ending));
             slots.slots[lane] = None;
-            ticker.advance(1);
         }
         if ticker.tick().is_err() {
             return Ok(interrupted(job, slots, reports, units, &state, &clock));
@@ -505,6 +521,7 @@ fn record(
     let job = slots.job;
     let direction = job.plan.direction;
     let mut ready = false;
+    let mut charged = Bits(0);
     loop {
         // The next output of each lane that lies inside the step.
         let mut theta = Lanes::one();
@@ -535,6 +552,8 @@ fn record(
                 engine.prepare_dense(state, span.h, dynamics, ticker)?;
                 ready = true;
             }
+            charge(slots, inside.and(charged.not()), engine.dense_stages());
+            charged = charged.or(inside);
             engine.interpolate(state, span.h, theta, scratch);
         }
         for lane in 0..WIDTH {
@@ -556,6 +575,15 @@ fn record(
                 elapsed,
             );
             slot.next_output += 1;
+        }
+    }
+}
+
+/// Counts the evaluations of the continuous extension for the units that read it.
+fn charge(slots: &mut Slots<'_>, lanes: Bits, evaluations: u64) {
+    for (lane, slot) in slots.slots.iter_mut().enumerate() {
+        if let Some(slot) = slot {
+            slot.evaluations += if lanes.lane(lane) { evaluations } else { 0 };
         }
     }
 }

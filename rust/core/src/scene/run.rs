@@ -1,6 +1,6 @@
 //! From a scene and a request to columns: plan, do, derive.
 
-use super::columns::{Columns, Entry};
+use super::columns::{Columns, Entry, Missing};
 use super::integrate::{self, Ending, Job, Report};
 use super::plan::{Plan, Solution};
 use super::request::Request;
@@ -85,9 +85,27 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
             writer: &writer,
         };
         let reports = integrate::run(&job, ticker)?;
+        let missing: Vec<Missing> = reports
+            .iter()
+            .filter(|report| report.rows < request.times.len())
+            .flat_map(|report| {
+                let unit = &report.unit;
+                unit.recorded.clone().map(|slot| Missing {
+                    copy: unit.copy,
+                    from_time: report.rows,
+                    particle: unit.bodies[slot],
+                })
+            })
+            .collect();
+        // SAFETY: there is a report for every unit, the units' recorded bodies are all particles of all
+        // copies, and a unit writes its bodies at each of the first `rows` output times.
+        unsafe { columns.finish(scene.copies, &missing) };
         gather(scene, request, &reports)
     } else {
-        closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?
+        let outcomes = closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?;
+        // SAFETY: a closed form that succeeds has written every particle at every time.
+        unsafe { columns.finish(scene.copies, &[]) };
+        outcomes
     };
     let derived = derive(scene, request, &plan, &columns, &outcomes, ticker)?;
     if !request.records("position") {

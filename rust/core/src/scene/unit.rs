@@ -14,8 +14,8 @@ use crate::forces::uniform_field::UniformField;
 use crate::forces::{Dynamics, Force};
 use crate::integrators::state::State;
 use crate::numerics::element::Shape;
-use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
-use crate::numerics::power_of_two::scale;
+use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
+use crate::numerics::power_of_two::{power_of_two, scale};
 use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 
@@ -303,13 +303,44 @@ impl Prepared {
         units: Units,
         elapsed: f64,
     ) -> bool {
+        if writer.keeps_rest() || self.origin != Origin::default() {
+            return self.record_precisely(writer, time, state, layout, unit_lane, units, elapsed);
+        }
+        // The common case, kept lean: a run of cheap steps with many outputs spends its time here.
+        let Shape { rows, components } = state.shape;
+        let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
+        let (length, speed) = (power_of_two(units.length), power_of_two(-units.velocity()));
+        let mut check = 0.0;
+        for slot in self.unit.recorded.clone() {
+            let (row, lane) = self.locate(slot, layout, unit_lane);
+            let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
+            for c in 0..components {
+                let at = (c * rows + row) * WIDTH + lane;
+                position[c] = q[at] * length;
+                velocity[c] = v[at] * speed;
+                // Zero times a finite number is zero; times anything else it is not a number.
+                check += 0.0 * position[c] + 0.0 * velocity[c];
+            }
+            writer.write_rounded(self.unit.copy, time, self.unit.bodies[slot], position, velocity);
+        }
+        check == 0.0
+    }
+
+    fn record_precisely(
+        &self,
+        writer: &Writer<'_>,
+        time: usize,
+        state: &State<Lanes>,
+        layout: Layout,
+        unit_lane: usize,
+        units: Units,
+        elapsed: f64,
+    ) -> bool {
         let mut finite = true;
         for slot in self.unit.recorded.clone() {
             let entry = self.read(slot, state, layout, unit_lane, units, elapsed);
             finite &= entry.position.iter().chain(&entry.velocity).all(|x| x.is_finite());
-            if finite {
-                writer.write(self.unit.copy, time, self.unit.bodies[slot], &entry);
-            }
+            writer.write(self.unit.copy, time, self.unit.bodies[slot], &entry);
         }
         finite
     }

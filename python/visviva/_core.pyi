@@ -1,0 +1,67 @@
+"""The compiled core. Everything here is checked again by Rust; users call the Python package."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+def run(
+    *,
+    mass: NDArray[np.float64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    t0: float,
+    times: NDArray[np.float64],
+    end_only: bool,
+    method: str,
+    dt: float | None,
+    rtol: float,
+    atol: float | None,
+    max_step: float | None,
+    max_steps: int | None,
+    record: list[str],
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+    ensemble: bool,
+) -> dict[str, Any]: ...
+def plan(
+    *,
+    mass: NDArray[np.float64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    t0: float,
+    times: NDArray[np.float64],
+    end_only: bool,
+    method: str,
+    dt: float | None,
+    rtol: float,
+    atol: float | None,
+    max_step: float | None,
+    max_steps: int | None,
+    record: list[str],
+) -> dict[str, Any]: ...
+def conserved(
+    *,
+    mass: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64] | None,
+    about: NDArray[np.float64],
+    columns: list[str],
+) -> dict[str, NDArray[np.float64]]: ...
+def acceleration(
+    *,
+    mass: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+) -> NDArray[np.float64]: ...
+def methods() -> list[dict[str, Any]]: ...
+def potentials() -> list[dict[str, Any]]: ...
+def potential(
+    name: str, parameters: list[float], r: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def info() -> dict[str, Any]: ...

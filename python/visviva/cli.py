@@ -1,0 +1,98 @@
+"""The command line: ``visviva demo``, ``visviva methods``, ``visviva info``."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+__all__ = ["main"]
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run the command line.
+
+    Parameters
+    ----------
+    arguments : sequence of str, optional
+        The words after the program's name; those of the process by default.
+
+    Returns
+    -------
+    int
+        0 if all went well, 1 if a request was refused, 130 after Ctrl-C.
+
+    Examples
+    --------
+    >>> from visviva.cli import main
+    >>> main(["methods"])  # doctest: +ELLIPSIS
+    method ...
+    0
+    """
+    from visviva.errors import Error
+
+    options = _parser().parse_args(arguments)
+    try:
+        options.command(options)
+    except KeyboardInterrupt:
+        print("interrupted", file=sys.stderr)
+        return 130
+    except (Error, OSError) as error:
+        print(f"visviva: {error}", file=sys.stderr)
+        return 1
+    return 0
+
+
+def _parser() -> argparse.ArgumentParser:
+    from visviva import __version__
+
+    parser = argparse.ArgumentParser(prog="visviva", description="Classical mechanics at native speed.")
+    parser.add_argument("--version", action="version", version=f"visviva {__version__}")
+    commands = parser.add_subparsers(required=True, metavar="COMMAND")
+    demo = commands.add_parser("demo", help="the outer Solar System, and Rutherford's experiment")
+    demo.add_argument("--output", type=Path, default=Path("demo-output"), help="folder for pictures and the saved run")
+    demo.add_argument("--days", type=float, default=1e6, help="how long to follow the planets (default: 1e6)")
+    demo.add_argument("--events", type=float, default=1e8, help="alpha particles to scatter (default: 1e8)")
+    demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
+    demo.set_defaults(command=_demo)
+    commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
+    commands.add_parser("info", help="version, SIMD tier, threads, build profile").set_defaults(command=_info)
+    return parser
+
+
+def _demo(options: argparse.Namespace) -> None:
+    from visviva.demo import outer_solar_system, rutherford
+
+    options.output.mkdir(parents=True, exist_ok=True)
+    pictures = outer_solar_system(options.output, options.days, options.threads)
+    print()
+    pictures += rutherford(options.output, int(options.events), options.threads)
+    print()
+    if pictures:
+        print("pictures:", ", ".join(map(str, pictures)))
+    else:
+        print("no pictures: matplotlib is not installed (pip install 'visviva[plot]')")
+
+
+def _methods(_: argparse.Namespace) -> None:
+    from visviva.methods import methods
+
+    rows = methods()
+    width = max(len(row.name) for row in rows)
+    print(f"{'method':<{width}}  order  stages  kind")
+    for row in rows:
+        kinds = [word for word in ("adaptive", "symplectic", "reversible") if getattr(row, word)]
+        print(f"{row.name:<{width}}  {row.order:>5}  {row.stages:>6}  {', '.join(kinds) or 'fixed step'}")
+        print(f"{'':<{width}}  {row.summary} [{row.reference}]")
+
+
+def _info(_: argparse.Namespace) -> None:
+    from visviva import _core
+
+    for name, value in _core.info().items():
+        shown = ", ".join(map(str, value)) if isinstance(value, list | tuple) else value
+        print(f"{name.replace('_', ' ')}: {shown}")

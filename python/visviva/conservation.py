@@ -1,0 +1,170 @@
+"""How well the invariants held: one row for each, against a stated scale.
+
+Drift is measured from the scene's own initial state, on the rows that were recorded, and divided by a
+scale that does not vanish when the invariant does: a total momentum of zero drifts relative to the
+momenta that cancel in it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import fsum
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+from visviva.invariants import conserved, internal_motion, of_scene, reference_point
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.trajectory import Trajectory
+
+__all__ = ["Conservation", "Drift"]
+
+_EPSILON = float(np.finfo(float).eps)
+
+
+@dataclass(frozen=True, slots=True)
+class Drift:
+    """How far one quantity moved from its initial value.
+
+    Attributes
+    ----------
+    name : str
+    scale : float
+        What `max`, `end` and `rms` are divided by, in the user's units.
+    max, end, rms : float
+        Largest, last and root-mean-square distance from the initial value, over `scale`.
+    slope : float
+        Least-squares growth of that distance per unit of time, over `scale`: near zero where the
+        error is bounded.
+    conserved : bool
+        Whether the scene's forces conserve it at all.
+    """
+
+    name: str
+    scale: float
+    max: float
+    end: float
+    rms: float
+    slope: float
+    conserved: bool
+
+
+@dataclass(frozen=True, slots=True)
+class Conservation:
+    """Drift of each invariant of a trajectory; prints as a table.
+
+    Attributes
+    ----------
+    energy, momentum, angular_momentum, center_of_mass : Drift
+        Scales: |E₀| (kinetic + |potential| if the energy cancels to round-off), Σ m|v|,
+        Σ m|r||v|, and the size of the system. The centre of mass is compared with uniform motion.
+    virial : float
+        ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
+        in a bound system. NaN if positions or velocities were not recorded.
+    about : str
+        The reference point of the angular momentum.
+    """
+
+    energy: Drift
+    momentum: Drift
+    angular_momentum: Drift
+    center_of_mass: Drift
+    virial: float
+    about: str
+
+    @property
+    def rows(self) -> tuple[Drift, ...]:
+        """The drifts, in the order of the table."""
+        return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
+
+    def __str__(self) -> str:
+        lines = [f"{'':<34}{'max':>10}{'end':>10}{'rms':>10}{'relative to':>14}"]
+        for row in self.rows:
+            name = row.name if row is not self.angular_momentum else f"{row.name} ({self.about})"
+            values = "".join(f"{value:>10.1e}" for value in (row.max, row.end, row.rms))
+            note = "" if row.conserved else "  not conserved by these forces"
+            lines.append(f"{name:<34}{values}{row.scale:>14.6g}{note}")
+        lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<34}{self.virial:>10.1e}")
+        return "\n".join(lines)
+
+
+def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Conservation:
+    """The table of a trajectory."""
+    scene = trajectory.scene
+    start = of_scene(scene, about)
+    point = reference_point(about)
+    mass, position, velocity = scene.particles.mass, scene.particles.position, scene.particles.velocity
+    origin = start.center_of_mass if point is None else point
+    speeds = np.linalg.norm(velocity - (start.center_of_mass_velocity if point is None else 0.0), axis=1)
+    distances = np.linalg.norm(position - origin, axis=1)
+    spread = float(np.linalg.norm(position - start.center_of_mass, axis=1).max())
+    closed = all(force.conserves_momentum for force in scene.forces)
+
+    t = trajectory.t
+    cancelled = start.kinetic_energy + abs(start.potential_energy)
+    energy_scale = abs(start.energy) if abs(start.energy) > 64 * _EPSILON * cancelled else cancelled
+    about_origin = point is not None and not point.any()
+    if about_origin:
+        angular = trajectory.angular_momentum
+    else:
+        angular = trajectory.angular_momentum_about("center_of_mass" if point is None else point)
+    uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
+    if point is None:
+        steady = all(force.conserves_spin for force in scene.forces)
+    else:
+        steady = all(force.conserves_angular_momentum(point) for force in scene.forces)
+    return Conservation(
+        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, conserved=True),
+        momentum=_drift(
+            "momentum",
+            t,
+            trajectory.momentum - start.momentum,
+            fsum(mass * np.linalg.norm(velocity, axis=1)),
+            conserved=closed,
+        ),
+        angular_momentum=_drift(
+            "angular momentum", t, angular - start.angular_momentum, fsum(mass * distances * speeds), conserved=steady
+        ),
+        center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
+        virial=_virial(trajectory, closed),
+        about="centre of mass" if point is None else "origin" if about_origin else "given point",
+    )
+
+
+def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale: float, *, conserved: bool) -> Drift:
+    sizes = np.abs(change) if change.ndim == 1 else np.linalg.norm(change, axis=1)
+    reached = np.isfinite(sizes)
+    if not reached.any():
+        raise InvalidInput("record", f"there is no row from which the drift of {name} could be told")
+    divisor = scale if scale > 0.0 else 1.0
+    sizes, times = sizes[reached] / divisor, t[reached]
+    centred = times - times.mean()
+    spread = float(centred @ centred)
+    return Drift(
+        name=name,
+        scale=divisor,
+        max=float(sizes.max()),
+        end=float(sizes[-1]),
+        rms=float(np.sqrt(np.mean(sizes * sizes))),
+        slope=float(centred @ sizes) / spread if spread > 0.0 else 0.0,
+        conserved=conserved,
+    )
+
+
+def _virial(trajectory: Trajectory, closed: bool) -> float:
+    if not {"position", "velocity"} <= set(trajectory.recorded) or len(trajectory.t) < 2:
+        return float("nan")
+    scene, position, velocity = trajectory.scene, trajectory.position, trajectory.velocity
+    sums = conserved(scene, position, velocity, np.zeros(3), ["kinetic_energy", "virial"])
+    kinetic = internal_motion(scene, position, velocity)["kinetic_energy"] if closed else sums["kinetic_energy"]
+    weights = np.abs(np.diff(trajectory.t))
+
+    def mean(values: NDArray[np.float64]) -> float:
+        return fsum(weights * (values[1:] + values[:-1]) / 2.0) / fsum(weights)
+
+    twice = mean(2.0 * kinetic)
+    return (twice + mean(sums["virial"])) / twice if twice > 0.0 else float("nan")

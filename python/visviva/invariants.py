@@ -1,0 +1,134 @@
+"""Momentum, angular momentum, energy, centre of mass: all of them at once, with König's split.
+
+The sums are the core's compensated ones. The internal kinetic energy and the spin are formed from
+velocities relative to the centre of mass, not as differences of large totals.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from math import fsum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.scene import Scene
+
+__all__ = ["Invariants"]
+
+_COLUMNS = ["kinetic_energy", "potential_energy", "energy", "momentum", "angular_momentum", "center_of_mass", "virial"]
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Invariants:
+    """The conserved quantities of a state.
+
+    Attributes
+    ----------
+    total_mass : float
+    center_of_mass, center_of_mass_velocity, momentum : ndarray, shape (3,)
+    angular_momentum : ndarray, shape (3,)
+        About the reference point.
+    spin : ndarray, shape (3,)
+        Angular momentum about the centre of mass; angular_momentum = spin + (R − a) × P.
+    torque : ndarray, shape (3,)
+        Torque about the reference point: the rate of change of `angular_momentum` about a fixed
+        point, of `spin` about the centre of mass.
+    kinetic_energy, potential_energy, energy : float
+    center_of_mass_kinetic_energy, internal_kinetic_energy : float
+        König's split of the kinetic energy: P²/2M and the rest.
+    virial : float
+        Σ r·F.
+    """
+
+    total_mass: float
+    center_of_mass: NDArray[np.float64]
+    center_of_mass_velocity: NDArray[np.float64]
+    momentum: NDArray[np.float64]
+    angular_momentum: NDArray[np.float64]
+    spin: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    kinetic_energy: float
+    potential_energy: float
+    energy: float
+    center_of_mass_kinetic_energy: float
+    internal_kinetic_energy: float
+    virial: float
+
+
+def conserved(
+    scene: Scene,
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64] | None,
+    about: NDArray[np.float64],
+    columns: list[str],
+) -> dict[str, NDArray[np.float64]]:
+    """The core's conserved quantities of many states: position (T, N, 3), results (T,) or (T, 3)."""
+    return _core.conserved(
+        mass=scene.particles.mass,
+        forces=scene._keywords["forces"],
+        position=position,
+        velocity=velocity,
+        about=about,
+        columns=columns,
+    )
+
+
+def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
+    """The fixed point asked for; None stands for the centre of mass."""
+    if about is None:
+        return np.zeros(3)
+    if isinstance(about, str):
+        if about != "center_of_mass":
+            raise InvalidInput("about", f"expected three coordinates or 'center_of_mass', got {about!r}")
+        return None
+    return float_array("about", about, (3,))
+
+
+def internal_motion(
+    scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]:
+    """Kinetic energy and angular momentum of many states in their centre-of-mass frames."""
+    total = fsum(scene.particles.mass)
+    moments = conserved(scene, position, velocity, np.zeros(3), ["momentum", "center_of_mass"])
+    relative_position = position - moments["center_of_mass"][:, None]
+    relative_velocity = velocity - (moments["momentum"] / total)[:, None]
+    return conserved(scene, relative_position, relative_velocity, np.zeros(3), ["kinetic_energy", "angular_momentum"])
+
+
+def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
+    """Everything at the state of a scene."""
+    p = scene.particles
+    total = fsum(p.mass)
+    if not total > 0.0:
+        raise InvalidInput("mass", "the total mass is zero, so there is nothing to conserve; give one body a mass")
+    point = reference_point(about)
+    position, velocity = p.position[None], p.velocity[None]
+    sums: dict[str, Any] = conserved(scene, position, velocity, np.zeros(3) if point is None else point, _COLUMNS)
+    internal = internal_motion(scene, position, velocity)
+    spin = internal["angular_momentum"][0]
+    momentum, center = sums["momentum"][0], sums["center_of_mass"][0]
+    arms = p.position - (center if point is None else point)
+    torques = np.cross(arms, p.mass[:, None] * scene.acceleration())
+    return Invariants(
+        total_mass=total,
+        center_of_mass=center,
+        center_of_mass_velocity=momentum / total,
+        momentum=momentum,
+        angular_momentum=spin if point is None else sums["angular_momentum"][0],
+        spin=spin,
+        torque=np.array([fsum(column) for column in torques.T]),
+        kinetic_energy=float(sums["kinetic_energy"][0]),
+        potential_energy=float(sums["potential_energy"][0]),
+        energy=float(sums["energy"][0]),
+        center_of_mass_kinetic_energy=fsum(momentum * momentum) / (2.0 * total),
+        internal_kinetic_energy=float(internal["kinetic_energy"][0]),
+        virial=float(sums["virial"][0]),
+    )

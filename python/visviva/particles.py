@@ -1,0 +1,146 @@
+"""The bodies of a scene: masses, positions and velocities, checked once and never changed."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva._arrays import float_array
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva._arrays import Shape, Sizes
+
+__all__ = ["Particles"]
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Particles:
+    """Point particles.
+
+    Parameters
+    ----------
+    mass : array_like, shape (N,)
+        Masses, not negative. Mass 0 marks a test particle: it feels the others and they do not feel
+        it.
+    position : array_like, shape (N, 3)
+        Positions.
+    velocity : array_like, shape (N, 3), optional
+        Velocities; at rest if not given.
+
+    All three are copied and the copies are read-only float64. Units are the caller's own, one
+    consistent system for the whole scene.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a wrong shape, complex or object arrays, NaN or infinity; for a negative mass when the
+        scene is planned or run.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.Particles(mass=[1.0, 0.0], position=[[0, 0, 0], [1, 0, 0]])
+    Particles(2 bodies, 1 of them massless)
+    """
+
+    mass: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+
+    def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
+        sizes: Sizes = {}
+        object.__setattr__(self, "mass", _frozen("mass", mass, ("N",), sizes))
+        object.__setattr__(self, "position", _frozen("position", position, ("N", 3), sizes))
+        if velocity is None:
+            velocity = np.zeros(self.position.shape)
+        object.__setattr__(self, "velocity", _frozen("velocity", velocity, ("N", 3), sizes))
+
+    def __len__(self) -> int:
+        return len(self.mass)
+
+    def __repr__(self) -> str:
+        massless = int(np.count_nonzero(self.mass == 0.0))
+        noun = "body" if len(self) == 1 else "bodies"
+        return f"Particles({len(self)} {noun}{f', {massless} of them massless' if massless else ''})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Particles):
+            return NotImplemented
+        return (
+            np.array_equal(self.mass, other.mass)
+            and np.array_equal(self.position, other.position)
+            and np.array_equal(self.velocity, other.velocity)
+        )
+
+    def __hash__(self) -> int:
+        # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
+        return hash(tuple((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity)))
+
+    def __reduce__(self) -> tuple[type[Particles], tuple[NDArray[np.float64], ...]]:
+        return Particles, (self.mass, self.position, self.velocity)
+
+    def center_of_mass(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Position and velocity of the centre of mass.
+
+        Returns
+        -------
+        position, velocity : ndarray, shape (3,)
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the total mass is zero.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.Particles([1.0, 3.0], [[0, 0, 0], [4, 0, 0]]).center_of_mass()[0]
+        array([3., 0., 0.])
+        """
+        return weighted_mean(self.position, self.mass), weighted_mean(self.velocity, self.mass)
+
+    def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Particles:
+        """The same particles in other units.
+
+        Parameters
+        ----------
+        length, mass, time : float
+            How many new units make one old unit. Powers of two change no bit of any mantissa.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> kilometres = vv.Particles([1.0], [[2.0, 0.0, 0.0]], [[3.0, 0.0, 0.0]])
+        >>> kilometres.rescaled(length=1000.0).position
+        array([[2000.,    0.,    0.]])
+        """
+        return Particles(self.mass * mass, self.position * length, self.velocity * (length / time))
+
+
+def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Mean of ``values`` (N, ...) with ``weights`` (N,), summed without loss (catalogue 8.1–8.2).
+
+    `math.fsum` rounds each sum once, so the mean does not depend on the order of the bodies.
+    """
+    from math import fsum
+
+    from visviva.errors import InvalidInput
+
+    total = fsum(weights)
+    if not total > 0.0:
+        raise InvalidInput("mass", "the total mass is zero, so there is no centre of mass; give one body a mass")
+    products = (values.reshape(values.shape[0], -1).T * weights).tolist()
+    return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
+
+
+def _frozen(name: str, value: ArrayLike, shape: Shape, sizes: Sizes) -> NDArray[np.float64]:
+    array = float_array(name, value, shape, sizes)
+    if array.flags.writeable or array is value:
+        # Read-only views of somebody's writeable array are copied too: they have a base.
+        array = array.copy()
+        array.flags.writeable = False
+    return array

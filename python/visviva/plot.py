@@ -1,0 +1,74 @@
+"""Pictures of runs, as matplotlib figures that belong to the caller (pyplot's state is never touched)."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+    from visviva.trajectory import Trajectory
+
+__all__ = ["new_figure", "plot_trajectory"]
+
+# More points than this cannot be told apart in a figure and make the file large.
+_POINTS = 4000
+
+
+def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
+    """A figure with a row of panels.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If matplotlib is not installed.
+    """
+    try:
+        from matplotlib.figure import Figure
+    except ImportError as error:
+        raise InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'") from error
+    figure = Figure(figsize=size, layout="constrained")
+    return figure, [figure.add_subplot(1, panels, panel + 1) for panel in range(panels)]
+
+
+def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) -> Figure:
+    """Orbits in the x–y plane and, if it is known, the relative change of the energy."""
+    with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
+    figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0))
+    _orbits(axes[0], trajectory, names)
+    if with_energy:
+        _energy(axes[1], trajectory)
+    return figure
+
+
+def _orbits(axes: Axes, trajectory: Trajectory, names: Sequence[str] | None) -> None:
+    stride = max(1, len(trajectory) // _POINTS)
+    position = trajectory.position[::stride]
+    for body in range(position.shape[1]):
+        label = names[body] if names else None
+        (line,) = axes.plot(position[:, body, 0], position[:, body, 1], linewidth=0.8, label=label)
+        axes.plot(*trajectory.position[-1, body, :2], "o", markersize=4, color=line.get_color())
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="x", ylabel="y", title="orbits")
+    if names:
+        axes.legend(fontsize="small", loc="upper right")
+
+
+def _energy(axes: Axes, trajectory: Trajectory) -> None:
+    energy = trajectory.energy
+    scale = abs(energy[0]) if energy[0] != 0.0 else 1.0
+    stride = max(1, len(trajectory) // _POINTS)
+    axes.plot(trajectory.t[::stride], ((energy - energy[0]) / scale)[::stride], linewidth=0.8)
+    axes.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+    axes.set(xlabel="t", ylabel="(E − E₀) / |E₀|" if energy[0] != 0.0 else "E − E₀", title="energy")
+    axes.margins(x=0.01)
+    axes.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
+    if np.ptp(energy) == 0.0:
+        axes.set_ylim(-1e-16, 1e-16)

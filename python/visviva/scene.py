@@ -1,0 +1,404 @@
+"""The scene: what there is. Running it is asked of the core; nothing here is mechanics.
+
+The idea of this room: a scene is frozen, so what the core needs to know about it is prepared once,
+when it is made, and a run of a closed form costs little more than the call.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array, number
+from visviva.errors import InvalidInput
+from visviva.forces import Force
+from visviva.particles import Particles
+from visviva.plan import Plan
+from visviva.request import execute, keywords
+from visviva.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva._progress import Progress
+    from visviva.ensemble import EnsembleScene
+    from visviva.invariants import Invariants
+
+__all__ = ["Scene"]
+
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Scene:
+    """Particles and the forces on them, at a time.
+
+    Parameters
+    ----------
+    *parts : Particles or Force
+        One `Particles`, and any number of forces, in any order.
+    t0 : float, optional
+        The time of the given state.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If there is not exactly one `Particles`, or a part is neither particles nor a force.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> pair = vv.Particles([0.5, 0.5], [[-0.5, 0, 0], [0.5, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]])
+    >>> out = vv.Scene(pair, vv.Gravity(G=1.0)).run(t=2 * np.pi)
+    >>> bool(np.allclose(out.position[-1], pair.position, atol=1e-14))
+    True
+    """
+
+    particles: Particles
+    forces: tuple[Force, ...]
+    t0: float
+    _keywords: dict[str, Any] = field(repr=False)
+
+    def __init__(self, *parts: Particles | Force, t0: float = 0.0) -> None:
+        particles = [part for part in parts if isinstance(part, Particles)]
+        forces = tuple(part for part in parts if isinstance(part, Force))
+        for part in parts:
+            if not isinstance(part, Particles | Force):
+                raise InvalidInput(
+                    "parts",
+                    f"expected Particles and forces (Gravity, UniformField, CentralField), got {type(part).__name__}",
+                )
+        if len(particles) != 1:
+            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; join their arrays")
+        self._set(particles[0], forces, number("t0", t0))
+
+    def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
+        object.__setattr__(self, "particles", particles)
+        object.__setattr__(self, "forces", forces)
+        object.__setattr__(self, "t0", t0)
+        prepared = {
+            "mass": particles.mass[None],
+            "position": particles.position[None],
+            "velocity": particles.velocity[None],
+            "forces": [force._to_core() for force in forces],
+            "t0": t0,
+        }
+        object.__setattr__(self, "_keywords", prepared)
+
+    def __repr__(self) -> str:
+        parts = ", ".join(map(repr, (self.particles, *self.forces)))
+        return f"Scene({parts}, t0={self.t0!r})"
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Scene):
+            return NotImplemented
+        return self.particles == other.particles and self.forces == other.forces and self.t0 == other.t0
+
+    def __hash__(self) -> int:
+        return hash((self.particles, self.forces, self.t0))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _rebuild, (self.particles, self.forces, self.t0)
+
+    def run(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "auto",
+        dt: float | None = None,
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        max_step: float | None = None,
+        max_steps: int | None = None,
+        record: Sequence[str] = ("position", "velocity"),
+        events: Sequence[object] = (),
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> Trajectory:
+        """Run the scene.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end time, or the output times in the order of the motion, forwards or backwards. An
+            end time alone records the start and the end.
+        method : str, optional
+            One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
+            runs.
+        dt : float, optional
+            The step of a fixed-step method, with the sign of the direction of time.
+        rtol : float, optional
+            Relative tolerance of an adaptive method, at least 2.3e-14.
+        atol : float, optional
+            Absolute tolerance; by default `rtol` times the size of each kind of quantity at the start.
+        max_step : float, optional
+            The longest step an adaptive method may take.
+        max_steps : int, optional
+            The run ends with an error beyond this number of steps.
+        record : sequence of str, optional
+            Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
+            ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.
+        events : sequence, optional
+            Must be empty: events are not offered yet.
+        threads : int, optional
+            Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
+        progress : bool or callable, optional
+            True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
+
+        Returns
+        -------
+        Trajectory
+
+        Raises
+        ------
+        visviva.InvalidInput
+            Something asked for makes no sense; nothing has run.
+        visviva.CloseEncounter
+            Two bodies came so close that the step fell to zero; ``.trajectory`` holds what was done.
+        visviva.ConvergenceError
+            The step control gave up, or `max_steps` was reached; ``.trajectory`` likewise.
+        visviva.Interrupted
+            Ctrl-C; ``.trajectory`` likewise.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.figure_eight().scene
+        >>> out = scene.run(t=[0.0, 1.0, 2.0], method="kahan_li8", dt=0.01)
+        >>> out.position.shape, out.stats.steps
+        ((3, 3, 3), 200)
+        """
+        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
+        return execute(self, request, threads, progress, ensemble=False, make=Trajectory)
+
+    def plan(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "auto",
+        dt: float | None = None,
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        max_step: float | None = None,
+        max_steps: int | None = None,
+        record: Sequence[str] = ("position", "velocity"),
+        events: Sequence[object] = (),
+    ) -> Plan:
+        """What `run` would do with the same arguments, without doing it.
+
+        Returns
+        -------
+        Plan
+            Print it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `run`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> plan = vv.problems.outer_solar_system().scene.plan(t=1e6, method="leapfrog", dt=10.0)
+        >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
+        ('leapfrog', 1, 15)
+        """
+        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
+        return Plan._from_core(_core.plan(**request))
+
+    def ensemble(
+        self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None
+    ) -> EnsembleScene:
+        """Many copies of the scene that differ in their states.
+
+        Parameters
+        ----------
+        position, velocity : array_like, shape (B, N, 3), optional
+            One state per copy; what is not given is the scene's own in every copy.
+        mass : array_like, shape (B, N), optional
+            Masses per copy.
+
+        Returns
+        -------
+        EnsembleScene
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If nothing is given or the numbers of copies disagree.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.figure_eight().scene
+        >>> starts = scene.particles.position + 1e-3 * np.random.default_rng(1).normal(size=(8, 3, 3))
+        >>> scene.ensemble(position=starts).run(t=1.0).position.shape
+        (8, 2, 3, 3)
+        """
+        from visviva.ensemble import EnsembleScene
+
+        return EnsembleScene(self, position=position, velocity=velocity, mass=mass)
+
+    def acceleration(self) -> NDArray[np.float64]:
+        """Accelerations of the bodies at the scene's state, shape (N, 3).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.Scene(vv.Particles([8.0, 0.0], [[0, 0, 0], [2, 0, 0]]), vv.Gravity(G=1.0)).acceleration()[1]
+        array([-2.,  0.,  0.])
+        """
+        p = self.particles
+        return _core.acceleration(
+            mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity
+        )
+
+    def invariants(self, about: ArrayLike | str | None = None) -> Invariants:
+        """Momentum, angular momentum, energy, centre of mass and König's split at the scene's state.
+
+        Parameters
+        ----------
+        about : array_like, shape (3,), or "center_of_mass", optional
+            The reference point of angular momentum, torque and virial; the origin by default.
+
+        Returns
+        -------
+        Invariants
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.problems.pythagorean().scene.invariants().energy
+        -12.816666666666666
+        """
+        from visviva.invariants import of_scene
+
+        return of_scene(self, about)
+
+    def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
+        """The scene displaced by `position` and boosted by `velocity`, the fields with it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For a boost of a field with a fixed centre.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]])).shifted(position=[1.0, 2.0, 3.0])
+        >>> scene.particles.position
+        array([[1., 2., 3.]])
+        """
+        displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
+        p = self.particles
+        moved = Particles(p.mass, p.position + displacement, p.velocity + boost)
+        return Scene(moved, *(force.shifted(displacement, boost) for force in self.forces), t0=self.t0)
+
+    def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
+        """The scene as seen from a frame that moves at the constant `velocity`: r′ = r − origin − V t.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (3,)
+            Velocity V of the frame.
+        origin : array_like, shape (3,), optional
+            Where the frame's origin is at t = 0.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.Scene(vv.Particles([1.0], [[7.0, 0.0, 0.0]], [[4.0, 0.0, 0.0]]), t0=1.0)
+        >>> scene.in_frame(velocity=[5.0, 0.0, 0.0]).particles.velocity
+        array([[-1.,  0.,  0.]])
+        """
+        frame = float_array("velocity", velocity, (3,))
+        return self.shifted(position=-(float_array("origin", origin, (3,)) + frame * self.t0), velocity=-frame)
+
+    def center_of_mass_frame(self) -> Scene:
+        """The scene in the frame in which its centre of mass rests at the origin.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.outer_solar_system().scene.center_of_mass_frame()
+        >>> bool(np.abs(scene.invariants().momentum).max() < 1e-18)
+        True
+        """
+        position, velocity = self.particles.center_of_mass()
+        return self.shifted(position=-position, velocity=-velocity)
+
+    def rotated(self, rotation: ArrayLike) -> Scene:
+        """The scene turned (or reflected) about the origin by an orthogonal matrix, shape (3, 3).
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the matrix is not orthogonal to 1e-12.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> mirror = vv.problems.kepler(e=0.5).scene.rotated(np.diag([1.0, -1.0, 1.0]))
+        >>> float(mirror.invariants().angular_momentum[2]) < 0.0
+        True
+        """
+        matrix = float_array("rotation", rotation, (3, 3))
+        defect = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
+        if defect > 1e-12:
+            raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
+        p = self.particles
+        turned = Particles(p.mass, p.position @ matrix.T, p.velocity @ matrix.T)
+        return Scene(turned, *(force.rotated(matrix) for force in self.forces), t0=self.t0)
+
+    def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Scene:
+        """The same scene in other units: how many new units of each kind make one old unit.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a scale is not positive, or a force cannot be scaled.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> days = vv.problems.outer_solar_system().scene
+        >>> f"{days.rescaled(time=1 / 365.25).forces[0].G:.3f}"
+        '39.477'
+        """
+        for name, scale in (("length", length), ("mass", mass), ("time", time)):
+            if not number(name, scale) > 0.0:
+                raise InvalidInput(name, f"expected a positive number of new units per old one, got {scale!r}")
+        forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
+        return Scene(self.particles.rescaled(length=length, mass=mass, time=time), *forces, t0=self.t0 * time)
+
+    def reversed(self) -> Scene:
+        """The scene with every velocity turned round: run on, it retraces its path.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.Scene(vv.Particles([1.0], [[0, 0, 0]], [[1.0, 2.0, 3.0]])).reversed().particles.velocity
+        array([[-1., -2., -3.]])
+        """
+        p = self.particles
+        return Scene(Particles(p.mass, p.position, -p.velocity), *self.forces, t0=self.t0)
+
+    def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Scene:
+        """The scene with other positions and velocities, and another time if given.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.pythagorean().scene
+        >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
+        array([2., 6., 0.])
+        """
+        return Scene(Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0)
+
+
+def _rebuild(particles: Particles, forces: tuple[Force, ...], t0: float) -> Scene:
+    return Scene(particles, *forces, t0=t0)

@@ -1,0 +1,265 @@
+"""What a run gives back: recorded columns, and whatever follows from them on first use."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import IntEnum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva.errors import InvalidInput
+from visviva.plan import Plan
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.figure import Figure
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.conservation import Conservation
+    from visviva.scene import Scene
+
+__all__ = ["Stats", "Status", "Trajectory"]
+
+_DERIVED = ("energy", "momentum", "angular_momentum", "center_of_mass")
+
+
+class Status(IntEnum):
+    """How a trajectory ended."""
+
+    OK = 0
+    CLOSE_ENCOUNTER = 1
+    STEP_FAILURE = 2
+    INTERRUPTED = 3
+    TOO_MANY_STEPS = 4
+
+
+@dataclass(frozen=True, slots=True)
+class Stats:
+    """What a run cost: steps taken and rejected, force evaluations, seconds, threads, SIMD tier, method."""
+
+    steps: int
+    rejected: int
+    evaluations: int
+    seconds: float
+    threads: int
+    simd: str
+    method: str
+
+    @classmethod
+    def _from_core(cls, stats: dict[str, Any]) -> Stats:
+        return cls(**{name: stats[name] for name in cls.__slots__})
+
+
+class Trajectory:
+    """The motion of a scene at the output times. Made by `Scene.run` and `load`.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene that was run.
+    t : ndarray, shape (T,)
+        Output times; fewer than asked for if the run failed.
+    position, velocity : ndarray, shape (T, N, 3)
+    energy : ndarray, shape (T,)
+    momentum, angular_momentum, center_of_mass : ndarray, shape (T, 3)
+        Recorded, or computed from position and velocity on first use. The angular momentum is about
+        the origin.
+    status : Status
+    stats : Stats
+    plan : Plan
+        What ran and why.
+    final : Scene
+        The scene at the last state that was reached, ready to run on.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.problems.kepler(e=0.5).scene.run(t=1.0)
+    >>> out.t, out.position.shape, out.status.name
+    (array([0., 1.]), (2, 2, 3), 'OK')
+    """
+
+    __slots__ = ("_columns", "_result", "scene", "t")
+
+    def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
+        self.scene = scene
+        self.t: NDArray[np.float64] = result["t"]
+        self._result = result
+        self._columns: dict[str, NDArray[np.float64]] = {}
+
+    def __repr__(self) -> str:
+        span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
+        return f"Trajectory({len(self.t)} times, {len(self.scene.particles)} bodies, {span}, {self.status.name})"
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def _column(self, name: str) -> NDArray[np.float64]:
+        found = self._columns.get(name)
+        if found is None:
+            recorded = self._result["columns"].get(name)
+            if recorded is not None:
+                found = recorded[0]
+            elif name in _DERIVED:
+                found = self._derive(name)
+            else:
+                raise InvalidInput("record", f"{name} was not recorded; run again with {name!r} in record")
+            self._columns[name] = found
+        return found
+
+    def _derive(self, name: str, about: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        from visviva.invariants import conserved
+
+        needs = ("position",) if name == "center_of_mass" else ("position", "velocity")
+        missing = [column for column in needs if column not in self._result["columns"]]
+        if missing:
+            raise InvalidInput(
+                "record",
+                f"{name} was not recorded and cannot be computed without {' and '.join(missing)}; "
+                f"run again with {name!r} or {', '.join(map(repr, needs))} in record",
+            )
+        velocity = self.velocity if "velocity" in needs else None
+        return conserved(self.scene, self.position, velocity, np.zeros(3) if about is None else about, [name])[name]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Positions, shape (T, N, 3)."""
+        return self._column("position")
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (T, N, 3)."""
+        return self._column("velocity")
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """Total energy, shape (T,)."""
+        return self._column("energy")
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Total momentum, shape (T, 3)."""
+        return self._column("momentum")
+
+    @property
+    def angular_momentum(self) -> NDArray[np.float64]:
+        """Total angular momentum about the origin, shape (T, 3)."""
+        return self._column("angular_momentum")
+
+    @property
+    def center_of_mass(self) -> NDArray[np.float64]:
+        """Centre of mass, shape (T, 3)."""
+        return self._column("center_of_mass")
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Names of the recorded columns."""
+        return tuple(self._result["columns"])
+
+    @property
+    def status(self) -> Status:
+        """How the run ended."""
+        return Status(int(self._result["status"][0]))
+
+    @property
+    def stats(self) -> Stats:
+        """What the run cost."""
+        return Stats._from_core(self._result["stats"])
+
+    @property
+    def plan(self) -> Plan:
+        """What ran, what was skipped, and why."""
+        return Plan._from_core(self._result["plan"])
+
+    @property
+    def final(self) -> Scene:
+        """The scene at the last state that was reached."""
+        last = self._result["final"]
+        return self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+
+    def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
+        """Angular momentum about a fixed point or about the moving centre of mass, shape (T, 3).
+
+        Parameters
+        ----------
+        about : array_like, shape (3,), or "center_of_mass"
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If position or velocity was not recorded.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=1.0)
+        >>> out.angular_momentum_about([1.0, 0.0, 0.0]).shape
+        (2, 3)
+        """
+        from visviva.invariants import internal_motion, reference_point
+
+        point = reference_point(about)
+        if point is None:
+            return internal_motion(self.scene, self.position, self.velocity)["angular_momentum"]
+        return self._derive("angular_momentum", point)
+
+    def conservation(self, about: ArrayLike | str | None = None) -> Conservation:
+        """How well the invariants held: drift of each, as a table.
+
+        Parameters
+        ----------
+        about : array_like, shape (3,), or "center_of_mass", optional
+            Reference point of the angular momentum; the origin by default.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a quantity was neither recorded nor can be computed; the message says what to record.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> table = vv.problems.kepler(e=0.5).scene.run(t=1.0).conservation()
+        >>> table.energy.max < 1e-14
+        True
+        """
+        from visviva.conservation import of_trajectory
+
+        return of_trajectory(self, about)
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write everything to one ``.npz`` file that this and every later version loads.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=1.0)
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "run.npz"
+        >>> out.save(path)
+        >>> bool((vv.load(path).position == out.position).all())
+        True
+        """
+        from visviva.io import save
+
+        save(path, self)
+
+    def plot(self) -> Figure:
+        """Orbits in the x–y plane beside the relative change of the energy, as a matplotlib Figure.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib is not installed or positions were not recorded.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> figure = vv.problems.figure_eight().scene.run(t=[0.0, 1.0, 2.0]).plot()
+        >>> len(figure.axes)
+        2
+        """
+        from visviva.plot import plot_trajectory
+
+        return plot_trajectory(self)

@@ -1,0 +1,61 @@
+//! Kepler's problem against 150 digits (tests/reference/kepler.json, written by tools/kepler_reference.py).
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, missing_docs)]
+
+use nalgebra::Vector3;
+use serde_json::Value;
+use std::collections::BTreeMap;
+use visviva_core::nbody::kepler::KeplerOrbit;
+
+fn vector(value: &Value) -> Vector3<f64> {
+    Vector3::from_fn(|i, _| value[i].as_f64().unwrap())
+}
+
+/// |found − expected| / |expected| in units of 2^-53, the expected value being high + low.
+fn error_in_half_ulps(found: &Vector3<f64>, expected: &Value) -> f64 {
+    let high = Vector3::from_fn(|i, _| expected[i][0].as_f64().unwrap());
+    let low = Vector3::from_fn(|i, _| expected[i][1].as_f64().unwrap());
+    let scale = high.amax();
+    ((found - high) / scale - low / scale).norm() / (high / scale).norm() / (0.5 * f64::EPSILON)
+}
+
+#[test]
+fn states_agree_with_150_digits() {
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/reference/kepler.json");
+    let document: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
+    let mut worst: BTreeMap<String, [f64; 4]> = BTreeMap::new();
+    let mut count = 0;
+    for case in document["cases"].as_array().unwrap() {
+        let time = case["time"].as_f64().unwrap();
+        let orbit = KeplerOrbit::new(
+            case["mu"].as_f64().unwrap(),
+            vector(&case["position"]),
+            vector(&case["velocity"]),
+        )
+        .unwrap();
+        let (position, velocity) = orbit.state(time);
+        let errors = [
+            error_in_half_ulps(&position, &case["expected_position"]),
+            error_in_half_ulps(&velocity, &case["expected_velocity"]),
+        ];
+        let row = worst.entry(case["class"].as_str().unwrap().to_owned()).or_insert([0.0; 4]);
+        for k in 0..2 {
+            let condition = case["condition"][k].as_f64().unwrap().max(1.0);
+            assert!(errors[k].is_finite(), "{case}");
+            row[k] = row[k].max(errors[k]);
+            row[2 + k] = row[2 + k].max(errors[k] / condition);
+            if errors[k] > LIMIT {
+                println!("{} k={k} {:.1} cond {condition:.2e} mu {} r {} v {} t {time:e}", row[0], errors[k], case["mu"], case["position"], case["velocity"]);
+            }
+        }
+        count += 1;
+    }
+    println!("| class | |Δr|/|r| | |Δv|/|v| | over condition: r | v | (units of 2^-53)");
+    for (class, row) in &worst {
+        println!("| {class} | {:.2} | {:.2} | {:.2} | {:.2} |", row[0], row[1], row[2], row[3]);
+    }
+    let all = worst.values().fold(0.0f64, |m, row| m.max(row[0]).max(row[1]));
+    assert!(count > 400, "the reference file holds only {count} cases");
+    assert!(all <= LIMIT, "worst error {all} units of 2^-53");
+}
+
+const LIMIT: f64 = 12.0;

@@ -1,0 +1,274 @@
+"""The laws of mechanics over random closed scenes, for every method there is.
+
+Scenes are softened, so that every method resolves them with the same step and a law is not drowned by a close
+encounter. Tolerances are multiples of what the worst of 500 examples showed, unless the line says otherwise.
+"""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra import numpy as hnp
+from numpy.typing import NDArray
+
+import visviva as vv
+
+METHODS = vv.methods()
+NAMES = [method.name for method in METHODS]
+STEP = 1 / 64
+END = 1.0
+
+
+def arrays(shape: tuple[int, ...], low: float, high: float) -> st.SearchStrategy[NDArray[np.float64]]:
+    return hnp.arrays(np.float64, shape, elements=st.floats(low, high, width=32))
+
+
+@st.composite
+def closed_scenes(draw: st.DrawFn) -> vv.Scene:
+    """Two to five softened bodies; the first has mass, the others may have none."""
+    count = draw(st.integers(2, 5))
+    masses = np.concatenate([[1.0], draw(arrays((count - 1,), 0.0, 2.0))])
+    masses[masses < 1e-3] = 0.0
+    bodies = vv.Particles(masses, draw(arrays((count, 3), -2.0, 2.0)), draw(arrays((count, 3), -1.0, 1.0)))
+    softening = draw(st.floats(0.5, 1.0))
+    return vv.Scene(bodies, vv.Gravity(draw(st.floats(0.25, 1.0)), softening=softening), t0=draw(st.floats(-4.0, 4.0)))
+
+
+def arguments(method: vv.Method, scale: float = 1.0) -> dict[str, object]:
+    """A step for a fixed-step method, a tolerance for an adaptive one."""
+    tight: dict[str, object] = {"rtol": 1e-12} if method.adaptive else {"dt": STEP * scale}
+    return {"method": method.name} | tight
+
+
+def run(scene: vv.Scene, method: vv.Method, end: float = END, **more: object) -> vv.Trajectory:
+    return scene.run(t=scene.t0 + np.linspace(0.0, end, 5), **(arguments(method) | more))  # type: ignore[arg-type]
+
+
+def distance(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
+    return float(np.abs(a - b).max())
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes())
+@settings(max_examples=40)
+def test_momentum_and_center_of_mass(method: vv.Method, scene: vv.Scene) -> None:
+    """Linear invariants: every method keeps them to round-off."""
+    table = run(scene, method).conservation()
+    assert table.momentum.max * table.momentum.scale < 1e-14
+    assert table.center_of_mass.max * table.center_of_mass.scale < 1e-14
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), about=arrays((3,), -2.0, 2.0))
+@settings(max_examples=40)
+def test_angular_momentum(method: vv.Method, scene: vv.Scene, about: NDArray[np.float64]) -> None:
+    """A quadratic invariant: symplectic methods keep it to round-off, the others to their order."""
+    drift = run(scene, method).conservation(about=about).angular_momentum
+    bound = 2e-14 if method.symplectic else 1e-11 if method.adaptive else 1e-5
+    assert drift.max * drift.scale < bound
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes())
+@settings(max_examples=40)
+def test_energy_within_the_methods_own_bound(method: vv.Method, scene: vv.Scene) -> None:
+    """Adaptive: a hundred tolerances. Fixed steps: C hᵖ, of which halving the step must leave 2⁻ᵖ or round-off."""
+    drift = run(scene, method).conservation().energy
+    if method.adaptive:
+        assert drift.max * drift.scale < 1e-10
+        return
+    half = run(scene, method, dt=STEP / 2).conservation().energy
+    assert half.max * half.scale <= 1.5 * drift.max * drift.scale / 2.0**method.order + 1e-13
+    # The scenes are of size 2 with rates up to √(G M / softening³) ≈ 8, so h·rate ≤ 1/8.
+    assert drift.max * drift.scale < 10.0 * (1 / 8) ** method.order
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), velocity=arrays((3,), -2.0, 2.0), origin=arrays((3,), -2.0, 2.0))
+@settings(max_examples=25)
+def test_galilean_invariance(
+    method: vv.Method, scene: vv.Scene, velocity: NDArray[np.float64], origin: NDArray[np.float64]
+) -> None:
+    here, there = run(scene, method), run(scene.in_frame(velocity=velocity, origin=origin), method)
+    back = there.position + origin + np.multiply.outer(there.t, velocity)[:, None]
+    # The adaptive method chooses other steps in another frame: then its tolerance, not the rounding, tells.
+    assert distance(back, here.position) < (1e-10 if method.adaptive else 1e-13)
+    assert distance(there.velocity + velocity, here.velocity) < (1e-10 if method.adaptive else 1e-13)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), axis=arrays((3,), -1.0, 1.0), angle=st.floats(-3.0, 3.0))
+@settings(max_examples=25)
+def test_rotational_invariance(method: vv.Method, scene: vv.Scene, axis: NDArray[np.float64], angle: float) -> None:
+    axis = axis / size if (size := float(np.linalg.norm(axis))) > 1e-3 else np.array([0.0, 0.0, 1.0])
+    cross = np.cross(np.eye(3), axis)
+    matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    here, there = run(scene, method), run(scene.rotated(matrix), method)
+    assert distance(here.position @ matrix.T, there.position) < (1e-10 if method.adaptive else 1e-13)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), signs=st.tuples(*[st.sampled_from([-1.0, 1.0])] * 3))
+@settings(max_examples=25)
+def test_reflections_change_no_bit(method: vv.Method, scene: vv.Scene, signs: tuple[float, ...]) -> None:
+    """Rounding is symmetric about zero, so a mirror image has the mirrored bits."""
+    here, there = run(scene, method), run(scene.rotated(np.diag(signs)), method)
+    assert np.array_equal(here.position * signs, there.position)
+    assert np.array_equal(here.velocity * signs, there.velocity)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), powers=st.tuples(*[st.integers(-40, 40)] * 3))
+@settings(max_examples=25)
+def test_units_of_powers_of_two_change_no_bit(method: vv.Method, scene: vv.Scene, powers: tuple[int, int, int]) -> None:
+    length, mass, time = (2.0**power for power in powers)
+    scaled = scene.rescaled(length=length, mass=mass, time=time)
+    here = run(scene, method)
+    there = scaled.run(t=here.t * time, **arguments(method, time))  # type: ignore[arg-type]
+    assert np.array_equal(here.position * length, there.position)
+    assert np.array_equal(here.velocity * (length / time), there.velocity)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), scales=st.tuples(*[st.floats(1e-3, 1e3)] * 3))
+@settings(max_examples=25)
+def test_any_units_will_do(method: vv.Method, scene: vv.Scene, scales: tuple[float, float, float]) -> None:
+    """The times here are on the grid of steps in both units only to rounding, hence the slack of one velocity · ε t."""
+    length, mass, time = scales
+    at_zero = vv.Scene(scene.particles, *scene.forces)
+    scaled = at_zero.rescaled(length=length, mass=mass, time=time)
+    here = run(at_zero, method)
+    there = scaled.run(t=here.t * time, **arguments(method, time))  # type: ignore[arg-type]
+    assert distance(here.position, there.position / length) < (1e-10 if method.adaptive else 1e-13)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes())
+@settings(max_examples=25)
+def test_motion_reversed_retraces_its_path(method: vv.Method, scene: vv.Scene) -> None:
+    there = run(scene, method).final.reversed()
+    back = run(there, method).final
+    bound = 1e-13 if method.reversible else 1e-10 if method.adaptive else 1e-5
+    assert distance(back.particles.position, scene.particles.position) < bound
+    assert distance(-back.particles.velocity, scene.particles.velocity) < bound
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes())
+@settings(max_examples=25)
+def test_time_runs_both_ways(method: vv.Method, scene: vv.Scene) -> None:
+    """Backwards in time is the same as forwards with the velocities reversed, to the bit."""
+    times = np.linspace(0.0, END, 5)
+    still = vv.Scene(scene.particles, *scene.forces)
+    back = still.run(t=-times, **arguments(method, -1.0))  # type: ignore[arg-type]
+    mirrored = still.reversed().run(t=times, **arguments(method))  # type: ignore[arg-type]
+    assert np.array_equal(back.position, mirrored.position)
+    assert np.array_equal(back.velocity, -mirrored.velocity)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), data=st.data())
+@settings(max_examples=15)
+def test_an_ensemble_has_the_bits_of_single_runs(method: vv.Method, scene: vv.Scene, data: st.DataObject) -> None:
+    copies = data.draw(st.integers(1, 11))
+    shape = (copies, *scene.particles.position.shape)
+    position = scene.particles.position + data.draw(arrays(shape, -0.5, 0.5))
+    velocity = scene.particles.velocity + data.draw(arrays(shape, -0.5, 0.5))
+    times = scene.t0 + np.array([0.0, 0.3, END])
+    together = scene.ensemble(position=position, velocity=velocity).run(t=times, **arguments(method))  # type: ignore[arg-type]
+    for index in range(copies):
+        alone = scene.with_state(position[index], velocity[index]).run(t=times, **arguments(method))  # type: ignore[arg-type]
+        assert np.array_equal(together.position[index], alone.position)
+        assert np.array_equal(together.velocity[index], alone.velocity)
+
+
+@pytest.mark.parametrize("method", METHODS, ids=NAMES)
+@given(scene=closed_scenes(), times=st.lists(st.floats(0.0, END), min_size=1, max_size=6, unique=True))
+@settings(max_examples=25)
+def test_outputs_never_steer(method: vv.Method, scene: vv.Scene, times: list[float]) -> None:
+    """Whatever is asked for on the way, the end has the same bits."""
+    still = vv.Scene(scene.particles, *scene.forces)
+    only_end = still.run(t=END, **arguments(method))  # type: ignore[arg-type]
+    busy = still.run(t=[*sorted(set(times) - {END}), END], **arguments(method))  # type: ignore[arg-type]
+    assert np.array_equal(only_end.position[-1], busy.position[-1])
+    assert np.array_equal(only_end.velocity[-1], busy.velocity[-1])
+
+
+@given(
+    masses=st.tuples(st.floats(0.1, 2.0), st.floats(0.0, 2.0)),
+    apart=arrays((3,), 0.5, 2.0),
+    velocity=arrays((2, 3), -1.0, 1.0),
+    end=st.floats(-2.0, 2.0).filter(lambda t: abs(t) > 1e-3),
+)
+@settings(max_examples=100)
+def test_two_bodies_closed_form_and_integration(
+    masses: tuple[float, float], apart: NDArray[np.float64], velocity: NDArray[np.float64], end: float
+) -> None:
+    """Kepler's solution against DOP853, over ellipses and hyperbolas that stay apart."""
+    bodies = vv.Particles(masses, np.stack([np.zeros(3), apart]), velocity)
+    scene = vv.Scene(bodies, vv.Gravity(0.25))
+    closed = scene.run(t=end)
+    assert closed.plan.closed_form
+    assert closed.stats.steps == 0
+    integrated = scene.run(t=end, method="dop853", rtol=1e-13)
+    # A grazing pericentre amplifies the tolerance; the energy says how close they came.
+    relative = closed.velocity[:, 1] - closed.velocity[:, 0]
+    amplification = 1.0 + float(np.abs(relative).max()) ** 4
+    assert distance(closed.position, integrated.position) < 2e-10 * amplification
+
+
+@given(
+    state=arrays((2, 4, 3), -10.0, 10.0),
+    g=arrays((3,), -10.0, 10.0),
+    end=st.floats(-10.0, 10.0).filter(lambda t: abs(t) > 1e-3),
+    method=st.sampled_from(METHODS),
+)
+def test_uniform_field_closed_form_and_integration(
+    state: NDArray[np.float64], g: NDArray[np.float64], end: float, method: vv.Method
+) -> None:
+    """Every method of order 2 and more is exact on a parabola, whatever its step."""
+    scene = vv.Scene(vv.Particles(np.ones(4), *state), vv.UniformField(g))
+    closed = scene.run(t=end)
+    assert closed.plan.closed_form
+    arguments: dict[str, object] = {"rtol": 1e-9} if method.adaptive else {"dt": end / 7}
+    integrated = scene.run(t=end, method=method.name, **arguments)  # type: ignore[arg-type]
+    # Positions reach 10 + 100 + 500: a few roundings of 600.
+    assert distance(closed.position, integrated.position) < 2e-12
+    assert distance(closed.velocity, integrated.velocity) < 2e-13
+
+
+@given(velocity=arrays((3, 3), -10.0, 10.0), position=arrays((3, 3), -10.0, 10.0), end=st.floats(-100.0, 100.0))
+def test_force_free_motion(velocity: NDArray[np.float64], position: NDArray[np.float64], end: float) -> None:
+    """Momentum constant to the last bit; straight lines rounded once from the exact product and sum."""
+    out = vv.Scene(vv.Particles([1.0, 0.0, 2.0], position, velocity)).run(t=[0.0, end] if end else 0.0)
+    assert np.array_equal(out.velocity[-1], velocity)
+    expected = position.astype(np.longdouble) + velocity.astype(np.longdouble) * np.longdouble(end)
+    spacing = np.spacing(np.abs(position) + np.abs(velocity * end))
+    assert np.all(np.abs(out.position[-1] - expected.astype(np.float64)) <= spacing)
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [vv.potentials.Coulomb(k=-1.0), vv.potentials.Yukawa(k=-1.0, length=2.0), vv.potentials.LennardJones(0.5, 1.0)],
+    ids=repr,
+)
+@given(direction=arrays((3,), -1.0, 1.0), velocity=arrays((3,), -0.5, 0.5), distance=st.floats(1.0, 2.0))
+@settings(max_examples=40)
+def test_central_fields(
+    potential: vv.potentials.Potential,
+    direction: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    distance: float,
+) -> None:
+    """Energy and angular momentum about the centre, and a motion that stays in its plane."""
+    direction = direction + np.array([2.0, 0.0, 0.0])
+    position = distance * direction / np.linalg.norm(direction)
+    # Enough sideways motion to keep away from the centre.
+    velocity = velocity + 0.7 * np.cross([0.0, 0.0, 1.0], direction)
+    scene = vv.Scene(vv.Particles([1.0], position[None], velocity[None]), vv.CentralField(potential))
+    out = scene.run(t=np.linspace(0.0, 2.0, 5), method="dop853", rtol=1e-12)
+    table = out.conservation()
+    assert table.energy.max * table.energy.scale < 1e-9
+    assert table.angular_momentum.max * table.angular_momentum.scale < 1e-9
+    normal = scene.invariants().angular_momentum
+    assert np.abs(out.position[:, 0] @ (normal / np.linalg.norm(normal))).max() < 1e-10

@@ -1,0 +1,140 @@
+"""The conservation table against states made to order, and the moments about moving points."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ORBIT = vv.problems.kepler(e=0.5, mass_ratio=0.5)
+
+
+def made(scene: vv.Scene, t: np.ndarray, position: np.ndarray, velocity: np.ndarray) -> vv.Trajectory:
+    """A trajectory with these rows instead of the ones that were computed."""
+    out = scene.run(t=t)
+    out._result["columns"] = {"position": position[None], "velocity": velocity[None]}
+    out._columns.clear()
+    return out
+
+
+def test_drift_of_a_made_up_motion() -> None:
+    """One free body that speeds up from 1 to 3: momentum +2, energy × 9, both relative to what they were."""
+    scene = vv.Scene(vv.Particles([2.0], [[0.0, 3.0, 0.0]], [[1.0, 0.0, 0.0]]))
+    t = np.array([0.0, 1.0, 2.0])
+    speed = np.array([1.0, 3.0, 2.0])
+    velocity = speed[:, None, None] * np.array([[[1.0, 0.0, 0.0]]])
+    position = np.array([[[0.0, 3.0, 0.0]], [[2.0, 3.0, 0.0]], [[2.5, 3.0, 0.0]]])
+    table = made(scene, t, position, velocity).conservation()
+    assert (table.energy.scale, table.energy.max, table.energy.end) == (1.0, 8.0, 3.0)
+    assert table.energy.rms == pytest.approx(np.sqrt((0 + 64 + 9) / 3))
+    assert (table.momentum.scale, table.momentum.max, table.momentum.end) == (2.0, 2.0, 1.0)
+    assert (table.angular_momentum.scale, table.angular_momentum.max) == (6.0, 2.0)
+    # Uniform motion would be at x = 1 and 2.
+    assert (table.center_of_mass.max, table.center_of_mass.end) == (1.0, 0.5)
+    # Distances 0, 2, 1 against t − 1 = −1, 0, 1.
+    assert table.momentum.slope == pytest.approx((0 * -1 + 2 * 0 + 1 * 1) / 2)
+    assert all(row.conserved for row in table.rows)
+
+
+def test_table_prints_every_row() -> None:
+    text = str(ORBIT.scene.run(t=[0.0, 1.0, 2.0]).conservation(about="center_of_mass"))
+    for word in ("energy", "momentum", "angular momentum (centre of mass)", "centre of mass", "virial", "max", "rms"):
+        assert word in text
+
+
+def test_what_the_forces_do_not_conserve_is_marked() -> None:
+    body = vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    field = vv.CentralField(vv.potentials.Coulomb(-1.0), center=[0.0, 0.0, 0.0])
+    out = vv.Scene(body, field).run(t=[0.0, 0.5, 1.0])
+    about_center, elsewhere = out.conservation(), out.conservation(about=[0.5, 0.0, 0.0])
+    assert about_center.angular_momentum.conserved
+    assert about_center.angular_momentum.max < 1e-14
+    assert not elsewhere.angular_momentum.conserved
+    assert elsewhere.angular_momentum.max > 1e-2
+    assert not about_center.momentum.conserved
+    assert "not conserved by these forces" in str(about_center)
+    falling = vv.Scene(body, vv.UniformField([0.0, 0.0, -1.0])).run(t=[0.0, 0.5, 1.0])
+    assert falling.conservation(about="center_of_mass").angular_momentum.conserved
+    assert not falling.conservation().angular_momentum.conserved
+
+
+@pytest.mark.parametrize("record", [("position",), ("velocity",), ("momentum",)])
+def test_what_was_not_recorded_is_asked_for_by_name(record: tuple[str, ...]) -> None:
+    out = ORBIT.scene.run(t=1.0, record=record)
+    with pytest.raises(vv.InvalidInput, match="'energy'") as caught:
+        _ = out.energy
+    assert caught.value.argument == "record"
+    with pytest.raises(vv.InvalidInput) as caught:
+        out.conservation()
+    assert caught.value.argument == "record"
+    missing = {"position", "velocity"} - set(record)
+    with pytest.raises(vv.InvalidInput) as caught:
+        getattr(out, missing.pop())
+    assert caught.value.argument == "record"
+
+
+def test_recorded_columns_equal_the_ones_computed_on_first_use() -> None:
+    names = ("energy", "momentum", "angular_momentum", "center_of_mass")
+    t = np.linspace(0.0, 3.0, 7)
+    recorded = ORBIT.scene.run(t=t, method="leapfrog", dt=0.01, record=names)
+    computed = ORBIT.scene.run(t=t, method="leapfrog", dt=0.01)
+    assert recorded.recorded == names
+    for name in names:
+        assert np.array_equal(getattr(recorded, name), getattr(computed, name)), name
+    # The table needs nothing else, except for the virial.
+    table = recorded.conservation()
+    assert table.energy == computed.conservation().energy
+    assert np.isnan(table.virial)
+
+
+def test_angular_momentum_about_moving_and_fixed_points() -> None:
+    """L_O = L_G + R × P and L_A = L_O − a × P (König), row by row."""
+    scene = vv.problems.pleiades().scene.shifted(position=[1.0, -2.0, 0.5], velocity=[0.3, 0.1, -0.7])
+    out = scene.run(t=np.linspace(0.0, 1.0, 5))
+    a = np.array([2.0, -1.0, 3.0])
+    origin, spin = out.angular_momentum, out.angular_momentum_about("center_of_mass")
+    # |L| is about 200 here.
+    assert np.allclose(origin, spin + np.cross(out.center_of_mass, out.momentum), rtol=0, atol=2e-13)
+    assert np.allclose(out.angular_momentum_about(a), origin - np.cross(a, out.momentum), rtol=0, atol=2e-13)
+
+
+def test_torque_balances_angular_momentum() -> None:
+    """K about a point is the rate of L about it, and K about the centre of mass the rate of the spin."""
+    rng = np.random.default_rng(3)
+    bodies = vv.Particles([1.0, 2.0, 0.5], rng.normal(size=(3, 3)), rng.normal(size=(3, 3)))
+    scene = vv.Scene(bodies, vv.Gravity(1.0, softening=0.3), vv.UniformField([0.3, -0.2, -1.0]))
+    for about in ([0.5, -1.0, 2.0], "center_of_mass"):
+        h = 1e-3
+        later, earlier = scene.run(t=h, rtol=1e-13), scene.run(t=-h, rtol=1e-13)
+        change = later.angular_momentum_about(about)[-1] - earlier.angular_momentum_about(about)[-1]
+        torque = scene.invariants(about=about).torque
+        # Central difference: h²/6 of the third derivative, which is of the order of the torque here, ~10.
+        assert change / (2 * h) == pytest.approx(torque, abs=5e-5)
+
+
+def test_virial_of_bound_orbits() -> None:
+    """⟨2T⟩ + ⟨Σ r·F⟩ = 0 over whole periods, in any inertial frame."""
+    scene = ORBIT.scene.shifted(velocity=[3.0, 1.0, 0.0])
+    table = scene.run(t=np.linspace(0.0, 2 * np.pi, 257)).conservation()
+    # The trapezoidal rule converges exponentially on a periodic function: e^{-257·0.55} for e = 0.5.
+    assert abs(table.virial) < 1e-12
+
+
+def test_lagrange_jacobi() -> None:
+    """I'' = 4T + 2V with I = Σ m r², for gravity without softening."""
+    scene = vv.problems.pythagorean().scene
+    h = 1e-3
+    states = [scene.run(t=t, rtol=1e-13).final if t else scene for t in (-h, 0.0, h)]
+    inertia = [float(np.sum(s.particles.mass[:, None] * s.particles.position**2)) for s in states]
+    here = scene.invariants()
+    second = (inertia[0] - 2 * inertia[1] + inertia[2]) / h**2
+    # h²/12 of the fourth derivative (~10) and the rounding of 70 · 1e-16 / h².
+    assert second == pytest.approx(4 * here.kinetic_energy + 2 * here.potential_energy, abs=2e-5)
+
+
+def test_an_energy_that_cancels_is_judged_against_what_cancels() -> None:
+    """A parabola has E = 0 up to rounding, which would make any drift look infinite."""
+    body = vv.Particles([1.0], [[2.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]])
+    scene = vv.Scene(body, vv.CentralField(vv.potentials.Coulomb(-1.0)))
+    table = scene.run(t=[0.0, 1.0]).conservation()
+    assert table.energy.scale == 1.0
+    assert table.energy.max < 1e-15

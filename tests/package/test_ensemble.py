@@ -1,0 +1,72 @@
+"""Ensembles as Python sees them: shapes, indexing, refusals."""
+
+import pickle
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+PROBLEM = vv.problems.figure_eight()
+SCENE = PROBLEM.scene
+STARTS = SCENE.particles.position + 1e-3 * np.random.default_rng(1).normal(size=(5, 3, 3))
+
+
+def test_shapes_and_members() -> None:
+    out = SCENE.ensemble(position=STARTS).run(t=[0.0, 0.5, 1.0], record=("position", "velocity", "energy"))
+    assert len(out) == 5
+    assert out.position.shape == (5, 3, 3, 3)
+    assert out.energy.shape == (5, 3)
+    assert out.momentum.shape == out.angular_momentum.shape == out.center_of_mass.shape == (5, 3, 3)
+    assert out.status.tolist() == [0] * 5
+    for index, member in enumerate(out):
+        assert isinstance(member, vv.Trajectory)
+        assert np.array_equal(member.position, out.position[index])
+        assert np.array_equal(member.momentum, out.momentum[index])
+        assert np.array_equal(member.scene.particles.position, STARTS[index])
+        assert member.stats.steps == out.per_trajectory["steps"][index]
+    assert np.array_equal(out[-1].position, out.position[4])
+    with pytest.raises(IndexError):
+        out[5]
+
+
+def test_masses_may_differ() -> None:
+    masses = np.array([[1.0, 1.0, 1.0], [2.0, 1.0, 0.0]])
+    out = SCENE.ensemble(mass=masses).run(t=0.5)
+    assert np.array_equal(out[1].scene.particles.mass, masses[1])
+    assert out.energy[1, 0] == out[1].scene.invariants().energy
+
+
+def test_the_end_is_a_new_ensemble() -> None:
+    copies = SCENE.ensemble(position=STARTS)
+    half = copies.run(t=0.5, method="leapfrog", dt=0.01).final
+    assert half.scene.t0 == 0.5
+    assert np.array_equal(
+        half.run(t=1.0, method="leapfrog", dt=0.01).position[:, 0],
+        copies.run(t=0.5, method="leapfrog", dt=0.01).position[:, -1],
+    )
+
+
+def test_pickle() -> None:
+    copies = SCENE.ensemble(position=STARTS)
+    again = pickle.loads(pickle.dumps(copies))
+    assert again.scene == copies.scene
+    assert np.array_equal(again.position, copies.position)
+
+
+@pytest.mark.parametrize(
+    ("given", "argument"),
+    [
+        ({}, "position"),
+        ({"position": np.zeros((2, 4, 3))}, "position"),
+        ({"position": np.zeros((3, 3))}, "position"),
+        ({"velocity": np.full((2, 3, 3), np.nan)}, "velocity"),
+        ({"mass": np.ones((2, 4))}, "mass"),
+        ({"position": np.zeros((2, 3, 3)), "velocity": np.zeros((3, 3, 3))}, "velocity"),
+        ({"position": np.zeros((0, 3, 3))}, "position"),
+    ],
+)
+def test_refusals_by_name(given: dict[str, np.ndarray], argument: str) -> None:
+    with pytest.raises(vv.InvalidInput) as caught:
+        SCENE.ensemble(**given)
+    assert caught.value.argument == argument

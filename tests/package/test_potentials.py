@@ -1,0 +1,85 @@
+"""The potentials of the registry: F = −dV/dr, and the stub says what is there."""
+
+import ast
+import pickle
+from dataclasses import FrozenInstanceError
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import visviva as vv
+from visviva import _core, potentials
+
+# Something to try each parameter with; every potential of the registry is tried.
+VALUES = (1.3, 0.7, 2.1, 0.4)
+ALL = [potentials.potential_by_name(e["name"], VALUES[: len(e["parameters"])]) for e in _core.potentials()]
+
+
+@pytest.mark.parametrize("potential", ALL, ids=repr)
+def test_force_and_curvature_are_derivatives(potential: potentials.Potential) -> None:
+    r = np.geomspace(0.5, 5.0, 23)
+    h = 1e-3 * r
+    v = [potential.value(r + k * h) for k in (-2, -1, 0, 1, 2)]
+    slope = (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * h)
+    second = (-v[0] + 16 * v[1] - 30 * v[2] + 16 * v[3] - v[4]) / (12 * h * h)
+    # Truncation: h⁴/30 of the fifth derivative, (1e-3)⁴/30 · r⁵V⁽⁵⁾/V ≤ 3e-14 · 4e5 for r⁻¹²; the second
+    # difference has that and the rounding 1e-16/(1e-3)² · 4.
+    scale = np.abs(v[2]) / r + np.abs(potential.force(r))
+    assert np.all(np.abs(potential.force(r) + slope) <= 2e-8 * scale)
+    assert np.all(np.abs(potential.curvature(r) - second) <= 2e-7 * (np.abs(potential.curvature(r)) + scale / r))
+
+
+@pytest.mark.parametrize("potential", ALL, ids=repr)
+def test_values_of_any_shape(potential: potentials.Potential) -> None:
+    r = np.linspace(1.0, 2.0, 6).reshape(2, 3)
+    assert potential.value(r).shape == (2, 3)
+    assert potential.value(1.5).shape == ()
+    assert potential.force(r.T)[2, 1] == potential.force(r)[1, 2]
+    with pytest.raises(vv.InvalidInput) as caught:
+        potential.value([1.0, np.nan])
+    assert caught.value.argument == "r"
+
+
+@pytest.mark.parametrize("potential", ALL, ids=repr)
+def test_frozen_hashable_picklable_documented(potential: potentials.Potential) -> None:
+    again = pickle.loads(pickle.dumps(potential))
+    assert again == potential
+    assert hash(again) == hash(potential)
+    assert again.parameters == potential.parameters
+    name = type(potential).__dataclass_fields__  # type: ignore[attr-defined]
+    with pytest.raises(FrozenInstanceError):
+        setattr(potential, next(iter(name)), 1.0)
+    document = type(potential).__doc__ or ""
+    assert "V(r) = " in document
+    assert all(f"\n{field} : float" in document for field in name)
+
+
+def test_closed_forms() -> None:
+    r = np.array([0.5, 1.0, 4.0])
+    assert np.array_equal(potentials.Coulomb(2.0).value(r), 2.0 / r)
+    assert potentials.Yukawa(2.0, 0.5).value(r) == pytest.approx(2.0 * np.exp(-r / 0.5) / r, rel=4e-16)
+    well = potentials.LennardJones(epsilon=3.0, sigma=1.5)
+    bottom = 2.0 ** (1 / 6) * 1.5
+    # At the minimum V = −ε, to the rounding of (σ/r)⁶ = 1/2; the force vanishes against 24 ε/σ.
+    assert float(well.value(bottom)) == pytest.approx(-3.0, rel=4e-15)
+    assert abs(float(well.force(bottom))) < 48 * 4e-15
+    assert float(well.curvature(bottom)) == pytest.approx(72 * 3.0 / bottom**2, rel=1e-14)
+
+
+def test_the_stub_spells_out_the_registry() -> None:
+    stub = ast.parse(Path(potentials.__file__).with_suffix(".pyi").read_text())
+    written = {
+        node.name: [item.target.id for item in node.body if isinstance(item, ast.AnnAssign)]
+        for node in stub.body
+        if isinstance(node, ast.ClassDef) and node.decorator_list
+    }
+    registered = {e["class_name"]: [p["name"] for p in e["parameters"]] for e in _core.potentials()}
+    assert written == registered
+    exported = next(node.value for node in stub.body if isinstance(node, ast.Assign))
+    assert set(ast.literal_eval(exported)) == set(potentials.__all__)
+
+
+def test_an_unknown_name_is_refused() -> None:
+    with pytest.raises(vv.InvalidInput, match="coulomb"):
+        potentials.potential_by_name("columb", [1.0])

@@ -1,0 +1,76 @@
+"""The shared problems: their references hold against each other and against the core."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ALL = [
+    vv.problems.outer_solar_system(),
+    vv.problems.figure_eight(),
+    vv.problems.pleiades(),
+    vv.problems.kepler(e=0.3),
+    vv.problems.kepler(e=0.9, mass_ratio=1e-3),
+    vv.problems.lagrange_triangle(),
+    vv.problems.lagrange_triangle(masses=(1.0, 1e-3, 1e-4), side=1.5, turn=1.25),
+]
+
+
+@pytest.mark.parametrize("problem", ALL, ids=lambda problem: problem.name)
+def test_references_hold(problem: vv.problems.Problem) -> None:
+    """A tight run ends at the reference, to the tolerance times the conditioning the problem states."""
+    rtol = 1e-13
+    (_, factor), *_ = problem.conditioning
+    out = problem.scene.run(t=problem.t_end, method="dop853", rtol=rtol)
+    size = float(np.abs(problem.scene.particles.position).max())
+    assert problem.error(out) < 10 * rtol * size * max(factor, 1.0)
+
+
+def test_pythagorean_up_to_30() -> None:
+    problem = vv.problems.pythagorean()
+    out = problem.scene.run(t=[10.0, 30.0], method="dop853", rtol=1e-13)
+    # Twelve binary encounters before t = 30, each costs a few hundred steps of 1e-13.
+    assert problem.error(out) < 1e-8
+    assert problem.scene.invariants().energy == pytest.approx(-769 / 60, rel=1e-15)
+
+
+def test_energies_of_the_literature() -> None:
+    energies = {
+        "hairer_lubich_wanner": -3.21545318320816356759e-8,
+        "applegate": -3.21775106473033021961e-8,
+    }
+    for variant, energy in energies.items():
+        scene = vv.problems.outer_solar_system(variant).scene  # type: ignore[arg-type]
+        # The frame of Applegate's problem is reached by rounding each coordinate once.
+        assert scene.invariants().energy == pytest.approx(energy, rel=5e-15)
+    momentum = vv.problems.outer_solar_system().scene.invariants().angular_momentum
+    expected = (1.596115582053364824e-6, -2.370330159244391149e-5, 5.594749022905048875e-5)
+    assert momentum == pytest.approx(expected, rel=1e-14)
+    assert vv.problems.pleiades().scene.invariants().energy == pytest.approx(-45.9524694978471257460, rel=1e-15)
+    assert vv.problems.figure_eight().scene.invariants().energy == pytest.approx(-1.2871419919889173, rel=1e-15)
+
+
+def test_kepler_elements() -> None:
+    scene = vv.problems.kepler(e=0.6, mass_ratio=0.25).scene
+    first, second = scene.particles.position
+    assert np.linalg.norm(second - first) == pytest.approx(0.4, rel=1e-15)
+    assert np.abs(scene.invariants().momentum).max() < 1e-16
+    reduced = scene.particles.mass.prod() / scene.particles.mass.sum()
+    assert scene.invariants().energy == pytest.approx(-reduced / 2.0, rel=4e-15)
+
+
+@pytest.mark.parametrize(
+    ("make", "argument"),
+    [
+        (lambda: vv.problems.kepler(e=1.0), "e"),
+        (lambda: vv.problems.kepler(mass_ratio=-1.0), "mass_ratio"),
+        (lambda: vv.problems.figure_eight(periods=0), "periods"),
+        (lambda: vv.problems.lagrange_triangle(masses=(1.0, 1.0)), "masses"),
+        (lambda: vv.datasets.outer_solar_system("hairer"), "variant"),  # type: ignore[arg-type]
+        (lambda: vv.problems.kepler().error(vv.problems.pleiades().scene), "final"),
+    ],
+)
+def test_refusals_by_name(make: object, argument: str) -> None:
+    with pytest.raises(vv.InvalidInput) as caught:
+        make()  # type: ignore[operator]
+    assert caught.value.argument == argument

@@ -1,0 +1,118 @@
+"""Saved runs: everything comes back, whole files only, every earlier version loads."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import visviva as vv
+from visviva import io
+
+GOLDEN = Path(__file__).parent.parent / "reference" / "trajectory_v1.npz"
+
+
+def scene() -> vv.Scene:
+    return vv.Scene(
+        vv.Particles([1.0, 0.5], [[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 1.2, 0]]),
+        vv.Gravity(G=1.1, softening=0.01),
+        vv.UniformField([0.1, 0.0, -0.2]),
+        vv.CentralField(vv.potentials.Yukawa(k=0.1, length=3.0), center=[0.0, 0.0, 5.0]),
+        t0=1.5,
+    )
+
+
+def test_a_trajectory_comes_back_whole(tmp_path: Path) -> None:
+    out = scene().run(t=[1.5, 1.75, 2.0], record=("position", "velocity", "energy"))
+    out.save(tmp_path / "run.npz")
+    again = vv.load(tmp_path / "run.npz")
+    assert isinstance(again, vv.Trajectory)
+    assert again.scene == out.scene
+    assert again.final == out.final
+    assert (again.stats, again.plan, again.status) == (out.stats, out.plan, out.status)
+    assert again.recorded == out.recorded
+    for name in ("t", "position", "velocity", "energy", "angular_momentum"):
+        assert np.array_equal(getattr(again, name), getattr(out, name))
+    assert again.conservation() == out.conservation()
+
+
+def test_an_ensemble_comes_back_whole(tmp_path: Path) -> None:
+    start = scene()
+    out = start.ensemble(velocity=start.particles.velocity * np.array([1.0, 0.9, 0.8])[:, None, None]).run(t=2.0)
+    out.save(tmp_path / "ensemble.npz")
+    again = vv.load(tmp_path / "ensemble.npz")
+    assert isinstance(again, vv.EnsembleTrajectory)
+    assert np.array_equal(again.position, out.position)
+    assert np.array_equal(again.status, out.status)
+    assert again.stats == out.stats
+    assert again[2].final == out[2].final
+    assert all(np.array_equal(again.per_trajectory[name], value) for name, value in out.per_trajectory.items())
+
+
+def test_the_path_is_used_as_given(tmp_path: Path) -> None:
+    out = scene().run(t=2.0)
+    out.save(str(tmp_path / "no_ending"))
+    assert [path.name for path in tmp_path.iterdir()] == ["no_ending"]
+    assert isinstance(vv.load(tmp_path / "no_ending"), vv.Trajectory)
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "run.npz"
+    scene().run(t=2.0).save(path)
+    before = path.read_bytes()
+
+    def full_disk(file: object, **_: object) -> None:
+        file.write(b"half")  # type: ignore[attr-defined]
+        raise OSError("no space left")
+
+    monkeypatch.setattr(io.np, "savez", full_disk)
+    with pytest.raises(OSError, match="no space left"):
+        scene().run(t=3.0).save(path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["run.npz"]
+
+
+def rewrite(path: Path, **changes: object) -> Path:
+    """The same file with another header."""
+    with np.load(path) as file:
+        arrays = dict(file)
+    header = json.loads(arrays.pop("header").tobytes()) | changes
+    np.savez(path, header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
+    return path
+
+
+def test_other_files_are_refused_by_name(tmp_path: Path) -> None:
+    good = tmp_path / "run.npz"
+    scene().run(t=2.0).save(good)
+    text, plain, cut, pickled = (tmp_path / name for name in ("text", "plain.npz", "cut.npz", "pickled.npz"))
+    text.write_text("not an archive")
+    np.savez(plain, x=np.zeros(3))
+    cut.write_bytes(good.read_bytes()[:300])
+    np.savez(pickled, header=np.array([{"format": "visviva run"}], dtype=object))
+    for path in (text, plain, cut, pickled):
+        with pytest.raises(vv.InvalidInput, match=path.name) as caught:
+            vv.load(path)
+        assert caught.value.argument == "path"
+    with pytest.raises(vv.InvalidInput, match="newer"):
+        vv.load(rewrite(good, version=io.VERSION + 1))
+    with pytest.raises(vv.InvalidInput, match="something else"):
+        vv.load(rewrite(good, format="something else"))
+    with pytest.raises(vv.InvalidInput, match="'magnet'"):
+        vv.load(rewrite(good, format=io.FORMAT, version=1, forces=[{"kind": "magnet"}]))
+    with pytest.raises(FileNotFoundError):
+        vv.load(tmp_path / "missing.npz")
+
+
+def test_the_file_of_version_1_loads() -> None:
+    """Written once by version 0.1.0 and never again: this file must load in every later version."""
+    out = vv.load(GOLDEN)
+    assert isinstance(out, vv.Trajectory)
+    assert out.scene == scene()
+    assert out.status is vv.Status.OK
+    assert out.position.shape == (5, 2, 3)
+    assert out.energy.shape == (5,)
+    assert out.stats.method == "dop853"
+    assert out.final.t0 == 3.5
+    # The numbers in the file are those of a run today, to the tolerance 1e-12 of both.
+    today = scene().run(t=out.t, method="dop853", rtol=1e-12)
+    assert np.allclose(today.position, out.position, rtol=0, atol=1e-10)
