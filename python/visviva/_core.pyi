@@ -42,6 +42,7 @@ def plan(
     max_step: float | None,
     max_steps: int | None,
     record: list[str],
+    ensemble: bool,
 ) -> dict[str, Any]: ...
 def conserved(
     *,

@@ -65,7 +65,7 @@ def _bar() -> Iterator[Report]:
     # Made with the first report, so that a run that is refused shows nothing.
     bar = None
 
-    def report(done: int, total: int) -> None:
+    def show(done: int, total: int) -> None:
         nonlocal bar
         if bar is None:
             bar = tqdm(total=total)
@@ -73,7 +73,7 @@ def _bar() -> Iterator[Report]:
         bar.update(done - bar.n)
 
     try:
-        yield report
+        yield show
     finally:
         if bar is not None:
             bar.close()

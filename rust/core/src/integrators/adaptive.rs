@@ -198,12 +198,15 @@ impl<S: Element> Adaptive<S> {
         self.stages.evaluate_at(end_stage, state, guess * direction, &first, dynamics, ticker)?;
         let change = [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
         let curvature2 = self.scaled_size(y, S::one() / guess, &change, reduce);
-        let largest = slope2.max(curvature2);
-        // (0.01 / size)^(1/8), the size being the larger of |f| and |df/dt|.
-        let by_order = self.root(S::splat(1e-4) / largest);
+        // tau · (0.01 / size)^(1/8), the size being the larger of |f| and |df/dt| over the time in which y
+        // changes by itself: the unit of time must not matter, as the copies of an ensemble share one.
+        let tau = S::splat(100.0) * guess;
+        let tau2 = tau * tau;
+        let largest = (slope2 * tau2).max(curvature2 * tau2 * tau2);
+        let by_order = tau * self.root(S::splat(1e-4) / largest);
         let by_order =
             S::select(largest.less_equal(S::splat(1e-30)), guess.max(S::splat(1e-3) * span), by_order);
-        let h = (S::splat(100.0) * guess).min(by_order).min(span).min(self.max_step);
+        let h = tau.min(by_order).min(span).min(self.max_step);
         clock.h = S::select(fresh, h * direction, clock.h);
         Ok(())
     }
@@ -259,7 +262,9 @@ impl<S: Element> Adaptive<S> {
         clock.error = S::select(accepted, S::select(last, S::zero(), error), clock.error);
         let finished = accepted.and(last);
         let smallest = S::splat(SMALLEST_STEP) * clock.elapsed.abs().max(clock.end.abs() * S::splat(1e-3));
-        let stuck = clock.h.abs().less_equal(smallest).and(running).and(finished.not());
+        // A short first step that grows is not stuck.
+        let shrinking = clock.h.abs().less_equal(h.abs());
+        let stuck = clock.h.abs().less_equal(smallest).and(shrinking).and(running).and(finished.not());
         if accepted.any() {
             let end_stage = self.end_stage();
             let next =
