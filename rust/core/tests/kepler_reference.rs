@@ -44,7 +44,10 @@ fn states_agree_with_150_digits() {
             row[k] = row[k].max(errors[k]);
             row[2 + k] = row[2 + k].max(errors[k] / condition);
             if errors[k] > LIMIT {
-                println!("{} k={k} {:.1} cond {condition:.2e} mu {} r {} v {} t {time:e}", row[0], errors[k], case["mu"], case["position"], case["velocity"]);
+                println!(
+                    "{} k={k} {:.1} cond {condition:.2e} mu {} r {} v {} t {time:e}",
+                    row[0], errors[k], case["mu"], case["position"], case["velocity"]
+                );
             }
         }
         count += 1;

@@ -89,8 +89,7 @@ impl Conic {
         let towards = [0, 1, 2].map(|i| cosine * out[i] - sine * round[i]);
         let along = [0, 1, 2].map(|i| sine * out[i] + cosine * round[i]);
 
-        let pericentre =
-            if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
+        let pericentre = if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
         let bound = beta.to_f64() > 0.0;
         let apocentre = if bound { (strength + zeta) / beta } else { zero };
         let rate = beta.abs().sqrt();
@@ -121,7 +120,11 @@ impl Conic {
             beta,
             zeta,
             angular_momentum: h,
-            normal: if h.to_f64() > 0.0 { rounded(&normal.map(|component| component / h)) } else { Vector3::zeros() },
+            normal: if h.to_f64() > 0.0 {
+                rounded(&normal.map(|component| component / h))
+            } else {
+                Vector3::zeros()
+            },
             pericentre,
             apocentre: apocentre.to_f64(),
             towards: rounded(&towards),
@@ -158,7 +161,8 @@ impl Conic {
         }
         let backwards = since.to_f64() < 0.0;
         let (high, low) = since.abs().parts();
-        let reached = if at_apocentre { self.after_apocentre(high, low) } else { self.after_pericentre(high, low) };
+        let reached =
+            if at_apocentre { self.after_apocentre(high, low) } else { self.after_pericentre(high, low) };
         self.place(&reached, at_apocentre, backwards)
     }
 
@@ -168,7 +172,8 @@ impl Conic {
             // The instant of a collision: the mean of the velocities just before and after.
             return (Vector3::zeros(), Vector3::zeros());
         }
-        let (apsis, side) = if at_apocentre { (self.apocentre, -1.0) } else { (self.pericentre.to_f64(), 1.0) };
+        let (apsis, side) =
+            if at_apocentre { (self.apocentre, -1.0) } else { (self.pericentre.to_f64(), 1.0) };
         let h = side * self.angular_momentum.to_f64();
         let g1 = if backwards { -functions.g1 } else { functions.g1 };
         let x = side * (apsis - self.mu * functions.g2);
@@ -227,7 +232,11 @@ impl Conic {
 }
 
 /// The s with G₁(s) = g1 and G₀(s) = g0 ≥ 0, and the functions there.
-fn invert(beta: DoubleDouble, g1: DoubleDouble, g0: DoubleDouble) -> (UniversalFunctions<DoubleDouble>, DoubleDouble) {
+fn invert(
+    beta: DoubleDouble,
+    g1: DoubleDouble,
+    g0: DoubleDouble,
+) -> (UniversalFunctions<DoubleDouble>, DoubleDouble) {
     let b = beta.to_f64();
     let (base, delta) = if g0.to_f64() <= 2.0 {
         // Half the angle: u = G₁/G₀ at σ = s/2. F(σ) = G₁ − u G₀ has F'' = −βF, so Newton's step is of third order.

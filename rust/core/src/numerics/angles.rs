@@ -33,7 +33,9 @@ fn sin_cos_reduced(x: f64, low: f64) -> (f64, f64) {
     let sine = x + (x * z * (z * odd - 1.0 / 6.0) + low * (1.0 - 0.5 * z));
     // 1 - x²/2 + …: even terms from 1/18! down to 1/4!; what 1 - x²/2 rounds away is added back.
     let mut even = -1.0 / 6_402_373_705_728_000.0;
-    for factorial in [20_922_789_888_000.0, -87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0] {
+    for factorial in
+        [20_922_789_888_000.0, -87_178_291_200.0, 479_001_600.0, -3_628_800.0, 40_320.0, -720.0, 24.0]
+    {
         even = even * z + 1.0 / factorial;
     }
     let half = 0.5 * z;
