@@ -42,7 +42,6 @@ def plan(
     max_step: float | None,
     max_steps: int | None,
     record: list[str],
-    ensemble: bool,
 ) -> dict[str, Any]: ...
 def conserved(
     *,

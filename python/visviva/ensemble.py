@@ -74,7 +74,7 @@ class EnsembleScene:
             array.flags.writeable = False
         self.scene = scene
         self.mass, self.position, self.velocity = full["mass"], full["position"], full["velocity"]
-        self._keywords: dict[str, Any] = {**scene._keywords, **full, "ensemble": True}
+        self._keywords: dict[str, Any] = {**scene._keywords, **full}
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -132,7 +132,7 @@ class EnsembleScene:
         ((2, 2, 2, 3), (2, 2, 3))
         """
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return execute(self, request, threads, progress, EnsembleTrajectory)
+        return execute(self, request, threads, progress, ensemble=True, make=EnsembleTrajectory)
 
     def plan(
         self,

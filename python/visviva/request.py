@@ -61,22 +61,24 @@ def execute(
     request: dict[str, Any],
     threads: int | None,
     progress: Progress,
+    *,
+    ensemble: bool,
     make: Callable[[Any, dict[str, Any]], _Result],
 ) -> _Result:
     """Run the request and make its result, or raise the core's error with the result attached."""
     count = None if threads is None else _count("threads", threads)
     if progress is False:
-        result = _core.run(**request, threads=count, progress=None)
+        result = _core.run(**request, threads=count, progress=None, ensemble=ensemble)
     else:
         from visviva._progress import callback
 
         with callback(progress) as report:
-            result = _core.run(**request, threads=count, progress=report)
+            result = _core.run(**request, threads=count, progress=report, ensemble=ensemble)
     made = make(scene, result)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)
-    if request["ensemble"] and (result["status"] == _INTERRUPTED).any():
+    if ensemble and (result["status"] == _INTERRUPTED).any():
         raise Interrupted("the ensemble was interrupted", made)
     return made
 

@@ -85,7 +85,6 @@ class Scene:
             "velocity": particles.velocity[None],
             "forces": [force._to_core() for force in forces],
             "t0": t0,
-            "ensemble": False,
         }
         object.__setattr__(self, "_keywords", prepared)
 
@@ -173,7 +172,7 @@ class Scene:
         ((3, 3, 3), 200)
         """
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return execute(self, request, threads, progress, Trajectory)
+        return execute(self, request, threads, progress, ensemble=False, make=Trajectory)
 
     def plan(
         self,
