@@ -8,7 +8,7 @@
 //! event (see [`histogram`](super::histogram)).
 
 use super::histogram::{Counts, Edges, Steps};
-use super::kinematics::{Collision, cm_angle, recoil_angle};
+use super::kinematics::{Collision, HalfAngle};
 use super::rutherford::half_distance;
 use crate::numerics::philox::{DRAW_BITS, DRAWS, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
@@ -99,13 +99,13 @@ impl Beam {
     /// The value of a quantity when b² is the fraction `share` of b_max².
     pub fn value(&self, quantity: Quantity, share: f64) -> f64 {
         let root = share.sqrt();
-        let t = self.reach * root;
+        let half = HalfAngle::from_cotangent(self.reach * root);
         match quantity {
-            Quantity::CmAngle => cm_angle(t),
-            Quantity::LabAngle => self.collision.lab_angle(t),
-            Quantity::RecoilAngle => recoil_angle(t),
-            Quantity::Energy => self.energy * self.collision.kept(t),
-            Quantity::RecoilEnergy => self.energy * self.collision.transferred(t),
+            Quantity::CmAngle => half.cm_angle(),
+            Quantity::LabAngle => self.collision.lab_angle(half),
+            Quantity::RecoilAngle => half.recoil_angle(),
+            Quantity::Energy => self.energy * self.collision.kept(half),
+            Quantity::RecoilEnergy => self.energy * self.collision.transferred(half),
             Quantity::ImpactParameter => self.b_max * root,
         }
     }
@@ -118,7 +118,9 @@ impl Beam {
             Quantity::CmAngle | Quantity::LabAngle => PI,
             Quantity::RecoilAngle => FRAC_PI_2,
             Quantity::Energy => self.energy,
-            Quantity::RecoilEnergy => self.energy * self.collision.transferred(0.0),
+            Quantity::RecoilEnergy => {
+                self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0))
+            }
             Quantity::ImpactParameter => self.b_max,
         };
         Edges::uniform(bins, 0.0, high)

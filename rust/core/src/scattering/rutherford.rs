@@ -3,8 +3,8 @@
 //! The one idea: b = κ cot(ψ/2) with κ = k/2E, E the energy of relative motion ½μu².
 //! Source: Rutherford, Phil. Mag. 21 (1911) 669; Landau & Lifshitz, *Mechanics*, §19.
 
-use super::kinematics::Collision;
-use crate::numerics::elementary::{atan2, sin_cos};
+use super::kinematics::{Collision, HalfAngle};
+use crate::numerics::angles::{atan2, sin_cos};
 
 /// κ = k/2E: half the distance of closest approach of a repulsive head-on collision, signed like k.
 pub fn half_distance(k: f64, energy: f64) -> f64 {
@@ -19,7 +19,7 @@ pub fn deflection(half_distance: f64, impact_parameter: f64) -> f64 {
 
 /// The impact parameter of a scattering angle ψ in (0, π].
 pub fn impact_parameter(half_distance: f64, cm_angle: f64) -> f64 {
-    half_distance.abs() * super::kinematics::half_cotangent(cm_angle)
+    half_distance.abs() * HalfAngle::of(cm_angle).cotangent()
 }
 
 /// The distance of closest approach κ + √(κ² + b²), without cancellation for attraction.
