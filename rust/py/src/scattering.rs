@@ -8,7 +8,7 @@ use pyo3::prelude::*;
 use visviva_core::parallel::thread_count;
 use visviva_core::scattering::histogram::{Counts, Edges};
 use visviva_core::scattering::kinematics::{Collision, HalfAngle, solid_angle};
-use visviva_core::scattering::monte_carlo::{self, Beam, Quantity};
+use visviva_core::scattering::monte_carlo::{Beam, Quantity, monte_carlo as simulate};
 use visviva_core::scattering::rutherford;
 use visviva_core::{Error, Result};
 
@@ -51,7 +51,7 @@ pub(crate) fn monte_carlo<'py>(
         asked.push((quantity, edges.map_err(refused)?));
     }
     let counts = compute(py, n_events, progress.as_ref(), |ticker| {
-        monte_carlo::monte_carlo(&beam, &asked, seed, first_event, n_events, threads, ticker)
+        simulate(&beam, &asked, seed, first_event, n_events, threads, ticker)
     })?
     .whole(py)?;
     let tally = |(((name, _), (_, edges)), counts): (((String, Bins<'py>), (Quantity, Edges)), Counts)| {
