@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import re
 import sys
+from itertools import pairwise
 from pathlib import Path
 
 from mpmath import cbrt, mp, mpf
@@ -41,7 +42,7 @@ def composition(weights: Row) -> Table:
     """Kick-drift-kick leapfrogs of these lengths, neighbouring half kicks merged."""
     padded = [mpf(0), *weights, mpf(0)]
     return {
-        "KICKS": [(left + right) / 2 for left, right in zip(padded, padded[1:])],
+        "KICKS": [(left + right) / 2 for left, right in pairwise(padded)],
         "DRIFTS": weights,
     }
 
@@ -120,7 +121,7 @@ def main() -> int:
         path = INTEGRATORS / f"{name}.rs"
         before = path.read_text(encoding="utf-8")
         block = rust(compute())
-        after, found = BLOCK.subn(lambda match: match[1] + block + match[2], before)
+        after, found = BLOCK.subn(lambda match, block=block: match[1] + block + match[2], before)
         if found != 1:
             raise SystemExit(f"{path}: expected one block of coefficients, found {found}")
         if after == before:

@@ -7,12 +7,15 @@ satisfies: first the step and its estimate of order 5, then the continuous exten
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 from mpmath import mp, mpf, sqrt
 
 import published_coefficients as published
 from polish import Row, Tree, density, polish, rational, stage_weights, trees_to_order, vertices
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 STAGES = 12
 EXTENDED = 16
@@ -77,10 +80,7 @@ class Table:
         b, e5 = self.row("a", 12, STAGES), self.row("e5", 0, STAGES)
         weights = stage_weights(a, trees)
         residual = [self.stage_residual(i, q) for i, q in stages]
-        residual += [
-            mp.fdot(b, column) - b[j] * (1 - self.c[j])
-            for j, column in enumerate(zip(*a, strict=True))
-        ]
+        residual += [mp.fdot(b, column) - b[j] * (1 - self.c[j]) for j, column in enumerate(zip(*a, strict=True))]
         residual += [mp.fdot(b, weights[tree]) - mpf(1) / density(tree) for tree in trees]
         residual += [mp.fdot(e5, weights[tree]) for tree in trees if vertices(tree) <= 5]
         return residual
@@ -104,9 +104,7 @@ class Table:
             self.entries |= dict(zip(free, values, strict=True))
             return conditions()
 
-        self.entries |= dict(
-            zip(free, polish(residual, [self.entries[key] for key in free]), strict=True)
-        )
+        self.entries |= dict(zip(free, polish(residual, [self.entries[key] for key in free]), strict=True))
 
 
 def dop853() -> dict[str, Row | list[Row]]:

@@ -16,7 +16,7 @@ import math
 from pathlib import Path
 from typing import Any
 
-from mpmath import asinh, atan2, cbrt, cosh, floor, mp, mpf, pi, sin, cos, sinh, sqrt
+from mpmath import asinh, atan2, cbrt, cos, cosh, floor, mp, mpf, pi, sin, sinh, sqrt
 
 mp.dps = 180
 ROOT = Path(__file__).resolve().parent.parent
@@ -110,7 +110,11 @@ def state(mu: Any, r: Vector, v: Vector, t: Any) -> tuple[Vector, Vector]:
         sign = -1 if flight < 0 else 1
         target = abs(flight)
         top = cbrt(6 * target / mu) * 2 + 1
-        s = sign * root(lambda s: (q * s + mu * s**3 / 6 - target, q + mu * s**2 / 2), mpf(0), top) if flight else mpf(0)
+        s = (
+            sign * root(lambda s: (q * s + mu * s**3 / 6 - target, q + mu * s**2 / 2), mpf(0), top)
+            if flight
+            else mpf(0)
+        )
         radius = q + mu * s**2 / 2
         x, y, u, z = q - mu * s**2 / 2, h * s, -mu * s / radius, h / radius
     position = [x * p + y * q for p, q in zip(towards, along, strict=True)]
@@ -174,14 +178,23 @@ def start(mu: float, e: float, q: float, anomaly: float) -> tuple[list[float], l
 def grid() -> list[dict[str, Any]]:
     cases = []
     fractions = [1e-20, 1e-6, 0.003, 0.1, 0.37, 0.5, 0.73, 1.0, -0.25, -1.3, 1000.3, 1e6 + 0.2, 1e9 + 0.7]
-    for label, e in [("0", 0.0), ("1e-8", 1e-8), ("0.1", 0.1), ("0.5", 0.5), ("0.9", 0.9), ("0.99", 0.99),
-                     ("0.999999", 0.999999), ("1-1e-12", 1 - 1e-12), ("1-1e-15", 1 - 1e-15)]:
+    for label, e in [
+        ("0", 0.0),
+        ("1e-8", 1e-8),
+        ("0.1", 0.1),
+        ("0.5", 0.5),
+        ("0.9", 0.9),
+        ("0.99", 0.99),
+        ("0.999999", 0.999999),
+        ("1-1e-12", 1 - 1e-12),
+        ("1-1e-15", 1 - 1e-15),
+    ]:
         mu, a = 1.3, 1.7
         period = 2 * math.pi * math.sqrt(a**3 / mu)
         for k, anomaly in enumerate([0.0, 1.0, -2.5, math.pi]):
             r, v = start(mu, e, a * (1 - e), anomaly)
-            for fraction in fractions[k % 2 :: 2] if e not in (0.5, 0.999999, 1 - 1e-12) else fractions:
-                cases.append(case(f"ellipse e={label}", mu, r, v, fraction * period))
+            chosen = fractions if e in (0.5, 0.999999, 1 - 1e-12) else fractions[k % 2 :: 2]
+            cases.extend(case(f"ellipse e={label}", mu, r, v, fraction * period) for fraction in chosen)
     spans = [1e-20, 1e-6, 0.01, 0.3, 1.0, 10.0, -3.0, 1e3, -1e6, 1e12]
     for label, e in [("1+1e-12", 1 + 1e-12), ("1.5", 1.5), ("10", 10.0), ("1e6", 1e6)]:
         mu, q = 0.7, 1.1
@@ -197,9 +210,13 @@ def grid() -> list[dict[str, Any]]:
         cases += [case("radial bound", 1.0, [0.5, 1.0, 1.0], v, span) for span in [*spans[:8], 0.7, 1.6, -2.2, 1e6]]
     for v in ([1.0, 2.0, 2.0], [-1.0, -2.0, -2.0]):
         cases += [case("radial unbound", 1.0, [0.5, 1.0, 1.0], v, span) for span in [*spans, 0.4, -0.4, -0.6]]
-    for mu, r, v in [(-1.0, [0.5, 1.0, 1.0], [0.0, 0.0, 0.0]), (-1.0, [3.0, 0.1, -0.2], [-1.0, 0.25, 0.5]),
-                     (-2.5, [3.0, 6.0, 6.0], [-1.0, -2.0, -2.0]), (-1e-6, [1.0, 0.3, 0.2], [-1.0, 0.1, 0.7]),
-                     (-1.0, [30.0, 1e-9, 0.0], [-0.5, 0.0, 0.0])]:
+    for mu, r, v in [
+        (-1.0, [0.5, 1.0, 1.0], [0.0, 0.0, 0.0]),
+        (-1.0, [3.0, 0.1, -0.2], [-1.0, 0.25, 0.5]),
+        (-2.5, [3.0, 6.0, 6.0], [-1.0, -2.0, -2.0]),
+        (-1e-6, [1.0, 0.3, 0.2], [-1.0, 0.1, 0.7]),
+        (-1.0, [30.0, 1e-9, 0.0], [-0.5, 0.0, 0.0]),
+    ]:
         cases += [case("repulsive", mu, r, v, span) for span in [*spans, 70.0, 60.0]]
     for mu, r, v, t in [
         (1.5, [1.25, 0.0, 0.0], [0.25, 0.875, 0.0], 3.0),
@@ -212,8 +229,10 @@ def grid() -> list[dict[str, Any]]:
         cases += [case("free", 0.0, [1.0, 0.0, -2.0], v, span) for span in (1e-20, 1.0, -1e6)]
     # Near-radial: the pericentre is 1e-12 … 1e-24 of the distance.
     for transverse in (1e-6, 1e-9, 1e-12):
-        cases += [case("near-radial", 1.0, [2.0, 0.0, 0.0], [0.0, transverse, 0.0], t)
-                  for t in (0.1, 1.0, 2.0, 3.0, 3.14, 3.1415926, 3.141592653589793, 3.5, 6.0, 6.283185307179586, 1e5)]
+        cases += [
+            case("near-radial", 1.0, [2.0, 0.0, 0.0], [0.0, transverse, 0.0], t)
+            for t in (0.1, 1.0, 2.0, 3.0, 3.14, 3.1415926, 3.141592653589793, 3.5, 6.0, 6.283185307179586, 1e5)
+        ]
     return cases
 
 

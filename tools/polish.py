@@ -137,9 +137,7 @@ def _independent(rows: list[Row]) -> list[int]:
     left = dict(enumerate(map(list, rows)))
     chosen: list[int] = []
     while left:
-        size, index, column = max(
-            (abs(entry), i, j) for i, row in left.items() for j, entry in enumerate(row)
-        )
+        size, index, column = max((abs(entry), i, j) for i, row in left.items() for j, entry in enumerate(row))
         if size < mpf("1e-12"):
             if size > mpf("1e-20"):
                 raise ArithmeticError(f"the rank is not clear: pivot {mp.nstr(size, 3)}")

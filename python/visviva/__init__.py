@@ -31,7 +31,7 @@ _HOME = {
     "Interrupted": "errors",
     "InvalidInput": "errors",
     "Invariants": "invariants",
-    "Method": "methods",
+    "Method": "integrators",
     "Particles": "particles",
     "Plan": "plan",
     "Scene": "scene",
@@ -39,7 +39,7 @@ _HOME = {
     "Trajectory": "trajectory",
     "UniformField": "forces",
     "load": "io",
-    "methods": "methods",
+    "methods": "integrators",
 }
 _ROOMS = ("datasets", "errors", "forces", "potentials", "problems", "scattering")
 
@@ -86,9 +86,9 @@ if TYPE_CHECKING:
         InvalidInput,
     )
     from visviva.forces import CentralField, Gravity, UniformField
+    from visviva.integrators import Method, methods
     from visviva.invariants import Invariants
     from visviva.io import load
-    from visviva.methods import Method, methods
     from visviva.particles import Particles
     from visviva.plan import Plan
     from visviva.scene import Scene

@@ -62,22 +62,35 @@ def _bar() -> Iterator[Report]:
         with _line() as report:
             yield report
         return
-    with tqdm(total=0) as bar:
+    # Made with the first report, so that a run that is refused shows nothing.
+    bar = None
 
-        def report(done: int, total: int) -> None:
-            bar.total = total
-            bar.update(done - bar.n)
+    def show(done: int, total: int) -> None:
+        nonlocal bar
+        if bar is None:
+            bar = tqdm(total=total)
+        bar.total = total
+        bar.update(done - bar.n)
 
-        yield report
+    try:
+        yield show
+    finally:
+        if bar is not None:
+            bar.close()
 
 
 @contextmanager
 def _line() -> Iterator[Report]:
+    begun = False
+
     def report(done: int, total: int) -> None:
+        nonlocal begun
+        begun = True
         share = f"{100 * done // total} %" if total else f"{done}"
         print(f"\rvisviva: {share}", end="", file=sys.stderr, flush=True)
 
     try:
         yield report
     finally:
-        print(file=sys.stderr)
+        if begun:
+            print(file=sys.stderr)

@@ -79,7 +79,7 @@ def _demo(options: argparse.Namespace) -> None:
 
 
 def _methods(_: argparse.Namespace) -> None:
-    from visviva.methods import methods
+    from visviva.integrators import methods
 
     rows = methods()
     width = max(len(row.name) for row in rows)

@@ -1,12 +1,12 @@
 """The laws of mechanics over random closed scenes, for every method there is.
 
 Scenes are softened, so that every method resolves them with the same step and a law is not drowned by a close
-encounter. Tolerances are multiples of what the worst of 500 examples showed, unless the line says otherwise.
+encounter. Tolerances are about four times the worst of 500 examples, which is noted beside them.
 """
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra import numpy as hnp
 from numpy.typing import NDArray
@@ -54,8 +54,9 @@ def distance(a: NDArray[np.float64], b: NDArray[np.float64]) -> float:
 def test_momentum_and_center_of_mass(method: vv.Method, scene: vv.Scene) -> None:
     """Linear invariants: every method keeps them to round-off."""
     table = run(scene, method).conservation()
-    assert table.momentum.max * table.momentum.scale < 1e-14
-    assert table.center_of_mass.max * table.center_of_mass.scale < 1e-14
+    # Worst: 9e-16 and 1.9e-15.
+    assert table.momentum.max * table.momentum.scale < 4e-15
+    assert table.center_of_mass.max * table.center_of_mass.scale < 8e-15
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
@@ -64,7 +65,8 @@ def test_momentum_and_center_of_mass(method: vv.Method, scene: vv.Scene) -> None
 def test_angular_momentum(method: vv.Method, scene: vv.Scene, about: NDArray[np.float64]) -> None:
     """A quadratic invariant: symplectic methods keep it to round-off, the others to their order."""
     drift = run(scene, method).conservation(about=about).angular_momentum
-    bound = 2e-14 if method.symplectic else 1e-11 if method.adaptive else 1e-5
+    # Worst: 2.0e-15 symplectic, 1.1e-11 adaptive, 3.5e-9 RK4.
+    bound = 8e-15 if method.symplectic else 4e-11 if method.adaptive else 1.5e-8
     assert drift.max * drift.scale < bound
 
 
@@ -72,15 +74,21 @@ def test_angular_momentum(method: vv.Method, scene: vv.Scene, about: NDArray[np.
 @given(scene=closed_scenes())
 @settings(max_examples=40)
 def test_energy_within_the_methods_own_bound(method: vv.Method, scene: vv.Scene) -> None:
-    """Adaptive: a hundred tolerances. Fixed steps: C hᵖ, of which halving the step must leave 2⁻ᵖ or round-off."""
+    """Adaptive: a few tolerances. Fixed steps: C hᵖ, and a symplectic method's error falls by 2ᵖ when h is halved."""
     drift = run(scene, method).conservation().energy
+    error = drift.max * drift.scale
     if method.adaptive:
-        assert drift.max * drift.scale < 1e-10
+        # Worst: 6.3e-12.
+        assert error < 2.5e-11
         return
     half = run(scene, method, dt=STEP / 2).conservation().energy
-    assert half.max * half.scale <= 1.5 * drift.max * drift.scale / 2.0**method.order + 1e-13
-    # The scenes are of size 2 with rates up to √(G M / softening³) ≈ 8, so h·rate ≤ 1/8.
-    assert drift.max * drift.scale < 10.0 * (1 / 8) ** method.order
+    error_of_half = half.max * half.scale
+    # Worst: 1.1e-3, 1.8e-7, 2.4e-6 and 4.9e-15, which is (2.2 h)², (1.3 h)⁴, (2.5 h)⁴ and round-off.
+    assert error < (3.5 * STEP) ** method.order + 1e-14
+    assert error_of_half < (3.5 * STEP / 2) ** method.order + 1e-14
+    if method.symplectic:
+        # Worst: 1.01.
+        assert error_of_half <= 1.05 * error / 2.0**method.order + 1e-14
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
@@ -92,8 +100,9 @@ def test_galilean_invariance(
     here, there = run(scene, method), run(scene.in_frame(velocity=velocity, origin=origin), method)
     back = there.position + origin + np.multiply.outer(there.t, velocity)[:, None]
     # The adaptive method chooses other steps in another frame: then its tolerance, not the rounding, tells.
-    assert distance(back, here.position) < (1e-10 if method.adaptive else 1e-13)
-    assert distance(there.velocity + velocity, here.velocity) < (1e-10 if method.adaptive else 1e-13)
+    # Worst: 3.1e-15, adaptive 1.2e-11.
+    assert distance(back, here.position) < (5e-11 if method.adaptive else 1.2e-14)
+    assert distance(there.velocity + velocity, here.velocity) < (5e-11 if method.adaptive else 1.2e-14)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
@@ -104,7 +113,8 @@ def test_rotational_invariance(method: vv.Method, scene: vv.Scene, axis: NDArray
     cross = np.cross(np.eye(3), axis)
     matrix = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
     here, there = run(scene, method), run(scene.rotated(matrix), method)
-    assert distance(here.position @ matrix.T, there.position) < (1e-10 if method.adaptive else 1e-13)
+    # Worst: 9e-16; adaptive 4e-15, but a step at the brink of rejection may tip, and then the tolerance tells.
+    assert distance(here.position @ matrix.T, there.position) < (5e-11 if method.adaptive else 4e-15)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
@@ -133,13 +143,14 @@ def test_units_of_powers_of_two_change_no_bit(method: vv.Method, scene: vv.Scene
 @given(scene=closed_scenes(), scales=st.tuples(*[st.floats(1e-3, 1e3)] * 3))
 @settings(max_examples=25)
 def test_any_units_will_do(method: vv.Method, scene: vv.Scene, scales: tuple[float, float, float]) -> None:
-    """The times here are on the grid of steps in both units only to rounding, hence the slack of one velocity · ε t."""
+    """Units that are no powers of two round every coordinate and constant once."""
     length, mass, time = scales
     at_zero = vv.Scene(scene.particles, *scene.forces)
     scaled = at_zero.rescaled(length=length, mass=mass, time=time)
     here = run(at_zero, method)
     there = scaled.run(t=here.t * time, **arguments(method, time))  # type: ignore[arg-type]
-    assert distance(here.position, there.position / length) < (1e-10 if method.adaptive else 1e-13)
+    # Worst: 7e-16; adaptive 6e-15, or the tolerance where a step tips.
+    assert distance(here.position, there.position / length) < (5e-11 if method.adaptive else 4e-15)
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)
@@ -148,7 +159,8 @@ def test_any_units_will_do(method: vv.Method, scene: vv.Scene, scales: tuple[flo
 def test_motion_reversed_retraces_its_path(method: vv.Method, scene: vv.Scene) -> None:
     there = run(scene, method).final.reversed()
     back = run(there, method).final
-    bound = 1e-13 if method.reversible else 1e-10 if method.adaptive else 1e-5
+    # Worst: 3.9e-16 reversible, 1.0e-12 adaptive, 2.8e-8 RK4.
+    bound = 2e-15 if method.reversible else 5e-12 if method.adaptive else 1.2e-7
     assert distance(back.particles.position, scene.particles.position) < bound
     assert distance(-back.particles.velocity, scene.particles.velocity) < bound
 
@@ -210,7 +222,11 @@ def test_two_bodies_closed_form_and_integration(
     closed = scene.run(t=end)
     assert closed.plan.closed_form
     assert closed.stats.steps == 0
-    integrated = scene.run(t=end, method="dop853", rtol=1e-13)
+    try:
+        integrated = scene.run(t=end, method="dop853", rtol=1e-13)
+    except vv.CloseEncounter:
+        # Head-on: only the closed form passes.
+        assume(False)
     # A grazing pericentre amplifies the tolerance; the energy says how close they came.
     relative = closed.velocity[:, 1] - closed.velocity[:, 0]
     amplification = 1.0 + float(np.abs(relative).max()) ** 4
