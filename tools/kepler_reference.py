@@ -1,6 +1,6 @@
-"""Write tests/reference/kepler.json: Kepler's problem to 150 digits, inputs taken as exact binary64 numbers.
+"""Write tests/reference/kepler.json: Kepler's problem to at least 60 of 180 digits, inputs taken as exact binary64 numbers.
 
-The method is deliberately not the library's: classical eccentric, hyperbolic and parabolic anomalies with 150
+The method is deliberately not the library's: classical eccentric, hyperbolic and parabolic anomalies with 180
 digits, so that their cancellations (near-parabolic, near-circular, radial) cost nothing that matters.
 Each expected number is a pair (high, low) of binary64 whose sum carries 31 digits. `condition` is the sum over
 the inputs of |relative change of the answer| / |relative change of the input|: how many ulps the rounding of
@@ -18,7 +18,7 @@ from typing import Any
 
 from mpmath import asinh, atan2, cbrt, cosh, floor, mp, mpf, pi, sin, cos, sinh, sqrt
 
-mp.dps = 150
+mp.dps = 180
 ROOT = Path(__file__).resolve().parent.parent
 Vector = list[Any]
 
@@ -51,7 +51,7 @@ def root(function: Any, low: Any, high: Any) -> Any:
             if not low <= s - change <= high:
                 break
             s -= change
-            if abs(change) <= abs(s) * mpf(10) ** (-mp.dps + 12):
+            if abs(change) <= abs(s) * mpf(10) ** -70:
                 return s
     raise ArithmeticError("no root")
 
@@ -192,7 +192,7 @@ def grid() -> list[dict[str, Any]]:
     # r = (2, 1, 2)·k has |r| = 3k and v² = 2 mu/r is a binary64 number: beta is exactly 0.
     for v in ([0.0, 0.0, 1.0], [0.6875, -0.5, 0.25], [2.0, 1.0, 2.0], [-1.0, 0.5, 0.25]):
         speed2 = sum(x * x for x in v)
-        cases += [case("parabola exact", 1.5 * speed2, [2.0, 1.0, 2.0], v, span) for span in [*spans, -0.4, 1e100]]
+        cases += [case("parabola exact", 1.5 * speed2, [2.0, 1.0, 2.0], v, span) for span in [*spans, -0.4, 1e15]]
     for v in ([0.0, 0.0, 0.0], [0.25, 0.5, 0.5], [-0.25, -0.5, -0.5]):
         cases += [case("radial bound", 1.0, [0.5, 1.0, 1.0], v, span) for span in [*spans[:8], 0.7, 1.6, -2.2, 1e6]]
     for v in ([1.0, 2.0, 2.0], [-1.0, -2.0, -2.0]):

@@ -64,4 +64,21 @@ def potentials() -> list[dict[str, Any]]: ...
 def potential(
     name: str, parameters: list[float], r: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
+def monte_carlo(
+    *,
+    k: float,
+    beam_energy: float,
+    masses: tuple[float, float],
+    b_max: float,
+    n_events: int,
+    seed: int,
+    first_event: int,
+    tallies: list[tuple[str, int | NDArray[np.float64]]],
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> list[tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int]]: ...
+def scattering_function(
+    name: str, half_distance: float, mass_ratio: float, values: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def solid_angles(edges: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def info() -> dict[str, Any]: ...

@@ -101,4 +101,6 @@ def _word(name: str, value: object) -> str:
 def _count(name: str, value: object) -> int:
     if isinstance(value, bool) or not isinstance(value, int | np.integer):
         raise InvalidInput(name, f"expected a whole number, got {value!r}")
+    if not -(2**63) <= value < 2**63:
+        raise InvalidInput(name, f"expected a whole number of at most 64 bits, got {value!r}")
     return int(value)

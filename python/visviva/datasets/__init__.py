@@ -1,6 +1,12 @@
 """Measured and published data, each with its source."""
 
-from visviva.datasets.geiger_marsden import geiger_marsden_1913
-from visviva.datasets.outer_solar_system import outer_solar_system
+from visviva.datasets.geiger_marsden import GeigerMarsden, RutherfordComparison, geiger_marsden_1913
+from visviva.datasets.outer_solar_system import OuterSolarSystem, outer_solar_system
 
-__all__ = ["geiger_marsden_1913", "outer_solar_system"]
+__all__ = [
+    "GeigerMarsden",
+    "OuterSolarSystem",
+    "RutherfordComparison",
+    "geiger_marsden_1913",
+    "outer_solar_system",
+]

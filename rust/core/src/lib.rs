@@ -12,6 +12,7 @@ pub mod numerics;
 pub mod parallel;
 pub mod potentials;
 pub mod registry;
+pub mod scattering;
 pub mod scene;
 
 pub use error::{Error, Result};

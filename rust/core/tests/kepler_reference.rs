@@ -6,6 +6,11 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use visviva_core::nbody::kepler::KeplerOrbit;
 
+/// Measured 5.8 units of 2^-53 (|Δv|/|v|, repulsive, head-on at the turning point); e ≤ 1 stays below 5.
+const ULPS: f64 = 7.0;
+/// What 106 bits leave of the conditioning: measured 0.2 units of 2^-106 (e = 1 − 1e-15 after 10^9 periods).
+const DOUBLE_DOUBLE: f64 = 0.4 * 0.5 * f64::EPSILON;
+
 fn vector(value: &Value) -> Vector3<f64> {
     Vector3::from_fn(|i, _| value[i].as_f64().unwrap())
 }
@@ -43,9 +48,8 @@ fn states_agree_with_150_digits() {
             assert!(errors[k].is_finite(), "{case}");
             row[k] = row[k].max(errors[k]);
             row[2 + k] = row[2 + k].max(errors[k] / condition);
-            if errors[k] > LIMIT {
-                println!("{} k={k} {:.1} cond {condition:.2e} mu {} r {} v {} t {time:e}", row[0], errors[k], case["mu"], case["position"], case["velocity"]);
-            }
+            let allowed = ULPS + DOUBLE_DOUBLE * condition;
+            assert!(errors[k] <= allowed, "error {} > {allowed}: {case}", errors[k]);
         }
         count += 1;
     }
@@ -53,9 +57,5 @@ fn states_agree_with_150_digits() {
     for (class, row) in &worst {
         println!("| {class} | {:.2} | {:.2} | {:.2} | {:.2} |", row[0], row[1], row[2], row[3]);
     }
-    let all = worst.values().fold(0.0f64, |m, row| m.max(row[0]).max(row[1]));
     assert!(count > 400, "the reference file holds only {count} cases");
-    assert!(all <= LIMIT, "worst error {all} units of 2^-53");
 }
-
-const LIMIT: f64 = 12.0;

@@ -9,6 +9,7 @@ mod errors;
 mod gate;
 mod info;
 mod registry;
+mod scattering;
 mod scene;
 
 use pyo3::prelude::*;
@@ -25,6 +26,8 @@ mod _core {
     use crate::info::info;
     #[pymodule_export]
     use crate::registry::{methods, potential, potentials};
+    #[pymodule_export]
+    use crate::scattering::{monte_carlo, scattering_function, solid_angles};
     #[pymodule_export]
     use crate::scene::{acceleration, conserved, plan, run};
 

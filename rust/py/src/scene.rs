@@ -137,9 +137,9 @@ fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py, PyDict>> 
     Ok(dict)
 }
 
-/// Plans a run without running it. It takes the same description as [`run`]; that of a batch has no other plan.
+/// Plans a run without running it.
 #[pyfunction]
-#[pyo3(signature = (*, mass, position, velocity, forces, t0, times, end_only, method, dt, rtol, atol, max_step, max_steps, record, ensemble))]
+#[pyo3(signature = (*, mass, position, velocity, forces, t0, times, end_only, method, dt, rtol, atol, max_step, max_steps, record))]
 pub(crate) fn plan<'py>(
     py: Python<'py>,
     mass: Array<'py>,
@@ -156,9 +156,7 @@ pub(crate) fn plan<'py>(
     max_step: Option<f64>,
     max_steps: Option<i64>,
     record: Vec<String>,
-    ensemble: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let _ = ensemble;
     let scene = scene(&mass, &position, &velocity, &forces, t0, true)?;
     let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let times = output_times(&times, end_only, t0)?;
@@ -196,8 +194,13 @@ pub(crate) fn run<'py>(
     let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, threads };
     let start = std::time::Instant::now();
     let outcome = compute(py, 0, progress.as_ref(), |ticker| run_scene(&scene, &request, ticker))?;
-    let (output, _) = outcome.partial(py)?;
-    output_dict(py, &scene, &request, output, start.elapsed().as_secs_f64(), ensemble)
+    let (output, interrupted) = outcome.partial(py)?;
+    let dict = output_dict(py, &scene, &request, output, start.elapsed().as_secs_f64(), ensemble)?;
+    if interrupted {
+        // Also for a batch, and for a run that ended before it noticed: Ctrl-C is never swallowed.
+        dict.set_item("error", error_dict(py, &Error::Interrupted)?)?;
+    }
+    Ok(dict)
 }
 
 fn status(ending: &Ending) -> i8 {

@@ -191,19 +191,20 @@ impl<S: Element> Adaptive<S> {
         // With a zero derivative any step will do; the span is then the step.
         let slope2 = self.scaled_size(y, S::one(), &first, reduce);
         let span = (clock.end - clock.elapsed).abs();
-        let scale = S::one() / self.tolerance.rtol;
-        let guess = S::splat(0.01) * scale / slope2.sqrt();
-        let guess = S::select(slope2.less_equal(S::zero()), span, guess).min(span).min(self.max_step);
+        let longest = span.min(self.max_step);
+        let still = slope2.less_equal(S::zero());
+        // The time in which the state changes by its own size; a hundredth of it for the trial step.
+        let time = S::select(still, longest, S::one() / (self.tolerance.rtol * slope2.sqrt()));
+        let trial = (S::splat(0.01) * time).min(longest);
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
-        self.stages.evaluate_at(end_stage, state, guess * direction, &first, dynamics, ticker)?;
+        self.stages.evaluate_at(end_stage, state, trial * direction, &first, dynamics, ticker)?;
         let change = [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
-        let curvature2 = self.scaled_size(y, S::one() / guess, &change, reduce);
-        let largest = slope2.max(curvature2);
-        // (0.01 / size)^(1/8), the size being the larger of |f| and |df/dt|.
-        let by_order = self.root(S::splat(1e-4) / largest);
-        let by_order =
-            S::select(largest.less_equal(S::splat(1e-30)), guess.max(S::splat(1e-3) * span), by_order);
-        let h = (S::splat(100.0) * guess).min(by_order).min(span).min(self.max_step);
+        let curvature2 = self.scaled_size(y, time / trial, &change, reduce);
+        // Both sizes in units of that time, so that the choice does not depend on the unit of time.
+        let largest = (slope2 * time * time).max(curvature2 * time * time);
+        let by_order = time * self.root(S::splat(1e-4) / largest);
+        let by_order = S::select(largest.less_equal(S::zero()), longest, by_order);
+        let h = by_order.min(time).min(longest);
         clock.h = S::select(fresh, h * direction, clock.h);
         Ok(())
     }
@@ -258,7 +259,7 @@ impl<S: Element> Adaptive<S> {
         clock.elapsed = S::select(accepted, S::select(last, clock.end, elapsed), clock.elapsed);
         clock.error = S::select(accepted, S::select(last, S::zero(), error), clock.error);
         let finished = accepted.and(last);
-        let smallest = S::splat(SMALLEST_STEP) * clock.elapsed.abs().max(clock.end.abs() * S::splat(1e-3));
+        let smallest = (S::splat(SMALLEST_STEP) * clock.elapsed.abs()).max(S::splat(f64::MIN_POSITIVE));
         let stuck = clock.h.abs().less_equal(smallest).and(running).and(finished.not());
         if accepted.any() {
             let end_stage = self.end_stage();

@@ -4,9 +4,9 @@
 //! Everything that relates the given state to the apsis is found once, to about 31 digits, from the inputs taken
 //! as exact numbers. Attraction, repulsion, every eccentricity and L = 0 are the same formulas.
 
-use super::kepler_equation::{Anchor, Reached, solve};
+use super::kepler_equation::{Reached, after_apocentre, after_pericentre};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::{cbrt, ln};
+use crate::numerics::exponentials::ln;
 use crate::numerics::real::Real;
 use crate::numerics::stumpff::UniversalFunctions;
 use core::f64::consts::FRAC_PI_2;
@@ -30,7 +30,7 @@ fn rounded(a: &Triple) -> Vector3<f64> {
 /// The constants of one orbit with μ ≠ 0.
 #[derive(Clone, Debug)]
 pub(super) struct Conic {
-    mu: f64,
+    pub(super) mu: f64,
     /// 2μ/r − v², twice the binding energy per mass.
     pub(super) beta: DoubleDouble,
     /// |v×L − μr̂| = |μ| e.
@@ -39,20 +39,21 @@ pub(super) struct Conic {
     /// The direction of L; zero if L = 0.
     pub(super) normal: Vector3<f64>,
     pub(super) pericentre: DoubleDouble,
-    apocentre: f64,
+    pub(super) apocentre: f64,
     /// Towards the pericentre.
     pub(super) towards: Vector3<f64>,
     /// Along the velocity there.
     pub(super) along: Vector3<f64>,
     /// The epoch's time since the pericentre, or since the apocentre of an ellipse if that is nearer in E.
-    since_apsis: DoubleDouble,
-    from_apocentre: bool,
+    pub(super) since_apsis: DoubleDouble,
+    pub(super) from_apocentre: bool,
     /// Period of an ellipse.
     pub(super) period: Option<DoubleDouble>,
     /// Time from the pericentre to eccentric anomaly π/2.
     quarter: f64,
-    /// |β|^(−1/2).
-    inverse_rate: f64,
+    /// s and the true anomaly (cos, sin) of the epoch, s from the anchoring apsis.
+    pub(super) epoch: DoubleDouble,
+    pub(super) true_anomaly: (f64, f64),
 }
 
 impl Conic {
@@ -89,8 +90,7 @@ impl Conic {
         let towards = [0, 1, 2].map(|i| cosine * out[i] - sine * round[i]);
         let along = [0, 1, 2].map(|i| sine * out[i] + cosine * round[i]);
 
-        let pericentre =
-            if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
+        let pericentre = if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
         let bound = beta.to_f64() > 0.0;
         let apocentre = if bound { (strength + zeta) / beta } else { zero };
         let rate = beta.abs().sqrt();
@@ -121,7 +121,11 @@ impl Conic {
             beta,
             zeta,
             angular_momentum: h,
-            normal: if h.to_f64() > 0.0 { rounded(&normal.map(|component| component / h)) } else { Vector3::zeros() },
+            normal: if h.to_f64() > 0.0 {
+                rounded(&normal.map(|component| component / h))
+            } else {
+                Vector3::zeros()
+            },
             pericentre,
             apocentre: apocentre.to_f64(),
             towards: rounded(&towards),
@@ -130,7 +134,8 @@ impl Conic {
             from_apocentre,
             period,
             quarter,
-            inverse_rate: 1.0 / rate,
+            epoch: s,
+            true_anomaly: (cosine.to_f64(), sine.to_f64()),
         }
     }
 
@@ -139,8 +144,8 @@ impl Conic {
         let mut since = self.since_apsis + DoubleDouble::from(time);
         let mut at_apocentre = false;
         if let Some(period) = self.period {
-            // A time beyond 2^53 periods needs the reduction again; 31 digits end at 1e31 periods.
-            for _ in 0..4 {
+            // Each pass takes 52 bits off; the phase keeps its meaning up to 2^106 periods, its range always.
+            for _ in 0..32 {
                 let turns = (since.to_f64() / period.to_f64()).round();
                 if turns == 0.0 {
                     break;
@@ -158,17 +163,19 @@ impl Conic {
         }
         let backwards = since.to_f64() < 0.0;
         let (high, low) = since.abs().parts();
-        let reached = if at_apocentre { self.after_apocentre(high, low) } else { self.after_pericentre(high, low) };
+        let reached =
+            if at_apocentre { self.after_apocentre(high, low) } else { self.after_pericentre(high, low) };
         self.place(&reached, at_apocentre, backwards)
     }
 
     fn place(&self, reached: &Reached, at_apocentre: bool, backwards: bool) -> (Vector3<f64>, Vector3<f64>) {
-        let Reached { functions, r } = reached;
+        let Reached { functions, r, .. } = reached;
         if *r == 0.0 {
             // The instant of a collision: the mean of the velocities just before and after.
             return (Vector3::zeros(), Vector3::zeros());
         }
-        let (apsis, side) = if at_apocentre { (self.apocentre, -1.0) } else { (self.pericentre.to_f64(), 1.0) };
+        let (apsis, side) =
+            if at_apocentre { (self.apocentre, -1.0) } else { (self.pericentre.to_f64(), 1.0) };
         let h = side * self.angular_momentum.to_f64();
         let g1 = if backwards { -functions.g1 } else { functions.g1 };
         let x = side * (apsis - self.mu * functions.g2);
@@ -179,55 +186,21 @@ impl Conic {
     }
 
     fn after_apocentre(&self, high: f64, low: f64) -> Reached {
-        let (beta, zeta) = (self.beta.to_f64(), self.zeta.to_f64());
-        let anchor = Anchor { r: self.apocentre, eta: 0.0, zeta: -zeta };
-        // (Q s − ζ s³/6 = t): the linear solution, then one Newton step; within 3 % up to E = π/2.
-        let first = high / self.apocentre;
-        let bend = zeta * first * first;
-        let guess = first + first * bend / (6.0 * self.apocentre - 3.0 * bend);
-        solve(anchor, beta, (high, low), guess, 1.7 * self.inverse_rate)
+        after_apocentre(self.apocentre, self.zeta.to_f64(), self.beta.to_f64(), (high, low))
     }
 
     fn after_pericentre(&self, high: f64, low: f64) -> Reached {
-        let (beta, zeta, r) = (self.beta.to_f64(), self.zeta.to_f64(), self.pericentre.to_f64());
-        let anchor = Anchor { r, eta: 0.0, zeta };
-        if high == 0.0 {
-            let functions = UniversalFunctions { g0: 1.0, g1: 0.0, g2: 0.0, g3: 0.0 };
-            return Reached { functions, r };
-        }
-        // q s + ζ s³/6 = t by Cardano, without the cancellation: exact for the parabola.
-        let mut guess = if zeta > 1e-30 * r {
-            let p = 2.0 * r / zeta;
-            let k = 3.0 * (high / zeta);
-            let w = cbrt(k + (k * k + p * p * p).sqrt());
-            2.0 * k / (w * w + p + (p / w) * (p / w))
-        } else {
-            high / r
-        };
-        let mut upper = 1.7 * self.inverse_rate;
-        if beta <= 0.0 {
-            upper = 1.001 * guess;
-            if guess > 3.0 * self.inverse_rate {
-                // sinh H = (w³ t + μ H)/ζ: twice from H without the second term.
-                let rate = 1.0 / self.inverse_rate;
-                let flight = rate * rate * rate * high;
-                let mut h = 0.0;
-                for _ in 0..3 {
-                    let sine = (flight + self.mu * h) / zeta;
-                    h = if sine > 0.0 { ln(sine + (sine * sine + 1.0).sqrt()) } else { h };
-                }
-                let logarithmic = h * self.inverse_rate;
-                if logarithmic > 0.0 && logarithmic < guess {
-                    guess = logarithmic;
-                }
-            }
-        }
-        solve(anchor, beta, (high, low), guess, upper)
+        let (r, zeta, beta) = (self.pericentre.to_f64(), self.zeta.to_f64(), self.beta.to_f64());
+        after_pericentre(self.mu, r, zeta, beta, (high, low))
     }
 }
 
 /// The s with G₁(s) = g1 and G₀(s) = g0 ≥ 0, and the functions there.
-fn invert(beta: DoubleDouble, g1: DoubleDouble, g0: DoubleDouble) -> (UniversalFunctions<DoubleDouble>, DoubleDouble) {
+fn invert(
+    beta: DoubleDouble,
+    g1: DoubleDouble,
+    g0: DoubleDouble,
+) -> (UniversalFunctions<DoubleDouble>, DoubleDouble) {
     let b = beta.to_f64();
     let (base, delta) = if g0.to_f64() <= 2.0 {
         // Half the angle: u = G₁/G₀ at σ = s/2. F(σ) = G₁ − u G₀ has F'' = −βF, so Newton's step is of third order.

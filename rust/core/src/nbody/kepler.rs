@@ -16,7 +16,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::exponentials::{exponent, power_of_two, scale_by_power_of_two};
 use nalgebra::Vector3;
 
-/// Beyond this many dynamical times an unbound orbit is its asymptote.
+/// Beyond this many dynamical times a hyperbola is its asymptote.
 const FAR: f64 = 2.582_249_878_086_908_6e120; // 2^400
 
 /// An orbit about a fixed centre, ready to be asked for its state at any time.
@@ -34,10 +34,10 @@ pub struct KeplerOrbit {
     position: Vector3<f64>,
     velocity: Vector3<f64>,
     /// Exponents of the internal units of length and velocity.
-    length: i32,
-    speed: i32,
+    pub(super) length: i32,
+    pub(super) speed: i32,
     scaled: Scaled,
-    conic: Option<Conic>,
+    pub(super) conic: Option<Conic>,
 }
 
 /// The epoch in internal units, and how far from it the series about the epoch is used.
@@ -120,7 +120,7 @@ impl KeplerOrbit {
         let (position, velocity) = match &self.conic {
             None => (straight(&self.scaled.position, &self.scaled.velocity, time), self.scaled.velocity),
             Some(_) if time.abs() <= self.scaled.near => self.scaled.near_epoch(time),
-            Some(conic) if conic.period.is_none() && time.abs() > FAR => {
+            Some(conic) if conic.beta.to_f64() < 0.0 && time.abs() > FAR => {
                 let (position, velocity) = conic.state(FAR.copysign(time));
                 (position + velocity * (time - FAR.copysign(time)), velocity)
             }

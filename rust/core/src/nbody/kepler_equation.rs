@@ -5,6 +5,7 @@
 //! the rounding of s (which an exponential would magnify) never reaches the answer.
 //! Source: Stiefel & Scheifele (1971) §11; Danby, *Fundamentals of Celestial Mechanics* (1988) §6.6 (the step).
 
+use crate::numerics::exponentials::{cbrt, ln};
 use crate::numerics::stumpff::UniversalFunctions;
 
 /// The point from which time and s are counted.
@@ -22,11 +23,12 @@ pub(super) struct Anchor {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reached {
     pub(super) functions: UniversalFunctions<f64>,
+    pub(super) s: f64,
     /// The distance there.
     pub(super) r: f64,
 }
 
-/// Solve for the time `high + low` > 0 after the anchor; the root lies in (`lower`, `upper`), `guess` too.
+/// Solve for the time `high + low` > 0 after the anchor; the root and `guess` lie in (0, `upper`).
 ///
 /// Always ends: a step that leaves the bracket, and every step beyond the twentieth, halves it.
 pub(super) fn solve(
@@ -54,7 +56,11 @@ pub(super) fn solve(
         let square = delta * delta;
         if (square <= reach_squared * s * s && square * beta.abs() <= reach_squared) || steps >= 120 {
             let functions = if delta.is_finite() { g.shifted(beta, delta) } else { g };
-            return Reached { functions, r: r + (eta * functions.g1 + zeta * functions.g2) };
+            return Reached {
+                functions,
+                s: s + if delta.is_finite() { delta } else { 0.0 },
+                r: r + (eta * functions.g1 + zeta * functions.g2),
+            };
         }
         if residual > 0.0 {
             upper = s;
@@ -65,4 +71,55 @@ pub(super) fn solve(
         s = if next > lower && next < upper && steps < 20 { next } else { lower + 0.5 * (upper - lower) };
         steps += 1;
     }
+}
+
+/// Where an ellipse is at the time `high + low` ≥ 0 after its apocentre, up to eccentric anomaly π/2 from there.
+pub(super) fn after_apocentre(r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
+    if high == 0.0 {
+        return at_the_apsis(r);
+    }
+    // Q s − ζ s³/6 = t: the linear solution, then one Newton step; within 3 % up to E = π/2.
+    let first = high / r;
+    let bend = zeta * first * first;
+    let guess = first + first * bend / (6.0 * r - 3.0 * bend);
+    solve(Anchor { r, eta: 0.0, zeta: -zeta }, beta, (high, low), guess, 1.7 / beta.sqrt())
+}
+
+/// Where a conic is at the time `high + low` ≥ 0 after its pericentre (an ellipse: up to eccentric anomaly π/2).
+pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
+    if high == 0.0 {
+        return at_the_apsis(r);
+    }
+    // q s + ζ s³/6 = t by Cardano, without the cancellation: exact for the parabola.
+    let mut guess = if zeta > 1e-30 * r {
+        let p = 2.0 * r / zeta;
+        let k = 3.0 * (high / zeta);
+        // Beyond 1e100, p³ is nothing beside k², which would overflow.
+        let w = if k > 1e100 { cbrt(2.0 * k) } else { cbrt(k + (k * k + p * p * p).sqrt()) };
+        2.0 * k / (w * w + p + (p / w) * (p / w))
+    } else {
+        high / r
+    };
+    let rate = beta.abs().sqrt();
+    let mut upper = 1.7 / rate;
+    if beta <= 0.0 {
+        upper = 1.001 * guess;
+        if guess * rate > 3.0 {
+            // sinh H = (w³ t + μ H)/ζ, w = √−β: three times from H without the second term.
+            let flight = rate * rate * rate * high;
+            let mut h = 0.0;
+            for _ in 0..3 {
+                let sine = (flight + mu * h) / zeta;
+                h = if sine > 0.0 { ln(sine + (sine * sine + 1.0).sqrt()) } else { h };
+            }
+            if h > 0.0 && h < guess * rate {
+                guess = h / rate;
+            }
+        }
+    }
+    solve(Anchor { r, eta: 0.0, zeta }, beta, (high, low), guess, upper)
+}
+
+fn at_the_apsis(r: f64) -> Reached {
+    Reached { functions: UniversalFunctions { g0: 1.0, g1: 0.0, g2: 0.0, g3: 0.0 }, s: 0.0, r }
 }

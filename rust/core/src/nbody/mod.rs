@@ -1,5 +1,8 @@
 //! Bodies that attract or repel each other by an inverse square: closed forms of two bodies.
 
+pub mod anomalies;
 mod conic;
+pub mod elements;
 pub mod kepler;
 mod kepler_equation;
+pub mod two_body;

@@ -1,4 +1,4 @@
-//! Elementary functions with the same bits on every machine: exponential, logarithm, arc tangent.
+//! The exponential function with the same bits on every machine and in every lane.
 //!
 //! The one idea: a fixed sequence of correctly rounded `+ - * /` and exact exponent moves, written
 //! once over [`Binary`] scalars, so `f64` and every SIMD tier agree bit for bit; no platform libm,
@@ -17,31 +17,17 @@ use super::lanes::{Avx2, Avx512};
 pub trait Binary: Real {
     /// 2ⁿ for integers n from -1022 to 1023; anything else is a broken promise of the caller.
     fn power_of_two(self) -> Self;
-    /// (m, n) with x = m·2ⁿ and 1 ≤ m < 2, for positive normal x.
-    fn split_exponent(self) -> (Self, Self);
 }
 
 /// Added to an integer n, |n| < 2^51, leaves n in the low bits of the sum.
 pub(super) const INTEGER_SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// As above with the exponent bias, for n > -1023.
 pub(super) const BIASED_SHIFT: f64 = 4_503_599_627_370_496.0 + 1023.0; // 2^52 + bias
-/// The bits of 2^52: `EXPONENT_SHIFT | e` is the number 2^52 + e.
-pub(super) const EXPONENT_SHIFT: u64 = 0x4330_0000_0000_0000;
-/// The bits of a significand.
-pub(super) const SIGNIFICAND: u64 = 0x000f_ffff_ffff_ffff;
-/// The bits of 1.0.
-pub(super) const ONE: u64 = 0x3ff0_0000_0000_0000;
 
 impl Binary for f64 {
     #[inline(always)]
     fn power_of_two(self) -> Self {
         f64::from_bits((self + BIASED_SHIFT).to_bits() << 52)
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        let bits = self.to_bits();
-        let exponent = f64::from_bits(bits >> 52 | EXPONENT_SHIFT) - BIASED_SHIFT;
-        (f64::from_bits(bits & SIGNIFICAND | ONE), exponent)
     }
 }
 
@@ -49,10 +35,6 @@ impl Binary for Lanes {
     #[inline(always)]
     fn power_of_two(self) -> Self {
         self.map(f64::power_of_two)
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        (self.map(|x| x.split_exponent().0), self.map(|x| x.split_exponent().1))
     }
 }
 

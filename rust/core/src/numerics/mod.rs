@@ -6,6 +6,7 @@ pub mod element;
 pub mod elementary;
 pub mod exponentials;
 pub mod lanes;
+pub mod philox;
 pub mod power_of_two;
 pub mod real;
 pub mod simd;

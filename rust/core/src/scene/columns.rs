@@ -24,8 +24,16 @@ impl Columns {
     ///
     /// The room is not initialised (touching it twice would cost as much as the steps between two
     /// outputs): the arrays are empty until [`finish`](Self::finish).
-    pub fn new(copies: usize, times: usize, particles: usize, position: bool, velocity: bool, derived: bool) -> Self {
-        let array = |wanted: bool| Vec::with_capacity(if wanted { copies * times * particles * 3 } else { 0 });
+    pub fn new(
+        copies: usize,
+        times: usize,
+        particles: usize,
+        position: bool,
+        velocity: bool,
+        derived: bool,
+    ) -> Self {
+        let array =
+            |wanted: bool| Vec::with_capacity(if wanted { copies * times * particles * 3 } else { 0 });
         Self {
             times,
             particles,
@@ -125,7 +133,14 @@ impl Writer<'_> {
     }
 
     #[inline(always)]
-    fn put(&self, (array, len): (*mut f64, usize), copy: usize, time: usize, particle: usize, values: [f64; 3]) {
+    fn put(
+        &self,
+        (array, len): (*mut f64, usize),
+        copy: usize,
+        time: usize,
+        particle: usize,
+        values: [f64; 3],
+    ) {
         let at = ((copy * self.times + time) * self.particles + particle) * 3;
         if at + 3 <= len {
             // SAFETY: in bounds by the test; no other thread writes this particle (see `write`).

@@ -34,7 +34,11 @@ impl Units {
                 }
             }
         }
-        let length = exponent(size);
+        let softening = scene.forces.iter().map(|force| match force {
+            ForceSpec::Gravity { softening, .. } => *softening,
+            _ => 0.0,
+        });
+        let length = exponent(softening.fold(size, f64::max));
         let mass = exponent(scene.mass.iter().copied().fold(0.0, f64::max));
         // The free-fall time of the largest mass, else the crossing time.
         let gravity = scene.forces.iter().find_map(|force| match force {

@@ -87,16 +87,18 @@ pub struct Job<'a> {
     pub writer: &'a Writer<'a>,
 }
 
-/// Runs all units of a plan; reports in the order of the units.
+/// Runs all units of a plan; the reports come in no particular order.
 ///
 /// # Errors
 /// Only errors of the library itself: how a unit ended is in its report.
 pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    let units = job.plan.unit_list();
+    let mut units = job.plan.unit_list();
+    // Units share lanes with units of the same make-up; massive bodies alone differ from those with
+    // massless ones beside them.
+    units.sort_by_key(|unit| (unit.active, unit.bodies.len()));
     let (over, inside) = job.plan.threads;
     let lanes = if job.plan.layout == Layout::Batched { WIDTH } else { 1 };
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
-    // Units of one make-up only share lanes: massive bodies alone and with massless ones differ.
     let mut runs: Vec<&[Unit]> = Vec::new();
     for run in units.chunk_by(|a, b| {
         job.plan.layout == Layout::Packed || (a.active, a.bodies.len()) == (b.active, b.bodies.len())

@@ -12,6 +12,8 @@ use core::fmt;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
+/// From this many units times pairs on, units are shared out over threads: fewer are done before a thread wakes.
+const WORK_FOR_THREADS: u64 = 64;
 /// Massless bodies that share the steps of one adaptive unit.
 const PASSIVE_PER_UNIT: usize = 64;
 
@@ -142,8 +144,11 @@ impl Plan {
         }
         let units = self.unit_list().len();
         let groups = if self.layout == Layout::Batched { units.div_ceil(WIDTH) } else { units };
-        if groups == 1 && self.pairs_per_evaluation() >= PAIRS_FOR_THREADS {
+        let pairs = self.pairs_per_evaluation();
+        if groups == 1 && pairs >= PAIRS_FOR_THREADS {
             (1, threads)
+        } else if (units as u64) * (1 + pairs) < WORK_FOR_THREADS {
+            (1, 1)
         } else {
             (threads.min(groups), 1)
         }

@@ -5,7 +5,7 @@
 
 use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elementary::{BIASED_SHIFT, Binary, EXPONENT_SHIFT, ONE, SIGNIFICAND};
+use crate::numerics::elementary::{BIASED_SHIFT, Binary};
 use crate::numerics::real::Real;
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -90,22 +90,6 @@ impl Binary for Avx512 {
     fn power_of_two(self) -> Self {
         let shifted = self + Self::splat(BIASED_SHIFT);
         Self(unsafe { _mm512_castsi512_pd(_mm512_slli_epi64::<52>(_mm512_castpd_si512(shifted.0))) })
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        unsafe {
-            let bits = _mm512_castpd_si512(self.0);
-            let exponent =
-                _mm512_or_si512(_mm512_srli_epi64::<52>(bits), _mm512_set1_epi64(EXPONENT_SHIFT as i64));
-            let significand = _mm512_or_si512(
-                _mm512_and_si512(bits, _mm512_set1_epi64(SIGNIFICAND as i64)),
-                _mm512_set1_epi64(ONE as i64),
-            );
-            (
-                Self(_mm512_castsi512_pd(significand)),
-                Self(_mm512_castsi512_pd(exponent)) - Self::splat(BIASED_SHIFT),
-            )
-        }
     }
 }
 
@@ -232,20 +216,5 @@ impl Binary for Avx2 {
         let shifted = self + Self::splat(BIASED_SHIFT);
         let shift = |half| unsafe { _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(half))) };
         Self(shift(shifted.0), shift(shifted.1))
-    }
-    #[inline(always)]
-    fn split_exponent(self) -> (Self, Self) {
-        let exponent = |half| unsafe {
-            let bits = _mm256_srli_epi64::<52>(_mm256_castpd_si256(half));
-            _mm256_castsi256_pd(_mm256_or_si256(bits, _mm256_set1_epi64x(EXPONENT_SHIFT as i64)))
-        };
-        let significand = |half| unsafe {
-            let bits = _mm256_and_si256(_mm256_castpd_si256(half), _mm256_set1_epi64x(SIGNIFICAND as i64));
-            _mm256_castsi256_pd(_mm256_or_si256(bits, _mm256_set1_epi64x(ONE as i64)))
-        };
-        (
-            Self(significand(self.0), significand(self.1)),
-            Self(exponent(self.0), exponent(self.1)) - Self::splat(BIASED_SHIFT),
-        )
     }
 }

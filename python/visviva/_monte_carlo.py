@@ -1,0 +1,323 @@
+"""The scattering Monte Carlo and what it gives: integer histograms that add up."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array, number
+from visviva._progress import callback
+from visviva.errors import InvalidInput
+from visviva.potentials import Coulomb
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva._progress import Progress
+    from visviva.potentials import Potential
+
+__all__ = ["CrossSection", "MonteCarlo", "Tally", "monte_carlo"]
+
+_ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
+
+
+class CrossSection(NamedTuple):
+    """A cross section by bin and its standard error."""
+
+    value: NDArray[np.float64]
+    """Area per steradian for angles, else area per unit of the quantity."""
+    error: NDArray[np.float64]
+    """One standard deviation of the count, as an area likewise."""
+
+
+@dataclass(frozen=True, eq=False)
+class Tally:
+    """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
+
+    Attributes
+    ----------
+    name : str
+        The quantity.
+    edges : ndarray, shape (B + 1,)
+        Strictly increasing.
+    counts : ndarray of uint64, shape (B,)
+        Events per bin.
+    underflow, overflow : int
+        Events below the first and above the last edge.
+    n_events : int
+        Events in all: the sum of everything above.
+    b_max : float
+        Radius of the disc of impact parameters.
+    """
+
+    name: str
+    edges: NDArray[np.float64]
+    counts: NDArray[np.uint64]
+    underflow: int
+    overflow: int
+    n_events: int
+    b_max: float
+
+    def values(self) -> NDArray[np.float64]:
+        """Counts as float64, exact up to 2⁵³."""
+        return self.counts.astype(np.float64)
+
+    def variances(self) -> NDArray[np.float64]:
+        """Variances of the counts, n·(1 − n/N), binomial: the number N of events is fixed."""
+        counts = self.values()
+        return counts * (1.0 - counts / self.n_events)
+
+    def cross_section(self) -> CrossSection:
+        """Differential cross section averaged over each bin.
+
+        Returns
+        -------
+        CrossSection
+            (value, error): counts / n_events · π b_max², per steradian for angles, else per unit of the quantity.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> result = vv.scattering.monte_carlo(
+        ...     vv.potentials.Coulomb(1.0), beam_energy=1.0, masses=(1.0, 1e9), b_max=2.0, n_events=100_000, seed=1,
+        ...     tally={"cm_angle": [np.pi / 2, np.pi]})
+        >>> value, error = result["cm_angle"].cross_section()
+        >>> bool(abs(value[0] * 2 * np.pi - np.pi / 4) < 4 * error[0] * 2 * np.pi)
+        True
+        """
+        width = _core.solid_angles(self.edges) if self.name in _ANGLES else np.diff(self.edges)
+        scale = np.pi * self.b_max**2 / (self.n_events * width)
+        return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
+
+    def __add__(self, other: Tally) -> Tally:
+        if not isinstance(other, Tally):
+            return NotImplemented
+        same = (self.name, self.b_max) == (other.name, other.b_max) and np.array_equal(self.edges, other.edges)
+        if not same:
+            raise InvalidInput("other", f"expected a tally of {self.name} with the same edges and b_max")
+        return replace(
+            self,
+            counts=_frozen(self.counts + other.counts),
+            underflow=self.underflow + other.underflow,
+            overflow=self.overflow + other.overflow,
+            n_events=self.n_events + other.n_events,
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class MonteCarlo(Mapping[str, Tally]):
+    """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
+
+    Attributes
+    ----------
+    potential : Coulomb
+        V = k/r.
+    beam_energy : float
+        Of the projectile in the laboratory.
+    masses : tuple of float
+        Projectile and target.
+    b_max : float
+        Radius of the disc of impact parameters.
+    events : tuple
+        Which events: sorted (seed, first, end) with end excluded.
+    tallies : tuple of Tally
+        In the order asked for.
+    """
+
+    potential: Coulomb
+    beam_energy: float
+    masses: tuple[float, float]
+    b_max: float
+    events: tuple[tuple[int, int, int], ...]
+    tallies: tuple[Tally, ...]
+
+    @property
+    def n_events(self) -> int:
+        """Events in all."""
+        return sum(end - first for _, first, end in self.events)
+
+    def __getitem__(self, name: str) -> Tally:
+        for tally in self.tallies:
+            if tally.name == name:
+                return tally
+        known = ", ".join(tally.name for tally in self.tallies)
+        raise KeyError(f"no tally {name!r}; this run has {known}")
+
+    def __iter__(self) -> Iterator[str]:
+        return (tally.name for tally in self.tallies)
+
+    def __len__(self) -> int:
+        return len(self.tallies)
+
+    def __add__(self, other: MonteCarlo) -> MonteCarlo:
+        if not isinstance(other, MonteCarlo):
+            return NotImplemented
+        for name in ("potential", "beam_energy", "masses", "b_max"):
+            if getattr(self, name) != getattr(other, name):
+                raise InvalidInput(
+                    "other", f"expected the same {name}, {getattr(self, name)!r}, got {getattr(other, name)!r}"
+                )
+        if list(self) != list(other):
+            raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
+        tallies = tuple(self[name] + other[name] for name in self)
+        return replace(self, events=_merged((*self.events, *other.events)), tallies=tallies)
+
+    def __repr__(self) -> str:
+        k, sizes = self.potential.k, ", ".join(f"{tally.name} ({len(tally.counts)} bins)" for tally in self.tallies)
+        return (
+            f"<MonteCarlo: {self.n_events} events on k = {k:g}, beam energy {self.beam_energy:g}, "
+            f"masses {self.masses}, b_max {self.b_max:g}: {sizes}>"
+        )
+
+
+def monte_carlo(
+    potential: Potential,
+    *,
+    beam_energy: float,
+    masses: tuple[float, float],
+    b_max: float,
+    n_events: int,
+    seed: int,
+    tally: str | Iterable[str] | Mapping[str, ArrayLike] = "cm_angle",
+    bins: int = 180,
+    threads: int | None = None,
+    first_event: int = 0,
+    progress: Progress = False,
+) -> MonteCarlo:
+    """Scatter a parallel beam off one centre and count every event.
+
+    The impact parameter is uniform over a disc: b² uniform in [0, b_max²). Event i takes its random number from
+    Philox 4x32-10 with ``seed`` as the key and i as the counter, so the counts do not depend on threads, processor or
+    partition, and results of separate ranges of events add up to that of the whole.
+
+    Parameters
+    ----------
+    potential : Coulomb
+        V = k/r, k of either sign but not 0.
+    beam_energy : float
+        Energy of the projectile in the laboratory; the target is at rest.
+    masses : tuple of float
+        Projectile and target.
+    b_max : float
+        Radius of the disc. The smallest deflection is 2 atan(|k| / (2 E b_max)), E = beam_energy · m₂/(m₁ + m₂).
+    n_events : int
+        At least 1.
+    seed : int
+        0 to 2⁶⁴ − 1.
+    tally : str, iterable of str, or mapping
+        What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
+        ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
+        ``{name: edges}``.
+    bins : int
+        Number of equal bins, over all possible values, of each tally that is given without edges.
+    threads : int, optional
+        By default ``VISVIVA_THREADS``, else all cores.
+    first_event : int
+        Index of the first event.
+    progress : bool or callable
+        True for a bar, or ``f(done, total)``.
+
+    Returns
+    -------
+    MonteCarlo
+        ``result["cm_angle"].counts``, ``.edges``, ``.values()``, ``.variances()``, ``.cross_section()``.
+
+    Raises
+    ------
+    InvalidInput
+        For any argument out of range, by name.
+    Interrupted
+        After Ctrl-C.
+
+    References
+    ----------
+    J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> beam = dict(beam_energy=1.0, masses=(1.0, 4.0), b_max=2.0, seed=1)
+    >>> whole = vv.scattering.monte_carlo(vv.potentials.Coulomb(1.0), n_events=1000, **beam)
+    >>> part = vv.scattering.monte_carlo(vv.potentials.Coulomb(1.0), n_events=600, **beam)
+    >>> rest = vv.scattering.monte_carlo(vv.potentials.Coulomb(1.0), n_events=400, first_event=600, **beam)
+    >>> bool(((part + rest)["cm_angle"].counts == whole["cm_angle"].counts).all())
+    True
+    """
+    if not isinstance(potential, Coulomb):
+        raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
+    pair = float_array("masses", masses, (2,))
+    first = _whole("first_event", first_event, 0, 2**63 - 1)
+    count = _whole("n_events", n_events, 1, 2**63 - first)
+    key = _whole("seed", seed, 0, 2**64 - 1)
+    request: dict[str, Any] = {
+        "k": potential.k,
+        "beam_energy": number("beam_energy", beam_energy),
+        "masses": (float(pair[0]), float(pair[1])),
+        "b_max": number("b_max", b_max),
+        "tallies": _tallies(tally, _whole("bins", bins, 1, 2**20)),
+        "threads": None if threads is None else _whole("threads", threads, 1, 1024),
+    }
+    with callback(progress) as report:
+        columns = _core.monte_carlo(**request, n_events=count, seed=key, first_event=first, progress=report)
+    radius: float = request["b_max"]
+    return MonteCarlo(
+        potential,
+        request["beam_energy"],
+        request["masses"],
+        radius,
+        ((key, first, first + count),),
+        tuple(
+            Tally(name, _frozen(edges), _frozen(counts), underflow, overflow, count, radius)
+            for name, edges, counts, underflow, overflow in columns
+        ),
+    )
+
+
+def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float64]]]:
+    pairs: list[tuple[str, int | NDArray[np.float64]]]
+    if isinstance(tally, str):
+        return [(tally, bins)]
+    if isinstance(tally, Mapping):
+        pairs = [(name, float_array(str(name), edges, (None,))) for name, edges in tally.items()]
+    elif isinstance(tally, tuple | list | set | frozenset):
+        pairs = [(name, bins) for name in (sorted(tally) if isinstance(tally, set | frozenset) else tally)]
+    else:
+        raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
+    names = [name for name, _ in pairs]
+    if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
+        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
+    return pairs
+
+
+def _whole(name: str, value: object, low: int, high: int) -> int:
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or not low <= int(value) <= high:  # type: ignore[call-overload]
+        raise InvalidInput(name, f"expected a whole number from {low} to {high}, got {value!r}")
+    return int(value)  # type: ignore[call-overload, no-any-return]
+
+
+def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+    """Sort and join ranges of events; an event that is in two would count twice."""
+    joined: list[tuple[int, int, int]] = []
+    for seed, first, end in sorted(ranges):
+        if joined and joined[-1][0] == seed and first <= joined[-1][2]:
+            before = joined.pop()
+            if first < before[2]:
+                raise InvalidInput(
+                    "other", f"expected events that are not counted yet, but event {first} of seed {seed} is in both"
+                )
+            joined.append((seed, before[1], end))
+        else:
+            joined.append((seed, first, end))
+    return tuple(joined)
+
+
+def _frozen(array: NDArray[Any]) -> NDArray[Any]:
+    array.setflags(write=False)
+    return array

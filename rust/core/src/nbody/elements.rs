@@ -1,0 +1,232 @@
+//! The elements of a conic from a state, and a state from elements; free fall.
+//!
+//! The one idea: the same double-double preparation as the propagator, so that e, the apsides and the anomalies are
+//! right to a few ulps even for e near 0 or 1. Attraction and repulsion share every formula through the
+//! Laplace–Runge–Lenz vector A = v×L − μ r̂ (per unit mass), which points to the pericentre and has length |μ| e.
+//! Conventions: lengths a, b are positive for hyperbolas too; angles in radians; x the reference direction, z the pole.
+//! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9; hodograph: Hamilton (1847).
+
+use super::conic::Conic;
+use super::kepler::KeplerOrbit;
+use crate::error::{Error, Result};
+use crate::numerics::angles::{atan2, sin_cos};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::exponentials::scale_by_power_of_two;
+use crate::numerics::real::Real;
+use core::f64::consts::FRAC_PI_2;
+use nalgebra::Vector3;
+
+/// The elements of an orbit about a fixed centre, all per unit mass.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Elements {
+    /// r×v.
+    pub angular_momentum: Vector3<f64>,
+    /// v²/2 − μ/r.
+    pub energy: f64,
+    /// v×L − μ r̂: towards the pericentre, length |μ| e.
+    pub laplace_runge_lenz: Vector3<f64>,
+    /// The velocities lie on a circle about this point (infinite for radial motion: NaN components).
+    pub hodograph_centre: Vector3<f64>,
+    /// |μ|/L.
+    pub hodograph_radius: f64,
+    /// e.
+    pub eccentricity: f64,
+    /// a = |μ|/|2 energy| > 0; infinite for a parabola.
+    pub semi_major_axis: f64,
+    /// b = a √|1 − e²|, the impact parameter of a hyperbola.
+    pub semi_minor_axis: f64,
+    /// L²/|μ|.
+    pub semi_latus_rectum: f64,
+    /// Least distance.
+    pub pericentre: f64,
+    /// Greatest distance; infinite if unbound.
+    pub apocentre: f64,
+    /// Angle of L from z, in [0, π]; radial motion: NaN, as the two angles below.
+    pub inclination: f64,
+    /// Angle of the ascending node from x, in (−π, π]; 0 where the orbit lies in the xy plane.
+    pub node: f64,
+    /// Angle of the pericentre from the node along the motion, in (−π, π].
+    pub argument_of_pericentre: f64,
+    /// Angle of the body from the pericentre, in (−π, π].
+    pub true_anomaly: f64,
+    /// E of an ellipse in (−π, π], H of a hyperbola, D = tan(ν/2) of a parabola.
+    pub eccentric_anomaly: f64,
+    /// E − e sin E, e sinh H ∓ H, or D + D³/3.
+    pub mean_anomaly: f64,
+    /// Time since the nearest pericentre (negative before it).
+    pub time_since_pericentre: f64,
+    /// 2π √(a³/μ); infinite if unbound.
+    pub period: f64,
+    /// L/2.
+    pub areal_rate: f64,
+    /// The angle 2 arcsin(1/e) by which a hyperbola turns the velocity; NaN if bound, π for a parabola.
+    pub turning_angle: f64,
+}
+
+impl Elements {
+    /// From a state; `mu` > 0 attracts, `mu` < 0 repels.
+    ///
+    /// # Errors
+    /// [`Error::InvalidInput`] if an argument is not finite, `position` is zero, or `mu` is zero or negligible
+    /// (below 2⁻³⁰⁰ r v²): a straight line is no conic.
+    pub fn from_state(mu: f64, position: Vector3<f64>, velocity: Vector3<f64>) -> Result<Self> {
+        let orbit = KeplerOrbit::new(mu, position, velocity)?;
+        match &orbit.conic {
+            Some(conic) => Ok(Self::from_conic(conic, orbit.length, orbit.speed)),
+            None => Err(Error::invalid("mu", format!("expected a force that bends the path, got mu = {mu}"))),
+        }
+    }
+
+    fn from_conic(conic: &Conic, length: i32, speed: i32) -> Self {
+        let lengths = |x: f64| scale_by_power_of_two(x, length);
+        let strength = DoubleDouble::from(conic.mu).abs();
+        let (beta, h, zeta) = (conic.beta, conic.angular_momentum, conic.zeta);
+        let size = beta.abs();
+        let rate = size.sqrt();
+        let h_size = h.to_f64();
+        let e = (zeta / strength).to_f64();
+        let parabola = beta.to_f64() == 0.0;
+        let bound = beta.to_f64() > 0.0;
+        let (cosine, sine) = conic.true_anomaly;
+
+        // From the anchoring apsis to the pericentre: half a turn, half a period.
+        let half = if conic.epoch.to_f64() > 0.0 { -DoubleDouble::PI } else { DoubleDouble::PI };
+        let mut angle = rate * conic.epoch;
+        let mut since = conic.since_apsis;
+        let mean_rate = size * rate / strength;
+        let mut mean = mean_rate * since;
+        if let (true, Some(period)) = (conic.from_apocentre, conic.period) {
+            angle += half;
+            mean += half;
+            since += if conic.epoch.to_f64() > 0.0 { -period.scale(0.5) } else { period.scale(0.5) };
+        }
+        let (eccentric, mean) = if parabola {
+            let d = strength * conic.epoch / h;
+            (d, d + d * d * d / DoubleDouble::from(3.0))
+        } else {
+            (angle, mean)
+        };
+
+        let normal = conic.normal;
+        let nodal = Vector3::new(-normal.y, normal.x, 0.0);
+        let in_plane = (normal.x * normal.x + normal.y * normal.y).sqrt();
+        let line = if in_plane > 0.0 { nodal / in_plane } else { Vector3::x() };
+        let (inclination, node, argument) = if h_size > 0.0 {
+            let across = normal.cross(&line);
+            (
+                atan2(in_plane, normal.z),
+                atan2(line.y, line.x),
+                atan2(conic.towards.dot(&across), conic.towards.dot(&line)),
+            )
+        } else {
+            (f64::NAN, f64::NAN, f64::NAN)
+        };
+        // sin(χ/2) = 1/e and cos(χ/2) = √(e² − 1)/e: tan(χ/2) = |μ|/(L √−β).
+        let turning = if bound { f64::NAN } else { 2.0 * atan2(strength.to_f64(), h_size * rate.to_f64()) };
+        let infinite_if = |condition: bool, value: f64| if condition { f64::INFINITY } else { value };
+        Self {
+            angular_momentum: normal * scale_by_power_of_two(h_size, length + speed),
+            energy: scale_by_power_of_two(-0.5 * beta.to_f64(), 2 * speed),
+            laplace_runge_lenz: conic.towards * scale_by_power_of_two(zeta.to_f64(), length + 2 * speed),
+            hodograph_centre: conic.along * scale_by_power_of_two((zeta / h).to_f64(), speed),
+            hodograph_radius: scale_by_power_of_two((strength / h).to_f64(), speed),
+            eccentricity: e,
+            semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
+            semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
+            semi_latus_rectum: lengths((h * h / strength).to_f64()),
+            pericentre: lengths(conic.pericentre.to_f64()),
+            apocentre: infinite_if(!bound, lengths(conic.apocentre)),
+            inclination,
+            node,
+            argument_of_pericentre: argument,
+            true_anomaly: atan2(sine, cosine),
+            eccentric_anomaly: eccentric.to_f64(),
+            mean_anomaly: mean.to_f64(),
+            time_since_pericentre: scale_by_power_of_two(since.to_f64(), length - speed),
+            period: infinite_if(
+                !bound,
+                scale_by_power_of_two(conic.period.map_or(0.0, DoubleDouble::to_f64), length - speed),
+            ),
+            areal_rate: scale_by_power_of_two(0.5 * h_size, length + speed),
+            turning_angle: turning,
+        }
+    }
+}
+
+/// Position and velocity on a conic of given pericentre distance, eccentricity, orientation and true anomaly.
+///
+/// `mu` > 0: any e ≥ 0; `mu` < 0: e > 1. For a given semi-major axis, `pericentre` = a|1 − e| (repulsive: a(e + 1)).
+///
+/// # Errors
+/// [`Error::InvalidInput`] for arguments out of range and for a true anomaly on or beyond an asymptote.
+pub fn state_from_elements(
+    mu: f64,
+    pericentre: f64,
+    eccentricity: f64,
+    inclination: f64,
+    node: f64,
+    argument_of_pericentre: f64,
+    true_anomaly: f64,
+) -> Result<(Vector3<f64>, Vector3<f64>)> {
+    let e = eccentricity;
+    if !mu.is_finite() || mu == 0.0 {
+        return Err(Error::invalid("mu", format!("expected a finite number other than 0, got {mu}")));
+    }
+    if !(pericentre.is_finite() && pericentre > 0.0) {
+        return Err(Error::invalid("pericentre", format!("expected a positive distance, got {pericentre}")));
+    }
+    if !(e.is_finite() && e >= 0.0 && (mu > 0.0 || e > 1.0)) {
+        return Err(Error::invalid("eccentricity", format!("expected e ≥ 0 (mu < 0: e > 1), got {e}")));
+    }
+    let angles = [inclination, node, argument_of_pericentre, true_anomaly];
+    if !angles.iter().all(|angle| angle.is_finite()) {
+        return Err(Error::invalid("angles", format!("expected finite angles, got {angles:?}")));
+    }
+    let (half_sine, half_cosine) = sin_cos(0.5 * true_anomaly);
+    // ±1 + e cos ν, without the cancellation at an apocentre far out or near ν = 0 of repulsion.
+    let (shape, focal) = if mu > 0.0 {
+        ((1.0 - e) + 2.0 * e * half_cosine * half_cosine, 1.0 + e)
+    } else {
+        ((e - 1.0) - 2.0 * e * half_sine * half_sine, e - 1.0)
+    };
+    if shape <= 0.0 {
+        return Err(Error::invalid(
+            "true_anomaly",
+            format!("expected an angle inside the asymptotes of e = {e}, got {true_anomaly}"),
+        ));
+    }
+    let (sine, cosine) = sin_cos(true_anomaly);
+    let distance = pericentre * (focal / shape);
+    // v = (μ/L)(−sin ν P + cos ν Q) + (|μ| e/L) Q, and |μ|/L = √(|μ|/p).
+    let hodograph = (mu.abs() / pericentre / focal).sqrt();
+    let sign = mu.signum();
+    let (node_sine, node_cosine) = sin_cos(node);
+    let (sine_i, cosine_i) = sin_cos(inclination);
+    let (sine_w, cosine_w) = sin_cos(argument_of_pericentre);
+    let line = Vector3::new(node_cosine, node_sine, 0.0);
+    let across = Vector3::new(-node_sine * cosine_i, node_cosine * cosine_i, sine_i);
+    let towards = line * cosine_w + across * sine_w;
+    let along = across * cosine_w - line * sine_w;
+    Ok((
+        (towards * cosine + along * sine) * distance,
+        (towards * (-sign * sine) + along * (sign * cosine + e)) * hodograph,
+    ))
+}
+
+/// The time to fall from rest at distance `from` to distance `to` ≤ `from` of an attracting centre.
+///
+/// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the centre itself π √(R³/(8μ)).
+///
+/// # Errors
+/// [`Error::InvalidInput`] unless `mu` > 0 and 0 ≤ `to` ≤ `from`, all finite.
+pub fn free_fall_time(mu: f64, from: f64, to: f64) -> Result<f64> {
+    if !(mu > 0.0 && mu.is_finite()) {
+        return Err(Error::invalid("mu", format!("expected a positive number, got {mu}")));
+    }
+    if !(from > 0.0 && from.is_finite() && (0.0..=from).contains(&to)) {
+        return Err(Error::invalid("to", format!("expected 0 ≤ to ≤ from, got from = {from}, to = {to}")));
+    }
+    let (fallen, left) = ((from - to) / from, to / from);
+    let angle = if to == 0.0 { FRAC_PI_2 } else { atan2(fallen.sqrt(), left.sqrt()) };
+    Ok(from * (from / mu * 0.5).sqrt() * (angle + (fallen * left).sqrt()))
+}

@@ -1,0 +1,142 @@
+//! Philox 4x32-10: random numbers as a function of their index.
+//!
+//! The one idea: a cipher of ten rounds turns a counter into four random words, so number n needs no
+//! number before it, and any partition of the indices over threads or machines gives the same numbers.
+//! Source: Salmon, Moraes, Dror & Shaw, *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011).
+
+use super::lanes::WIDTH;
+
+/// The key: a seed's low and high word.
+pub type Key = [u32; 2];
+
+const ROUNDS: u32 = 10;
+const MULTIPLIERS: [u32; 2] = [0xd251_1f53, 0xcd9e_8d57];
+/// The golden ratio and √3 - 1, as fractions of 2^32: what the key grows by in each round.
+const WEYL: [u32; 2] = [0x9e37_79b9, 0xbb67_ae85];
+
+/// The key of a 64-bit seed.
+#[inline]
+pub const fn key(seed: u64) -> Key {
+    [seed as u32, (seed >> 32) as u32]
+}
+
+/// The key of round `round`.
+#[inline(always)]
+const fn round_key(key: Key, round: u32) -> Key {
+    [key[0].wrapping_add(WEYL[0].wrapping_mul(round)), key[1].wrapping_add(WEYL[1].wrapping_mul(round))]
+}
+
+/// The four random words of one counter.
+#[inline]
+pub const fn philox(key: Key, counter: [u32; 4]) -> [u32; 4] {
+    let mut x = counter;
+    let mut round = 0;
+    while round < ROUNDS {
+        let [k0, k1] = round_key(key, round);
+        let p0 = MULTIPLIERS[0] as u64 * x[0] as u64;
+        let p1 = MULTIPLIERS[1] as u64 * x[2] as u64;
+        x = [(p1 >> 32) as u32 ^ x[1] ^ k0, p1 as u32, (p0 >> 32) as u32 ^ x[3] ^ k1, p0 as u32];
+        round += 1;
+    }
+    x
+}
+
+/// How many bits a draw has: the significand of an `f64`.
+pub const DRAW_BITS: u32 = 53;
+
+/// The first draw of event `event`: 53 random bits.
+///
+/// One block of four words serves two neighbouring events: its counter is (event/2, 0), as the words
+/// (low, high, 0, 0); its first two words are the even event's 64 bits, low word first, its last two
+/// the odd event's, and of 64 bits the upper 53 count. So a draw depends on seed and event alone.
+#[inline]
+pub const fn draw(key: Key, event: u64) -> u64 {
+    let block = event >> 1;
+    let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, 0, 0]);
+    let (low, high) = if event & 1 == 0 { (a, b) } else { (c, d) };
+    ((high as u64) << 32 | low as u64) >> (64 - DRAW_BITS)
+}
+
+/// Events whose draws one step of [`fill_draws`] makes.
+pub const DRAWS: usize = 2 * WIDTH;
+
+crate::tiered! {
+    /// The draws of the events from `2 * block` on, as [`draw`] gives them.
+    pub fn fill_draws[][](key: Key, block: u64, draws: &mut [[u64; DRAWS]]) = draws_body;
+}
+
+/// Eight blocks at a time, written so that the compiler makes vectors of it: each 32-bit word stays in
+/// the low half of a 64-bit lane.
+#[expect(clippy::extra_unused_type_parameters, reason = "integers know no tier, but `tiered!` names one")]
+#[inline(always)]
+fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
+    for sixteen in draws {
+        let low = |x: u64| x & 0xffff_ffff;
+        let mut x0 = [0_u64; WIDTH];
+        let mut x1 = [0_u64; WIDTH];
+        for lane in 0..WIDTH {
+            let counter = block.wrapping_add(lane as u64);
+            x0[lane] = counter;
+            x1[lane] = counter >> 32;
+        }
+        let mut x2 = [0_u64; WIDTH];
+        let mut x3 = [0_u64; WIDTH];
+        for round in 0..ROUNDS {
+            let [k0, k1] = round_key(key, round);
+            for lane in 0..WIDTH {
+                // What lies above the low 32 bits of x1 and x3 is never used: a product takes the low
+                // halves only. This is one widening multiplication of vector registers.
+                let p0 = low(x0[lane]) * u64::from(MULTIPLIERS[0]);
+                let p1 = low(x2[lane]) * u64::from(MULTIPLIERS[1]);
+                x0[lane] = p1 >> 32 ^ x1[lane] ^ u64::from(k0);
+                x1[lane] = p1;
+                x2[lane] = p0 >> 32 ^ x3[lane] ^ u64::from(k1);
+                x3[lane] = p0;
+            }
+        }
+        for lane in 0..WIDTH {
+            sixteen[2 * lane] = (x1[lane] << 32 | low(x0[lane])) >> (64 - DRAW_BITS);
+            sixteen[2 * lane + 1] = (x3[lane] << 32 | low(x2[lane])) >> (64 - DRAW_BITS);
+        }
+        block = block.wrapping_add(WIDTH as u64);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The known answers that Random123 publishes for philox4x32-10.
+    #[test]
+    fn known_answers() {
+        assert_eq!(philox([0; 2], [0; 4]), [0x6627_e8d5, 0xe169_c58d, 0xbc57_ac4c, 0x9b00_dbd8]);
+        assert_eq!(
+            philox([u32::MAX; 2], [u32::MAX; 4]),
+            [0x408f_276d, 0x41c8_3b0e, 0xa20b_c7c6, 0x6d54_51fd]
+        );
+        assert_eq!(
+            philox([0xa409_3822, 0x299f_31d0], [0x243f_6a88, 0x85a3_08d3, 0x1319_8a2e, 0x0370_7344]),
+            [0xd16c_fe09, 0x94fd_cceb, 0x5001_e420, 0x2412_6ea1]
+        );
+    }
+
+    #[test]
+    fn the_first_draws_are_the_known_answer_of_zero() {
+        assert_eq!(draw(key(0), 0), 0xe169_c58d_6627_e8d5 >> 11);
+        assert_eq!(draw(key(0), 1), 0x9b00_dbd8_bc57_ac4c >> 11);
+    }
+
+    proptest! {
+        #[test]
+        fn lanes_give_the_draws_of_the_scalar_cipher(
+            seed: u64,
+            block in prop_oneof![0..100_u64, (u64::from(u32::MAX) - 20)..(1_u64 << 33), 0..(1_u64 << 62)],
+        ) {
+            let mut draws = [[0; DRAWS]; 3];
+            fill_draws(key(seed), block, &mut draws);
+            let expected: Vec<u64> = (0..48).map(|event| draw(key(seed), 2 * block + event)).collect();
+            prop_assert_eq!(draws.as_flattened(), expected);
+        }
+    }
+}

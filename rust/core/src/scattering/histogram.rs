@@ -1,0 +1,258 @@
+//! Histograms of a function of one draw, without evaluating the function.
+//!
+//! The one idea: a tally of a Monte Carlo event is a function of the event's 53-bit draw that rises or
+//! falls in a few monotone stretches. So the edges of the bins are carried back to the draws once, by
+//! bisection on the computed function itself, and an event costs a table look-up and an integer
+//! comparison.
+
+use crate::numerics::philox::DRAW_BITS;
+use crate::{Error, Result};
+
+/// The most bins of one histogram.
+pub const MOST_BINS: usize = 1 << 20;
+
+/// Edges, strictly increasing and finite; bin i holds `edges[i] ≤ x < edges[i+1]`, the last also its end.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edges(Vec<f64>);
+
+impl Edges {
+    /// Checked edges.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `argument`.
+    pub fn new(argument: &str, edges: Vec<f64>) -> Result<Self> {
+        if !(2..=MOST_BINS + 1).contains(&edges.len()) {
+            return Err(Error::invalid(
+                argument,
+                format!("expected 2 to {} edges, got {}", MOST_BINS + 1, edges.len()),
+            ));
+        }
+        if let Some(index) = edges.iter().position(|edge| !edge.is_finite()) {
+            return Err(Error::invalid(
+                argument,
+                format!("expected finite edges, but edge {index} is {}", edges[index]),
+            ));
+        }
+        if let Some(index) = edges.windows(2).position(|pair| pair[0] >= pair[1]) {
+            return Err(Error::invalid(
+                argument,
+                format!(
+                    "expected strictly increasing edges, but edge {index} is {} and edge {} is {}",
+                    edges[index],
+                    index + 1,
+                    edges[index + 1]
+                ),
+            ));
+        }
+        Ok(Self(edges))
+    }
+    /// `bins` equal bins from `low` to `high`.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `bins`.
+    pub fn uniform(bins: usize, low: f64, high: f64) -> Result<Self> {
+        if !(1..=MOST_BINS).contains(&bins) {
+            return Err(Error::invalid("bins", format!("expected 1 to {MOST_BINS} bins, got {bins}")));
+        }
+        let width = high - low;
+        let mut edges: Vec<f64> = (0..bins).map(|i| low + width * (i as f64 / bins as f64)).collect();
+        edges.push(high);
+        Self::new("bins", edges)
+    }
+    /// The numbers.
+    pub fn values(&self) -> &[f64] {
+        &self.0
+    }
+    /// How many bins.
+    pub fn bins(&self) -> usize {
+        self.0.len() - 1
+    }
+    /// The slot of x: 0 below, 1 + bin, or `bins + 1` above.
+    fn slot(&self, x: f64) -> usize {
+        if x == self.0[self.bins()] { self.bins() } else { self.0.partition_point(|edge| *edge <= x) }
+    }
+}
+
+/// Counts of the bins, below the first and above the last.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counts {
+    /// For each bin.
+    pub bins: Vec<u64>,
+    /// Below the first edge.
+    pub underflow: u64,
+    /// Above the last edge.
+    pub overflow: u64,
+}
+
+/// How many draws there are: the first number that is none.
+const DRAWS: u64 = 1 << DRAW_BITS;
+/// Counters per piece, used in turn: neighbouring events of one piece do not wait for each other.
+const BANKS: usize = 4;
+
+/// A step function of the draw: which slot of the histogram each draw falls into.
+#[derive(Clone, Debug)]
+pub struct Steps {
+    /// Piece p holds the draws from `starts[p]` to below `starts[p + 1]`; closed by a number above all.
+    starts: Vec<u64>,
+    slots: Vec<usize>,
+    /// The piece of the first draw of each of 2^k equal cells.
+    cells: Vec<u32>,
+    shift: u32,
+}
+
+impl Steps {
+    /// For `value`, monotone in the draw on each side of `turning`.
+    pub fn new(edges: &Edges, turning: Option<u64>, value: impl Fn(u64) -> f64) -> Self {
+        let turning = turning.map_or(0, |draw| draw.clamp(1, DRAWS - 1));
+        let mut starts = vec![0];
+        for (from, to) in [(0, turning), (turning, DRAWS)] {
+            if from == to {
+                continue;
+            }
+            starts.push(from);
+            let rising = edges.slot(value(from)) <= edges.slot(value(to - 1));
+            // In a rising stretch slot s begins where the slot reaches s; in a falling one, where it
+            // no longer exceeds s.
+            for wanted in 0..=edges.bins() + 1 {
+                let begun = |draw: u64| {
+                    let slot = edges.slot(value(draw));
+                    if rising { slot >= wanted } else { slot <= wanted }
+                };
+                if begun(to - 1) {
+                    starts.push(first(from, to - 1, begun));
+                }
+            }
+        }
+        starts.sort_unstable();
+        starts.dedup();
+        let slots: Vec<usize> = starts.iter().map(|start| edges.slot(value(*start))).collect();
+        starts.push(u64::MAX);
+        // Draws are uniform: with 32 cells per piece a comparison fails once in 60 events or so.
+        let cells = (32 * slots.len()).next_power_of_two().clamp(1 << 12, 1 << 20);
+        let shift = DRAW_BITS - cells.trailing_zeros();
+        let cells = (0..cells as u64)
+            .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
+            .collect();
+        Self { starts, slots, cells, shift }
+    }
+    /// How many pieces.
+    pub fn pieces(&self) -> usize {
+        self.slots.len()
+    }
+    /// Room to count in.
+    pub fn counters(&self) -> Vec<[u64; BANKS]> {
+        vec![[0; BANKS]; self.pieces()]
+    }
+    /// Counts draws, each below 2^53.
+    #[inline]
+    pub fn count(&self, draws: &[u64], counters: &mut [[u64; BANKS]]) {
+        debug_assert!(counters.len() == self.pieces() && draws.iter().all(|draw| *draw < DRAWS));
+        let mut one = |draw: u64, bank: usize| {
+            // SAFETY: a draw has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
+            // cell holds a piece; the last start, u64::MAX, exceeds every draw, so the search ends at
+            // a piece; there are as many counters as pieces.
+            unsafe {
+                let mut piece = *self.cells.get_unchecked((draw >> self.shift) as usize) as usize;
+                while draw >= *self.starts.get_unchecked(piece + 1) {
+                    piece += 1;
+                }
+                counters.get_unchecked_mut(piece)[bank] += 1;
+            }
+        };
+        let (fours, rest) = draws.as_chunks::<BANKS>();
+        for four in fours {
+            for bank in 0..BANKS {
+                one(four[bank], bank);
+            }
+        }
+        for draw in rest {
+            one(*draw, 0);
+        }
+    }
+    /// Sums counters into the slots of the histogram.
+    pub fn collect<'a>(&self, bins: usize, counters: impl Iterator<Item = &'a [[u64; BANKS]]>) -> Counts {
+        let mut slots = vec![0_u64; bins + 2];
+        for counters in counters {
+            for (slot, banks) in self.slots.iter().zip(counters) {
+                slots[*slot] += banks.iter().sum::<u64>();
+            }
+        }
+        Counts { underflow: slots[0], overflow: slots[bins + 1], bins: slots[1..=bins].to_vec() }
+    }
+}
+
+/// The first number in `from..=to` with the property, which once begun holds on, and holds at `to`.
+fn first(from: u64, to: u64, property: impl Fn(u64) -> bool) -> u64 {
+    let (mut low, mut high) = (from, to);
+    while low < high {
+        let middle = low + (high - low) / 2;
+        if property(middle) {
+            high = middle;
+        } else {
+            low = middle + 1;
+        }
+    }
+    low
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    fn slot_of(steps: &Steps, bins: usize, draw: u64) -> usize {
+        let mut counters = steps.counters();
+        steps.count(&[draw], &mut counters);
+        let counts = steps.collect(bins, core::iter::once(counters.as_slice()));
+        let slots = [&[counts.underflow], counts.bins.as_slice(), &[counts.overflow]].concat();
+        slots.iter().position(|count| *count == 1).unwrap()
+    }
+
+    #[test]
+    fn edges_belong_to_the_bin_above_and_the_last_to_the_last() {
+        let edges = Edges::new("bins", vec![1.0, 2.0, 4.0]).unwrap();
+        let slots = [0.9, 1.0, 1.9, 2.0, 3.9, 4.0, 4.1].map(|x| edges.slot(x));
+        assert_eq!(slots, [0, 1, 1, 2, 2, 2, 3]);
+    }
+
+    #[test]
+    fn bad_edges_are_refused() {
+        for edges in
+            [vec![1.0], vec![1.0, 1.0], vec![2.0, 1.0], vec![0.0, f64::NAN], vec![0.0, f64::INFINITY]]
+        {
+            assert!(matches!(Edges::new("bins", edges), Err(Error::InvalidInput { .. })));
+        }
+        assert!(Edges::uniform(0, 0.0, 1.0).is_err());
+    }
+
+    proptest! {
+        /// A rising, a falling and a turning function: the bin is that of the value, exactly, at
+        /// arbitrary draws and at every step's two sides.
+        #[test]
+        fn the_bin_is_that_of_the_value(
+            mut edges in prop::collection::vec(0.01..0.99f64, 2..40),
+            draws in prop::collection::vec(0..DRAWS, 50),
+        ) {
+            edges.sort_by(f64::total_cmp);
+            edges.dedup();
+            prop_assume!(edges.len() > 1);
+            let edges = Edges::new("bins", edges).unwrap();
+            let unit = |draw: u64| draw as f64 / DRAWS as f64;
+            type Function = Box<dyn Fn(u64) -> f64>;
+            let functions: [(Option<u64>, Function); 3] = [
+                (None, Box::new(move |draw| unit(draw).sqrt())),
+                (None, Box::new(move |draw| 1.0 - unit(draw) * unit(draw))),
+                (Some(DRAWS / 4), Box::new(move |draw| {
+                    if draw <= DRAWS / 4 { 3.9 * unit(draw) } else { 1.3 * (1.0 - unit(draw)) }
+                })),
+            ];
+            for (turning, value) in functions {
+                let steps = Steps::new(&edges, turning, &value);
+                let sides = steps.starts[1..steps.pieces()].iter().flat_map(|start| [start - 1, *start]);
+                for draw in draws.iter().copied().chain(sides).chain([0, DRAWS - 1]) {
+                    prop_assert_eq!(slot_of(&steps, edges.bins(), draw), edges.slot(value(draw)));
+                }
+            }
+        }
+    }
+}
