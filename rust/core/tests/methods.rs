@@ -18,8 +18,10 @@ use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
 type Make = fn() -> Problem<DoubleDouble>;
-const PROBLEMS: [(&str, Make, f64); 2] =
-    [("Hénon–Heiles", henon_heiles::<DoubleDouble>, 2.0), ("three bodies", three_bodies::<DoubleDouble>, 0.75)];
+const PROBLEMS: [(&str, Make, f64); 2] = [
+    ("Hénon–Heiles", henon_heiles::<DoubleDouble>, 2.0),
+    ("three bodies", three_bodies::<DoubleDouble>, 0.75),
+];
 
 /// The state at `t`, by the tableau of highest order with a step far below what the tests use.
 fn reference(make: Make, t: f64, steps: usize) -> State<DoubleDouble> {
@@ -117,8 +119,10 @@ fn the_continuous_extension_has_its_declared_order() {
         for method in METHODS {
             let Scheme::Embedded(embedded) = &method.scheme else { continue };
             for theta in [0.125, 0.3125, 0.5, 0.8125] {
-                let (coarse, fine) =
-                    (dense_error(embedded, make, 1.0 / 64.0, theta), dense_error(embedded, make, 1.0 / 128.0, theta));
+                let (coarse, fine) = (
+                    dense_error(embedded, make, 1.0 / 64.0, theta),
+                    dense_error(embedded, make, 1.0 / 128.0, theta),
+                );
                 // One step from exact data: the local error, one power more than the order.
                 let order = (coarse / fine).log2() - 1.0;
                 println!("{name}, {} at θ = {theta}: dense order {order:.3}", method.name);
@@ -182,8 +186,9 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
                 engine.start(true, &state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
                 let (mut steps, mut finished) = (0, false);
                 while !finished {
-                    let outcome =
-                        engine.step(true, &mut state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
+                    let outcome = engine
+                        .step(true, &mut state, &mut clock, &mut dynamics, &Alone, &mut ticker)
+                        .unwrap();
                     engine.commit(outcome.accepted, &mut state);
                     assert!(!outcome.stuck);
                     (finished, steps) = (outcome.finished, steps + 1);
@@ -383,8 +388,7 @@ fn golden_oscillators() {
 #[test]
 fn golden_yoshida_coefficients() {
     let case = golden("GI-yoshida4");
-    let Scheme::Splitting(table) =
-        &METHODS.iter().find(|method| method.name == "yoshida4").unwrap().scheme
+    let Scheme::Splitting(table) = &METHODS.iter().find(|method| method.name == "yoshida4").unwrap().scheme
     else {
         panic!("yoshida4 is a splitting")
     };

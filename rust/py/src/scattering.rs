@@ -6,7 +6,7 @@ use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use visviva_core::parallel::thread_count;
-use visviva_core::scattering::histogram::{Counts, Edges};
+use visviva_core::scattering::histogram::Edges;
 use visviva_core::scattering::kinematics::{Collision, HalfAngle, solid_angle};
 use visviva_core::scattering::monte_carlo::{Beam, Quantity, monte_carlo as simulate};
 use visviva_core::scattering::rutherford;
@@ -54,12 +54,13 @@ pub(crate) fn monte_carlo<'py>(
         simulate(&beam, &asked, seed, first_event, n_events, threads, ticker)
     })?
     .whole(py)?;
-    let tally = |(((name, _), (_, edges)), counts): (((String, Bins<'py>), (Quantity, Edges)), Counts)| {
+    let mut results = Vec::with_capacity(asked.len());
+    for (((name, _), (_, edges)), counts) in tallies.into_iter().zip(asked).zip(counts) {
         let bins = edges.bins();
         let edges = moved(py, edges.values().to_vec(), &[bins + 1])?;
-        Ok((name, edges, moved(py, counts.bins, &[bins])?, counts.underflow, counts.overflow))
-    };
-    tallies.into_iter().zip(asked).zip(counts).map(tally).collect()
+        results.push((name, edges, moved(py, counts.bins, &[bins])?, counts.underflow, counts.overflow));
+    }
+    Ok(results)
 }
 
 /// A function of one array, by name, with up to two fixed numbers: see `visviva.scattering`.
@@ -106,7 +107,8 @@ pub(crate) fn solid_angles<'py>(
     edges: PyReadonlyArrayDyn<'py, f64>,
 ) -> PyResult<Column<'py>> {
     let (edges, _) = copied("edges", &edges, [None])?;
-    let rings: Vec<f64> = edges.windows(2).map(|pair| solid_angle(pair[0], pair[1])).collect();
+    let ring = |pair: &[f64]| solid_angle(pair[0], pair[1]);
+    let rings: Vec<f64> = compute(py, 0, None, |_| Ok(edges.windows(2).map(ring).collect()))?.whole(py)?;
     let length = rings.len();
     moved(py, rings, &[length])
 }

@@ -247,7 +247,7 @@ fn output_dict<'py>(
     let outcomes = &output.outcomes;
     let times = if ensemble { request.times.len() } else { outcomes[0].rows };
     let columns = PyDict::new(py);
-    let mut set = |name: &str, mut values: Vec<f64>, shape: &[usize]| {
+    let set = |name: &str, mut values: Vec<f64>, shape: &[usize]| {
         values.truncate(shape.iter().product());
         columns.set_item(name, moved(py, values, shape)?)
     };
@@ -269,7 +269,8 @@ fn output_dict<'py>(
     dict.set_item("status", moved(py, statuses, &[copies])?)?;
 
     let (totals, each) = (PyDict::new(py), PyDict::new(py));
-    let counts: [(&str, fn(&Outcome) -> u64); 3] = [
+    type Count = fn(&Outcome) -> u64;
+    let counts: [(&str, Count); 3] = [
         ("steps", |outcome| outcome.steps),
         ("rejected", |outcome| outcome.rejected),
         ("evaluations", |outcome| outcome.evaluations),
@@ -367,9 +368,9 @@ pub(crate) fn conserved<'py>(
     .whole(py)?;
     let dict = PyDict::new(py);
     for (name, values) in columns.into_iter().zip(values) {
-        let width = if times == 0 { 1 } else { values.len() / times };
-        let shape = [times, width];
-        dict.set_item(name, moved(py, values, if width == 1 { &shape[..1] } else { &shape[..] })?)?;
+        let scalar = conservation::SCALARS.contains(&name.as_str());
+        let shape = [times, 3];
+        dict.set_item(name, moved(py, values, if scalar { &shape[..1] } else { &shape[..] })?)?;
     }
     Ok(dict)
 }

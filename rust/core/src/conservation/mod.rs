@@ -209,3 +209,6 @@ pub const COLUMNS: [&str; 7] = [
     "angular_momentum",
     "center_of_mass",
 ];
+
+/// Those of [`COLUMNS`] that are one number and not a vector.
+pub const SCALARS: [&str; 4] = ["kinetic_energy", "potential_energy", "energy", "virial"];

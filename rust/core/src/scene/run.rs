@@ -17,9 +17,9 @@ pub struct Outcome {
     pub ending: Ending,
     /// Output times recorded for all its particles.
     pub rows: usize,
-    /// Steps, of the unit that took most.
+    /// Steps of all units.
     pub steps: u64,
-    /// Rejected steps, of the same.
+    /// Rejected steps of all units.
     pub rejected: u64,
     /// Force evaluations of all units.
     pub evaluations: u64,
@@ -202,9 +202,8 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
         }
         outcome.rows = outcome.rows.min(report.rows);
         outcome.evaluations += report.evaluations;
-        if report.steps + report.rejected > outcome.steps + outcome.rejected {
-            (outcome.steps, outcome.rejected) = (report.steps, report.rejected);
-        }
+        outcome.steps += report.steps;
+        outcome.rejected += report.rejected;
         for (index, slot) in report.unit.recorded.clone().enumerate() {
             let body = report.unit.bodies[slot];
             outcome.position[body] = report.position[index];
@@ -226,7 +225,8 @@ fn derive(
     let names: Vec<&String> =
         request.record.iter().filter(|name| *name != "position" && *name != "velocity").collect();
     let times = request.times.len();
-    let widths: Vec<usize> = names.iter().map(|name| if *name == "energy" { 1 } else { 3 }).collect();
+    let widths: Vec<usize> =
+        names.iter().map(|name| if conservation::SCALARS.contains(&name.as_str()) { 1 } else { 3 }).collect();
     if names.is_empty() {
         return Ok(Vec::new());
     }
