@@ -86,7 +86,8 @@ fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
         engine.start(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
         let count = allocations(|| {
             for _ in 0..10 {
-                let outcome = engine.step(all, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                let outcome =
+                    engine.step(all, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
                 engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
                 engine.commit(outcome.accepted, &mut state);
             }

@@ -8,18 +8,22 @@ mod support;
 use support::{
     Problem, Stepper, advance, bodies, distance, exactly, harmonic, henon_heiles, momenta, three_bodies,
 };
+use visviva_core::forces::{Dynamics, Force};
 use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
 use visviva_core::integrators::fixed::{Place, place, run};
 use visviva_core::integrators::state::State;
 use visviva_core::integrators::{Embedded, Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::numerics::element::Shape;
 use visviva_core::numerics::real::Real;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
 type Make = fn() -> Problem<DoubleDouble>;
-const PROBLEMS: [(&str, Make, f64); 2] =
-    [("Hénon–Heiles", henon_heiles::<DoubleDouble>, 2.0), ("three bodies", three_bodies::<DoubleDouble>, 0.75)];
+const PROBLEMS: [(&str, Make, f64); 2] = [
+    ("Hénon–Heiles", henon_heiles::<DoubleDouble>, 2.0),
+    ("three bodies", three_bodies::<DoubleDouble>, 0.75),
+];
 
 /// The state at `t`, by the tableau of highest order with a step far below what the tests use.
 fn reference(make: Make, t: f64, steps: usize) -> State<DoubleDouble> {
@@ -117,8 +121,10 @@ fn the_continuous_extension_has_its_declared_order() {
         for method in METHODS {
             let Scheme::Embedded(embedded) = &method.scheme else { continue };
             for theta in [0.125, 0.3125, 0.5, 0.8125] {
-                let (coarse, fine) =
-                    (dense_error(embedded, make, 1.0 / 64.0, theta), dense_error(embedded, make, 1.0 / 128.0, theta));
+                let (coarse, fine) = (
+                    dense_error(embedded, make, 1.0 / 64.0, theta),
+                    dense_error(embedded, make, 1.0 / 128.0, theta),
+                );
                 // One step from exact data: the local error, one power more than the order.
                 let order = (coarse / fine).log2() - 1.0;
                 println!("{name}, {} at θ = {theta}: dense order {order:.3}", method.name);
@@ -182,8 +188,9 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
                 engine.start(true, &state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
                 let (mut steps, mut finished) = (0, false);
                 while !finished {
-                    let outcome =
-                        engine.step(true, &mut state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
+                    let outcome = engine
+                        .step(true, &mut state, &mut clock, &mut dynamics, &Alone, &mut ticker)
+                        .unwrap();
                     engine.commit(outcome.accepted, &mut state);
                     assert!(!outcome.stuck);
                     (finished, steps) = (outcome.finished, steps + 1);
@@ -383,8 +390,7 @@ fn golden_oscillators() {
 #[test]
 fn golden_yoshida_coefficients() {
     let case = golden("GI-yoshida4");
-    let Scheme::Splitting(table) =
-        &METHODS.iter().find(|method| method.name == "yoshida4").unwrap().scheme
+    let Scheme::Splitting(table) = &METHODS.iter().find(|method| method.name == "yoshida4").unwrap().scheme
     else {
         panic!("yoshida4 is a splitting")
     };
@@ -436,5 +442,60 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
         assert_eq!(seen[3].1.all(), plain.all(), "{}", method.name);
         advance(method, h, 3, &mut plain, &mut dynamics);
         assert_eq!(state.all(), plain.all(), "{}", method.name);
+    }
+}
+
+/// Notes the earliest and latest value of the first coordinate, which moves uniformly and so tells the time.
+struct Watch(std::sync::Arc<std::sync::Mutex<(f64, f64)>>);
+impl Force<f64> for Watch {
+    fn apply(
+        &mut self,
+        q: &[f64],
+        _: &[f64],
+        a: &mut [f64],
+        _: bool,
+        _: &mut Ticker<'_>,
+    ) -> visviva_core::Result<()> {
+        let mut seen = self.0.lock().unwrap();
+        *seen = (seen.0.min(q[0]), seen.1.max(q[0]));
+        a.copy_from_slice(&[0.0, -q[1].powi(3)]);
+        Ok(())
+    }
+}
+
+#[test]
+fn adaptive_methods_never_evaluate_beyond_the_span() {
+    for method in METHODS {
+        let Scheme::Embedded(embedded) = &method.scheme else { continue };
+        for end in [0.01, 1.0, 7.3, -0.01, -7.3] {
+            let seen = std::sync::Arc::new(std::sync::Mutex::new((0.0, 0.0)));
+            let shape = Shape { rows: 1, components: 2 };
+            let mut dynamics = Dynamics::new(shape, vec![Box::new(Watch(seen.clone()))]);
+            let mut state = State::new(shape, &[0.0, 1.0], &[1.0, 0.5]);
+            let control = Control::default();
+            let mut ticker = Ticker::quiet(&control);
+            let (tolerance, at) = still(1e-8);
+            let mut engine = Adaptive::new(embedded, &state, tolerance, at, f64::INFINITY);
+            let mut clock = Clock::new(end);
+            engine.start(true, &state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
+            let mut finished = false;
+            while !finished {
+                let outcome =
+                    engine.step(true, &mut state, &mut clock, &mut dynamics, &Alone, &mut ticker).unwrap();
+                engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
+                engine.commit(outcome.accepted, &mut state);
+                finished = outcome.finished;
+            }
+            assert_eq!(clock.elapsed, end);
+            let (first, last) = *seen.lock().unwrap();
+            // The clock itself is rounded.
+            let slack = 4.0 * f64::EPSILON * end.abs();
+            assert!(
+                first >= end.min(0.0) - slack && last <= end.max(0.0) + slack,
+                "{}: {first} {last}",
+                method.name
+            );
+            assert!((last - first - end.abs()).abs() <= slack, "{}: the end is evaluated", method.name);
+        }
     }
 }

@@ -146,11 +146,7 @@ pub fn exactly(state: &State<f64>) -> State<DoubleDouble> {
     let pair = |x: &[f64], rest: &[f64]| -> Vec<DoubleDouble> {
         x.iter().zip(rest).map(|(&x, &rest)| DoubleDouble::sum(x, rest)).collect()
     };
-    State::new(
-        state.shape,
-        &pair(state.q(), state.q_error()),
-        &pair(state.v(), state.v_error()),
-    )
+    State::new(state.shape, &pair(state.q(), state.q_error()), &pair(state.v(), state.v_error()))
 }
 
 /// `Σ m v` and `Σ m x × v` of bodies in component-major layout, summed in double-double.
@@ -184,7 +180,10 @@ pub fn five_lanes() -> Problem<Lanes> {
     let v = [[0.1, 0.2, -0.3, 0.3, -0.2], [-0.2, 0.6, -0.5, 0.4, -0.4], [0.0, 0.1, -0.1, 0.1, 0.2]];
     let still = v.map(|v| Lanes(core::array::from_fn(|lane| v.get(lane).copied().unwrap_or_default())));
     Problem {
-        dynamics: Dynamics::new(shape, vec![Box::new(Ring::new(shape, vec![1.0, 0.7, 0.4, 0.01, 1e-6], 0.0))]),
+        dynamics: Dynamics::new(
+            shape,
+            vec![Box::new(Ring::new(shape, vec![1.0, 0.7, 0.4, 0.01, 1e-6], 0.0))],
+        ),
         state: State::new(shape, &q.map(lanes), &still),
         mass: vec![],
     }
