@@ -79,8 +79,8 @@ pub struct Plan {
     pub layout: Layout,
     /// Threads over units, and inside one force evaluation.
     pub threads: (usize, usize),
-    /// Output times.
-    pub outputs: usize,
+    /// Output times after the start and before the end.
+    pub outputs_between: usize,
     /// Columns to be computed.
     pub record: Vec<String>,
     copies: usize,
@@ -129,7 +129,7 @@ impl Plan {
             origins,
             layout,
             threads: (1, 1),
-            outputs: request.times.len(),
+            outputs_between: request.times.iter().rev().skip(1).filter(|&&t| t != scene.t0).count(),
             record: request.record.clone(),
             copies: scene.copies,
             particles: scene.particles,
@@ -274,7 +274,7 @@ impl Plan {
             if self.gravity.is_none() && self.particles > 1 {
                 skip("pairs", "the particles do not interact".to_owned());
             }
-            if self.method.adaptive() && self.outputs <= 1 {
+            if self.method.adaptive() && self.outputs_between == 0 {
                 skip("dense output", "no time before the end is asked for".to_owned());
             }
             skip("event location", "no events are asked for".to_owned());
