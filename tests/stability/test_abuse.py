@@ -4,13 +4,20 @@ A tolerance is the measured error with a margin of 2 to 4; where a closed form i
 the problem times a few roundings, since no algorithm can do better on rounded input.
 """
 
+from typing import Any
+
 import numpy as np
 import pytest
 
 import visviva as vv
 
 EPSILON = 2.0**-53
-FINE = {"dop853": {"rtol": 1e-12}, "kahan_li8": {"dt": 50.0}, "leapfrog": {"dt": 10.0}, "auto": {}}
+FINE: dict[str, dict[str, Any]] = {
+    "dop853": {"rtol": 1e-12},
+    "kahan_li8": {"dt": 50.0},
+    "leapfrog": {"dt": 10.0},
+    "auto": {},
+}
 
 
 def rounding_at_pericentre(e: float) -> float:
@@ -109,7 +116,10 @@ def test_units_of_1e100_in_powers_of_two_change_no_bit(method: str, powers: tupl
 
 
 @pytest.mark.parametrize("method", list(FINE))
-@pytest.mark.parametrize("exponents", [(100, 0, 0), (-100, 0, 0), (0, 100, 0), (0, 0, 100), (0, 0, -100), (100, 100, 100), (-100, -100, -100)])
+@pytest.mark.parametrize(
+    "exponents",
+    [(100, 0, 0), (-100, 0, 0), (0, 100, 0), (0, 0, 100), (0, 0, -100), (100, 100, 100), (-100, -100, -100)],
+)
 def test_units_of_1e100_in_decimals(method: str, exponents: tuple[int, int, int]) -> None:
     """To the rounding of the input; adaptive steps that move with it show their tolerance (1e-9 for auto)."""
     length, mass, time = (10.0**exponent for exponent in exponents)

@@ -2,6 +2,7 @@
 
 import resource
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -18,17 +19,23 @@ def some(count: int, seed: int = 1, masses: float = 0.0) -> vv.Particles:
 
 
 def join(*parts: vv.Particles) -> vv.Particles:
-    return vv.Particles(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("mass", "position", "velocity")))
+    return vv.Particles(
+        *(np.concatenate([getattr(p, name) for p in parts]) for name in ("mass", "position", "velocity"))
+    )
 
 
 STARS = vv.Particles(
-    [1.0, 0.8, 0.1], [[-1, 0, 0], [1, 0.2, 0.1], [6, 0, 1.0]], [[0, -0.5, 0], [0, 0.6, 0.1], [0, 0.5, 0]]
+    [1.0, 0.8, 0.1],
+    [[-1.0, 0.0, 0.0], [1.0, 0.2, 0.1], [6.0, 0.0, 1.0]],
+    [[0.0, -0.5, 0.0], [0.0, 0.6, 0.1], [0.0, 0.5, 0.0]],
 )
 CLOSED = {
     "no force": vv.Scene(some(4)),
     "uniform field": vv.Scene(some(4, masses=1.0), vv.UniformField([0.0, 0.0, -9.81])),
     "two bodies": vv.problems.kepler(e=0.3).scene,
-    "one massive body": vv.Scene(join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)),
+    "one massive body": vv.Scene(
+        join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)
+    ),
     "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
 }
 
@@ -53,9 +60,11 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
 
 
-@pytest.mark.parametrize(("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
+@pytest.mark.parametrize(
+    ("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})]
+)
 @pytest.mark.parametrize("passives", [1, 5, 64, 65, 200])
-def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, float], passives: int) -> None:
+def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, Any], passives: int) -> None:
     alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
     out = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
     assert np.array_equal(out.position[:, :3], alone.position)
@@ -65,9 +74,11 @@ def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, fl
         assert out.stats.evaluations == alone.stats.evaluations
 
 
-@pytest.mark.parametrize(("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
+@pytest.mark.parametrize(
+    ("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})]
+)
 @pytest.mark.parametrize("far", [40.0, 1e6])
-def test_not_even_one_far_away(method: str, step: dict[str, float], far: float) -> None:
+def test_not_even_one_far_away(method: str, step: dict[str, Any], far: float) -> None:
     """The plan's units are then others; nothing but powers of two may come of that."""
     alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
     comet = vv.Particles([0.0], [[far, 1.0, 2.0]], [[0.0, 0.1, 0.0]])
@@ -105,7 +116,7 @@ def test_particles_that_do_not_interact_run_as_if_alone() -> None:
 
 @pytest.mark.parametrize("count", [3, 8, 9, 40])
 @pytest.mark.parametrize(("method", "step"), [("kahan_li8", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
-def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, float]) -> None:
+def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, Any]) -> None:
     bodies = some(count, masses=1.0)
     position, velocity = bodies.position * [1, 1, 0], bodies.velocity * [1, 1, 0]
     flat = vv.Particles(bodies.mass, position, velocity)
@@ -123,7 +134,7 @@ def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, 
 
 def test_columns_that_are_not_asked_for_are_not_there() -> None:
     scene = vv.Scene(STARS, vv.Gravity(1.0))
-    run = {"t": np.linspace(0.0, 1.0, 5), "method": "leapfrog", "dt": 0.01}
+    run: dict[str, Any] = {"t": np.linspace(0.0, 1.0, 5), "method": "leapfrog", "dt": 0.01}
     full = scene.run(**run, record=("position", "velocity", "energy", "momentum"))
     for record in [("position",), ("velocity",), ("energy",), ("position", "energy")]:
         out = scene.run(**run, record=record)
@@ -137,7 +148,8 @@ def test_columns_that_are_not_asked_for_are_not_there() -> None:
 
 
 def test_evaluations_of_an_adaptive_run_are_counted_to_the_last_one() -> None:
-    """Two to start; eleven for a step tried and one more if it is kept; three more only for steps with an output inside."""
+    """Two to start; eleven for a step tried and one more if it is kept; three more
+    only for steps with an output inside."""
     scene = vv.Scene(STARS, vv.Gravity(1.0))
     end_only = scene.run(t=5.0, method="dop853", rtol=1e-10)
     steps, rejected = end_only.stats.steps, end_only.stats.rejected
