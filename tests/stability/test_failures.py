@@ -2,7 +2,6 @@
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 import visviva as vv
 
@@ -54,7 +53,7 @@ def test_a_fixed_centre_is_met_by_one_body() -> None:
 @pytest.mark.parametrize("bad", [0, 4, 10])
 @pytest.mark.parametrize("threads", [1, 2])
 def test_one_colliding_copy_spoils_no_other(bad: int, threads: int) -> None:
-    velocity: NDArray[np.float64] = np.zeros((11, 2, 3))
+    velocity = np.zeros((11, 2, 3))
     velocity[:, 0, 1] = 0.3 + 0.001 * np.arange(11)
     velocity[:, 1] = -velocity[:, 0]
     velocity[bad] = 0.0

@@ -2,6 +2,7 @@
 
 import resource
 import time
+from typing import Any
 
 import numpy as np
 import pytest
@@ -24,7 +25,9 @@ def join(*parts: vv.Particles) -> vv.Particles:
 
 
 STARS = vv.Particles(
-    [1.0, 0.8, 0.1], [[-1, 0, 0], [1, 0.2, 0.1], [6, 0, 1.0]], [[0, -0.5, 0], [0, 0.6, 0.1], [0, 0.5, 0]]
+    [1.0, 0.8, 0.1],
+    [[-1.0, 0.0, 0.0], [1.0, 0.2, 0.1], [6.0, 0.0, 1.0]],
+    [[0.0, -0.5, 0.0], [0.0, 0.6, 0.1], [0.0, 0.5, 0.0]],
 )
 CLOSED = {
     "no force": vv.Scene(some(4)),
@@ -61,7 +64,7 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     ("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})]
 )
 @pytest.mark.parametrize("passives", [1, 5, 64, 65, 200])
-def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, float], passives: int) -> None:
+def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, Any], passives: int) -> None:
     alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
     out = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
     assert np.array_equal(out.position[:, :3], alone.position)
@@ -71,35 +74,49 @@ def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, fl
         assert out.stats.evaluations == alone.stats.evaluations
 
 
+@pytest.mark.parametrize(
+    ("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})]
+)
+@pytest.mark.parametrize("far", [40.0, 1e6])
+def test_not_even_one_far_away(method: str, step: dict[str, Any], far: float) -> None:
+    """The plan's units are then others; nothing but powers of two may come of that."""
+    alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
+    comet = vv.Particles([0.0], [[far, 1.0, 2.0]], [[0.0, 0.1, 0.0]])
+    out = vv.Scene(join(STARS, comet), vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
+    assert np.array_equal(out.position[:, :3], alone.position)
+    assert np.array_equal(out.velocity[:, :3], alone.velocity)
+
+
 def test_time_grows_linearly_with_massless_bodies() -> None:
     """Four times the passives: four times the time if no pair of them is formed, sixteen times if one were."""
 
     def seconds(passives: int) -> float:
         scene = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0))
-        return min(scene.run(t=0.5, method="leapfrog", dt=0.01, threads=1).stats.seconds for _ in range(5))
+        return min(scene.run(t=5.0, method="leapfrog", dt=0.01, threads=1).stats.seconds for _ in range(5))
 
-    assert seconds(16_000) < 8 * seconds(4_000)
+    assert seconds(2_000) < 8 * seconds(500)
 
 
 def test_particles_that_do_not_interact_run_as_if_alone() -> None:
     field = vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))
     bodies = some(19, masses=1.0)
     out = vv.Scene(bodies, field).run(t=[0.3, 2.0], method="dop853", rtol=1e-10)
-    evaluations = steps = 0
+    evaluations = most = 0
     for i in range(19):
         one = vv.Particles(bodies.mass[i : i + 1], bodies.position[i : i + 1], bodies.velocity[i : i + 1])
         alone = vv.Scene(one, field).run(t=[0.3, 2.0], method="dop853", rtol=1e-10)
         assert np.array_equal(out.position[:, i : i + 1], alone.position)
         assert np.array_equal(out.velocity[:, i : i + 1], alone.velocity)
         evaluations += alone.stats.evaluations
-        steps += alone.stats.steps
-    assert (out.stats.evaluations, out.stats.steps) == (evaluations, steps)
+        most = max(most, alone.stats.steps)
+    # Evaluations add up; the steps of a scene are those of its busiest particle.
+    assert (out.stats.evaluations, out.stats.steps) == (evaluations, most)
     assert out.plan.pairs_per_evaluation == 0
 
 
 @pytest.mark.parametrize("count", [3, 8, 9, 40])
 @pytest.mark.parametrize(("method", "step"), [("kahan_li8", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
-def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, float]) -> None:
+def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, Any]) -> None:
     bodies = some(count, masses=1.0)
     position, velocity = bodies.position * [1, 1, 0], bodies.velocity * [1, 1, 0]
     flat = vv.Particles(bodies.mass, position, velocity)
@@ -117,7 +134,7 @@ def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, 
 
 def test_columns_that_are_not_asked_for_are_not_there() -> None:
     scene = vv.Scene(STARS, vv.Gravity(1.0))
-    run = {"t": np.linspace(0.0, 1.0, 5), "method": "leapfrog", "dt": 0.01}
+    run: dict[str, Any] = {"t": np.linspace(0.0, 1.0, 5), "method": "leapfrog", "dt": 0.01}
     full = scene.run(**run, record=("position", "velocity", "energy", "momentum"))
     for record in [("position",), ("velocity",), ("energy",), ("position", "energy")]:
         out = scene.run(**run, record=record)
@@ -131,7 +148,8 @@ def test_columns_that_are_not_asked_for_are_not_there() -> None:
 
 
 def test_evaluations_of_an_adaptive_run_are_counted_to_the_last_one() -> None:
-    """Two to start; eleven for a step tried and one more if it is kept; three more only for steps with an output inside."""
+    """Two to start; eleven for a step tried and one more if it is kept; three more
+    only for steps with an output inside."""
     scene = vv.Scene(STARS, vv.Gravity(1.0))
     end_only = scene.run(t=5.0, method="dop853", rtol=1e-10)
     steps, rejected = end_only.stats.steps, end_only.stats.rejected

@@ -83,9 +83,11 @@ impl Shape {
     }
 }
 
+/// `y += increment + rest`. The rest is less than half a unit in the last place of the increment: added to
+/// it first it would be rounded away every time, and a coefficient's low part with it. So it joins `e`.
 #[inline(always)]
-fn add_compensated<S: Real>(y: &mut S, e: &mut S, increment: S) {
-    let (sum, error) = two_sum(*y, increment + *e);
+fn add_compensated<S: Real>(y: &mut S, e: &mut S, increment: S, rest: S) {
+    let (sum, error) = two_sum(*y, increment + (*e + rest));
     *y = sum;
     *e = error;
 }
@@ -101,8 +103,8 @@ fn kick_drift<S: Real>(
     let n = a.len();
     let (q, q_error, v, v_error) = (&mut q[..n], &mut q_error[..n], &mut v[..n], &mut v_error[..n]);
     for i in 0..n {
-        add_compensated(&mut v[i], &mut v_error[i], kick.0 * a[i] + kick.1 * a[i]);
-        add_compensated(&mut q[i], &mut q_error[i], drift.0 * v[i] + (drift.1 * v[i] + drift.0 * v_error[i]));
+        add_compensated(&mut v[i], &mut v_error[i], kick.0 * a[i], kick.1 * a[i]);
+        add_compensated(&mut q[i], &mut q_error[i], drift.0 * v[i], drift.1 * v[i] + drift.0 * v_error[i]);
     }
 }
 
@@ -111,7 +113,7 @@ fn advance<S: Real>((y, e): (&mut [S], &mut [S]), k: &[S], step: Scaled<S>) {
     let n = k.len();
     let (y, e) = (&mut y[..n], &mut e[..n]);
     for i in 0..n {
-        add_compensated(&mut y[i], &mut e[i], step.0 * k[i] + step.1 * k[i]);
+        add_compensated(&mut y[i], &mut e[i], step.0 * k[i], step.1 * k[i]);
     }
 }
 
