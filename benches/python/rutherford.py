@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 BINS = 180
 KAPPA, B_MAX = 0.5, 5.0
@@ -29,7 +32,7 @@ def peer(n: int, chunks: int, kappa: float, b_max: float, bins: int) -> np.ndarr
     for chunk in numba.prange(chunks):
         counts = np.zeros(bins, np.int64)
         for _ in range(n // chunks):
-            b = b_max * np.sqrt(np.random.random())
+            b = b_max * np.sqrt(np.random.random())  # noqa: NPY002 — the generator that numba compiles
             angle = 2.0 * np.arctan2(kappa, b)
             counts[min(int(angle * scale), bins - 1)] += 1
         partial[chunk] = counts

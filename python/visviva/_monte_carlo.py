@@ -215,7 +215,7 @@ def monte_carlo(
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
         ``{name: edges}``.
     bins : int
-        Number of equal bins, over all possible values, of each tally that is given without edges.
+        Number of equal bins, over all possible values, of each tally that is given without edges; up to 65536.
     threads : int, optional
         By default ``VISVIVA_THREADS``, else all cores.
     first_event : int
@@ -260,7 +260,7 @@ def monte_carlo(
         "beam_energy": number("beam_energy", beam_energy),
         "masses": (float(pair[0]), float(pair[1])),
         "b_max": number("b_max", b_max),
-        "tallies": _tallies(tally, _whole("bins", bins, 1, 2**20)),
+        "tallies": _tallies(tally, _whole("bins", bins, 1, 2**16)),
         "threads": None if threads is None else _whole("threads", threads, 1, 1024),
     }
     with callback(progress) as report:

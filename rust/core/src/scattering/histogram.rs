@@ -9,7 +9,7 @@ use crate::numerics::philox::DRAW_BITS;
 use crate::{Error, Result};
 
 /// The most bins of one histogram.
-pub const MOST_BINS: usize = 1 << 20;
+pub const MOST_BINS: usize = 1 << 16;
 
 /// Edges, strictly increasing and finite; bin i holds `edges[i] ≤ x < edges[i+1]`, the last also its end.
 #[derive(Clone, Debug, PartialEq)]
@@ -104,31 +104,20 @@ impl Steps {
     /// For `value`, monotone in the draw on each side of `turning`.
     pub fn new(edges: &Edges, turning: Option<u64>, value: impl Fn(u64) -> f64) -> Self {
         let turning = turning.map_or(0, |draw| draw.clamp(1, DRAWS - 1));
+        let slot = |draw: u64| edges.slot(value(draw));
         let mut starts = vec![0];
         for (from, to) in [(0, turning), (turning, DRAWS)] {
-            if from == to {
-                continue;
-            }
-            starts.push(from);
-            let rising = edges.slot(value(from)) <= edges.slot(value(to - 1));
-            // In a rising stretch slot s begins where the slot reaches s; in a falling one, where it
-            // no longer exceeds s.
-            for wanted in 0..=edges.bins() + 1 {
-                let begun = |draw: u64| {
-                    let slot = edges.slot(value(draw));
-                    if rising { slot >= wanted } else { slot <= wanted }
-                };
-                if begun(to - 1) {
-                    starts.push(first(from, to - 1, begun));
-                }
+            if from < to {
+                starts.push(from);
+                steps_between(from, to - 1, &slot, &mut starts);
             }
         }
         starts.sort_unstable();
         starts.dedup();
-        let slots: Vec<usize> = starts.iter().map(|start| edges.slot(value(*start))).collect();
+        let slots: Vec<usize> = starts.iter().map(|start| slot(*start)).collect();
         starts.push(u64::MAX);
         // Draws are uniform: with 32 cells per piece a comparison fails once in 60 events or so.
-        let cells = (32 * slots.len()).next_power_of_two().clamp(1 << 12, 1 << 20);
+        let cells = (32 * slots.len()).next_power_of_two().clamp(1 << 12, 1 << 18);
         let shift = DRAW_BITS - cells.trailing_zeros();
         let cells = (0..cells as u64)
             .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
@@ -181,18 +170,23 @@ impl Steps {
     }
 }
 
-/// The first number in `from..=to` with the property, which once begun holds on, and holds at `to`.
-fn first(from: u64, to: u64, property: impl Fn(u64) -> bool) -> u64 {
-    let (mut low, mut high) = (from, to);
-    while low < high {
-        let middle = low + (high - low) / 2;
-        if property(middle) {
-            high = middle;
-        } else {
-            low = middle + 1;
+/// Adds every draw in `from + 1..=to` whose slot differs from that of the draw before, by bisection:
+/// `slot` is monotone, so where both ends agree there is no step.
+fn steps_between(from: u64, to: u64, slot: &impl Fn(u64) -> usize, steps: &mut Vec<u64>) {
+    let mut pending = vec![((from, slot(from)), (to, slot(to)))];
+    while let Some((low, high)) = pending.pop() {
+        if low.1 == high.1 {
+            continue;
         }
+        if high.0 - low.0 == 1 {
+            steps.push(high.0);
+            continue;
+        }
+        let draw = low.0 + (high.0 - low.0) / 2;
+        let middle = (draw, slot(draw));
+        pending.push((low, middle));
+        pending.push((middle, high));
     }
-    low
 }
 
 #[cfg(test)]
