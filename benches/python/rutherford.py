@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import sys
 import time
-from collections.abc import Callable
+from typing import TYPE_CHECKING
 
 import numba
 import numpy as np
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 BINS = 180
 KAPPA, B_MAX = 0.5, 5.0

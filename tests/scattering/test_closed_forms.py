@@ -80,9 +80,10 @@ def test_alpha_particles_on_gold(
 
 def test_laboratory_cross_sections_of_gold() -> None:
     lab = np.radians([15.0, 30.0, 60.0, 90.0, 120.0, 150.0])
-    barns = s.rutherford_cross_section(
-        TARGET, energy=relative(7.687), angle=lab, frame="lab", mass_ratio=ALPHA / GOLD
-    ) / 100.0
+    barns = (
+        s.rutherford_cross_section(TARGET, energy=relative(7.687), angle=lab, frame="lab", mass_ratio=ALPHA / GOLD)
+        / 100.0
+    )
     # Seven printed digits.
     assert barns == pytest.approx([1886.224, 122.0106, 8.759546, 2.189547, 0.9728810, 0.6284875], rel=3e-7)
     first, second = s.cm_angle(lab, mass_ratio=ALPHA / GOLD)

@@ -5,7 +5,7 @@ use crate::errors::raised;
 use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use visviva_core::parallel::thread_count;
+use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::histogram::{Counts, Edges};
 use visviva_core::scattering::kinematics::{Collision, HalfAngle, solid_angle};
 use visviva_core::scattering::monte_carlo::{Beam, Quantity, monte_carlo as simulate};
@@ -106,7 +106,10 @@ pub(crate) fn solid_angles<'py>(
     edges: PyReadonlyArrayDyn<'py, f64>,
 ) -> PyResult<Column<'py>> {
     let (edges, _) = copied("edges", &edges, [None])?;
-    let rings: Vec<f64> = edges.windows(2).map(|pair| solid_angle(pair[0], pair[1])).collect();
+    let rings = |_: &mut Ticker<'_>| {
+        Ok(edges.windows(2).map(|pair| solid_angle(pair[0], pair[1])).collect::<Vec<f64>>())
+    };
+    let rings = compute(py, 0, None, rings)?.whole(py)?;
     let length = rings.len();
     moved(py, rings, &[length])
 }
