@@ -19,6 +19,12 @@ pub trait Force<S: Element>: Send {
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted) when the caller asked to stop; `a` is then unfinished.
     fn apply(&mut self, q: &[S], v: &[S], a: &mut [S], first: bool, ticker: &mut Ticker<'_>) -> Result<()>;
+
+    /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
+    /// changes a state between evaluations must then be able to take that back.
+    fn stops_midway(&self) -> bool {
+        false
+    }
 }
 
 /// All forces of a scene: the right-hand side of the equations of motion.
@@ -35,6 +41,11 @@ impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
     pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
         Self { shape, forces, evaluations: 0 }
+    }
+
+    /// Whether any force may be interrupted in the middle of an evaluation.
+    pub fn stops_midway(&self) -> bool {
+        self.forces.iter().any(|force| force.stops_midway())
     }
 
     /// The acceleration of every particle.

@@ -113,12 +113,22 @@ pub fn run<S: Element>(
     let outcome = (|| {
         let mut stepper = FixedStep::new(method, h, state)?;
         let (mut between, mut shadow) = (state.clone(), stepper.clone());
+        let mut before = dynamics.stops_midway().then(|| state.clone());
         for (index, place) in places.enumerate() {
             while taken < place.node {
                 if taken == max_steps {
                     return Ok(());
                 }
-                stepper.step(state, dynamics, ticker)?;
+                if let Some(before) = &mut before {
+                    before.copy_from(state);
+                }
+                if let Err(error) = stepper.step(state, dynamics, ticker) {
+                    // Kicks and drifts change the state in place: half a step is taken back.
+                    if let Some(before) = &before {
+                        state.copy_from(before);
+                    }
+                    return Err(error);
+                }
                 taken += 1;
                 if taken % PROGRESS_STEPS == 0 {
                     ticker.advance(PROGRESS_STEPS);
@@ -135,6 +145,7 @@ pub fn run<S: Element>(
                 }
             }
         }
+        ticker.advance(taken % PROGRESS_STEPS);
         Ok(())
     })();
     (taken, outcome)

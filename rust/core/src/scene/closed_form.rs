@@ -43,8 +43,8 @@ impl Path {
                 let (mut position, mut velocity) = base.state(t, t0);
                 let (relative, rate) = orbit.state(elapsed.to_f64());
                 for c in 0..3 {
-                    position[c] = position[c] + *fraction * DoubleDouble::from(relative[c]);
-                    velocity[c] = velocity[c] + *fraction * DoubleDouble::from(rate[c]);
+                    position[c] += *fraction * DoubleDouble::from(relative[c]);
+                    velocity[c] += *fraction * DoubleDouble::from(rate[c]);
                 }
                 (position, velocity)
             }

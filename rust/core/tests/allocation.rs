@@ -1,0 +1,112 @@
+//! No step allocates: scratch is made once per run.
+//!
+//! A binary of its own, as its allocator counts. One test, since the count is the thread's.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+
+mod support;
+
+use core::cell::Cell;
+use std::alloc::{GlobalAlloc, Layout, System};
+use support::{Problem, Stepper, five_lanes, henon_heiles, three_bodies};
+use visviva_core::integrators::Scheme;
+use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
+use visviva_core::numerics::element::Element;
+use visviva_core::numerics::lanes::Lanes;
+use visviva_core::numerics::real::Mask;
+use visviva_core::parallel::{Control, Ticker};
+use visviva_core::registry::METHODS;
+
+thread_local! {
+    static ALLOCATIONS: Cell<u64> = const { Cell::new(0) };
+}
+
+struct Counting;
+
+// SAFETY: everything is handed on to the system's allocator.
+unsafe impl GlobalAlloc for Counting {
+    unsafe fn alloc(&self, layout: Layout) -> *mut u8 {
+        ALLOCATIONS.set(ALLOCATIONS.get() + 1);
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.alloc(layout) }
+    }
+    unsafe fn dealloc(&self, pointer: *mut u8, layout: Layout) {
+        // SAFETY: the caller's promise is passed on.
+        unsafe { System.dealloc(pointer, layout) }
+    }
+}
+
+#[global_allocator]
+static COUNTING: Counting = Counting;
+
+fn allocations(work: impl FnOnce()) -> u64 {
+    let before = ALLOCATIONS.get();
+    work();
+    ALLOCATIONS.get() - before
+}
+
+struct Each;
+impl<S: Element> Reduce<S> for Each {
+    fn largest(&self, value: S) -> S {
+        value
+    }
+}
+
+fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
+    let Problem { state, mut dynamics, .. } = problem;
+    let control = Control::default();
+    let mut ticker = Ticker::quiet(&control);
+    METHODS
+        .iter()
+        .map(|method| {
+            let mut state = state.clone();
+            let mut stepper = Stepper::new(method, 1.0 / 64.0, &state);
+            let count = allocations(|| {
+                for _ in 0..10 {
+                    stepper.step(&mut state, &mut dynamics, &mut ticker);
+                }
+            });
+            (method.name, count)
+        })
+        .collect()
+}
+
+fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
+    let Problem { mut state, mut dynamics, .. } = problem;
+    let control = Control::default();
+    let mut ticker = Ticker::quiet(&control);
+    let mut counts = Vec::new();
+    for method in METHODS {
+        let Scheme::Embedded(embedded) = &method.scheme else { continue };
+        let rtol = S::splat(1e-9);
+        let tolerance = Tolerance { rtol, atol_q: rtol, atol_v: rtol };
+        let at = Reference { position: [S::zero(); 3], velocity: [S::zero(); 3] };
+        let mut engine = Adaptive::new(embedded, &state, tolerance, at, f64::INFINITY);
+        let mut clock = Clock::new(S::splat(1e3));
+        let all = S::Mask::splat(true);
+        engine.start(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+        let count = allocations(|| {
+            for _ in 0..10 {
+                let outcome = engine.step(all, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
+                engine.commit(outcome.accepted, &mut state);
+            }
+        });
+        counts.push((method.name, count));
+    }
+    counts
+}
+
+#[test]
+fn no_step_allocates() {
+    assert_eq!(allocations(|| drop(vec![0_u8; 10])), 1, "the count counts");
+    let counts = [
+        fixed(henon_heiles::<f64>()),
+        fixed(three_bodies::<f64>()),
+        fixed(five_lanes()),
+        adaptive(three_bodies::<f64>()),
+        adaptive::<Lanes>(five_lanes()),
+    ];
+    for (method, count) in counts.into_iter().flatten() {
+        assert_eq!(count, 0, "{method} allocates");
+    }
+}

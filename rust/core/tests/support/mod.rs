@@ -1,0 +1,191 @@
+//! Shared by the property tests: problems, and a plain way of running a method on them.
+#![allow(dead_code, missing_docs, unreachable_pub, reason = "every test binary takes what it needs")]
+
+use visviva_core::Result;
+use visviva_core::forces::gravity::{FewBodies, Ring};
+use visviva_core::forces::{Dynamics, Force};
+use visviva_core::integrators::fixed::FixedStep;
+use visviva_core::integrators::runge_kutta::RungeKuttaStep;
+use visviva_core::integrators::state::State;
+use visviva_core::integrators::{Method, Scheme};
+use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::numerics::element::{Element, Shape};
+use visviva_core::numerics::lanes::Lanes;
+use visviva_core::parallel::{Control, Ticker};
+
+/// Hénon and Heiles's potential: the textbook nonlinear oscillator, polynomial and so the same for any scalar.
+pub struct HenonHeiles;
+
+impl<S: Element> Force<S> for HenonHeiles {
+    fn apply(&mut self, q: &[S], _: &[S], a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+        let (x, y) = (q[0], q[1]);
+        let terms = [-x - S::splat(2.0) * x * y, y * y - x * x - y];
+        for (a, term) in a.iter_mut().zip(terms) {
+            *a = if first { term } else { *a + term };
+        }
+        Ok(())
+    }
+}
+
+/// `a = -q`: linear, so good for closed forms and round-off, and no good for measuring an order.
+pub struct Harmonic;
+
+impl<S: Element> Force<S> for Harmonic {
+    fn apply(&mut self, q: &[S], _: &[S], a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+        for (a, &q) in a.iter_mut().zip(q) {
+            *a = if first { -q } else { *a - q };
+        }
+        Ok(())
+    }
+}
+
+/// A problem: its forces and where it starts.
+pub struct Problem<S: Element> {
+    pub dynamics: Dynamics<S>,
+    pub state: State<S>,
+    /// One mass per coordinate, in the layout of the state.
+    pub mass: Vec<f64>,
+}
+
+fn splat<S: Element>(values: &[f64]) -> Vec<S> {
+    values.iter().map(|&x| S::splat(x)).collect()
+}
+
+pub fn henon_heiles<S: Element>() -> Problem<S> {
+    let shape = Shape { rows: 1, components: 2 };
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(HenonHeiles)]),
+        state: State::new(shape, &splat(&[0.12, 0.3]), &splat(&[0.35, -0.2])),
+        mass: vec![1.0; 2],
+    }
+}
+
+pub fn harmonic<S: Element>() -> Problem<S> {
+    let shape = Shape { rows: 1, components: 1 };
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(Harmonic)]),
+        state: State::new(shape, &splat(&[1.0]), &splat(&[0.0])),
+        mass: vec![1.0],
+    }
+}
+
+/// Three unequal bodies in space, bound, with no symmetry and no close encounter for some time units.
+pub fn three_bodies<S: Element>() -> Problem<S>
+where
+    FewBodies<S>: Force<S>,
+{
+    let mass = [1.0, 0.5, 0.25];
+    // Component after component.
+    let q = [0.0, 1.0, -1.5, 0.0, 0.25, 0.5, 0.0, -0.125, 0.375];
+    let v = [-0.125, 0.0, 0.5, -0.25, 0.75, -0.5, 0.0, 0.125, -0.25];
+    bodies(&mass, &q, &v, 0.0)
+}
+
+/// Bodies under their mutual gravity, G = 1.
+pub fn bodies<S: Element>(mass: &[f64], q: &[f64], v: &[f64], softening: f64) -> Problem<S>
+where
+    FewBodies<S>: Force<S>,
+{
+    let shape = Shape { rows: mass.len(), components: 3 };
+    let strength = splat(mass);
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(FewBodies::new(shape, strength, softening))]),
+        state: State::new(shape, &splat(q), &splat(v)),
+        mass: mass.iter().copied().cycle().take(shape.len()).collect(),
+    }
+}
+
+/// A method at a fixed step; of a method with step control, its tableau.
+pub enum Stepper<S: Element> {
+    Fixed(FixedStep<S>),
+    Tableau(RungeKuttaStep<S>),
+}
+
+impl<S: Element> Stepper<S> {
+    pub fn new(method: &Method, h: f64, state: &State<S>) -> Self {
+        match &method.scheme {
+            Scheme::Embedded(embedded) => {
+                Self::Tableau(RungeKuttaStep::new(&embedded.tableau, S::splat(h), state))
+            }
+            _ => Self::Fixed(FixedStep::new(method, h, state).unwrap()),
+        }
+    }
+
+    pub fn step(&mut self, state: &mut State<S>, dynamics: &mut Dynamics<S>, ticker: &mut Ticker<'_>) {
+        match self {
+            Self::Fixed(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
+            Self::Tableau(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
+        }
+    }
+}
+
+/// Takes `steps` steps of `h`.
+pub fn advance<S: Element>(
+    method: &Method,
+    h: f64,
+    steps: usize,
+    state: &mut State<S>,
+    dynamics: &mut Dynamics<S>,
+) {
+    let control = Control::default();
+    let mut ticker = Ticker::quiet(&control);
+    let mut stepper = Stepper::new(method, h, state);
+    for _ in 0..steps {
+        stepper.step(state, dynamics, &mut ticker);
+    }
+}
+
+/// Largest difference of any coordinate or velocity, compensations included.
+pub fn distance(a: &State<DoubleDouble>, b: &State<DoubleDouble>) -> f64 {
+    let ((a, a_rest), (b, b_rest)) = (a.all(), b.all());
+    (0..a.len()).map(|i| ((a[i] - b[i]) + (a_rest[i] - b_rest[i])).to_f64().abs()).fold(0.0, f64::max)
+}
+
+/// A state of doubles with its compensations, as double-doubles.
+pub fn exactly(state: &State<f64>) -> State<DoubleDouble> {
+    let pair = |x: &[f64], rest: &[f64]| -> Vec<DoubleDouble> {
+        x.iter().zip(rest).map(|(&x, &rest)| DoubleDouble::sum(x, rest)).collect()
+    };
+    State::new(
+        state.shape,
+        &pair(state.q(), state.q_error()),
+        &pair(state.v(), state.v_error()),
+    )
+}
+
+/// `Σ m v` and `Σ m x × v` of bodies in component-major layout, summed in double-double.
+pub fn momenta(state: &State<DoubleDouble>, mass: &[f64]) -> [DoubleDouble; 6] {
+    let rows = state.shape.rows;
+    let zero = DoubleDouble::default();
+    let mut sums = [zero; 6];
+    let get = |values: &[DoubleDouble], rest: &[DoubleDouble], c: usize, i: usize| {
+        values[c * rows + i] + rest[c * rows + i]
+    };
+    for i in 0..rows {
+        let m = DoubleDouble::from(mass[i]);
+        let x: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.q(), state.q_error(), c, i));
+        let v: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.v(), state.v_error(), c, i));
+        for c in 0..3 {
+            let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+            sums[c] += m * v[c];
+            sums[3 + c] += m * (x[d] * v[e] - x[e] * v[d]);
+        }
+    }
+    sums
+}
+
+/// Five bodies on a ring of lanes, as a scene packs them.
+pub fn five_lanes() -> Problem<Lanes> {
+    let shape = Shape { rows: 1, components: 3 };
+    let lanes = |values: [f64; 5]| {
+        Lanes(core::array::from_fn(|lane| values.get(lane).copied().unwrap_or(1e3 * lane as f64)))
+    };
+    let q = [[0.0, 2.0, -3.0, 5.0, -6.5], [0.0, 0.5, 1.0, -4.0, 4.0], [0.0, -0.25, 0.5, 1.0, -1.0]];
+    let v = [[0.1, 0.2, -0.3, 0.3, -0.2], [-0.2, 0.6, -0.5, 0.4, -0.4], [0.0, 0.1, -0.1, 0.1, 0.2]];
+    let still = v.map(|v| Lanes(core::array::from_fn(|lane| v.get(lane).copied().unwrap_or_default())));
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(Ring::new(shape, vec![1.0, 0.7, 0.4, 0.01, 1e-6], 0.0))]),
+        state: State::new(shape, &q.map(lanes), &still),
+        mass: vec![],
+    }
+}

@@ -1,0 +1,87 @@
+"""What fails, fails with everything it knows, and fails alone."""
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+
+import visviva as vv
+
+# Two bodies of mass 1 at rest, 2 apart, meet after (π/2) √(d³ / 2GM) = π/√2.
+COLLISION = np.pi / np.sqrt(2.0)
+TIMES = np.linspace(0.0, 3.0, 31)
+
+
+def colliding(extra: bool = False) -> vv.Scene:
+    mass, position = [1.0, 1.0], [[-1.0, 0.0, 0.0], [1.0, 0.0, 0.0]]
+    if extra:
+        mass, position = [0.0, 1.0, 1.0], [[0.0, 50.0, 3.0], *position]
+    return vv.Scene(vv.Particles(mass, position, np.zeros((len(mass), 3))), vv.Gravity(1.0))
+
+
+@pytest.mark.parametrize("extra", [False, True])
+def test_a_close_encounter_carries_all_it_knows(extra: bool) -> None:
+    with pytest.raises(vv.CloseEncounter) as caught:
+        colliding(extra).run(t=TIMES, method="dop853", rtol=1e-10)
+    error = caught.value
+    assert error.time == pytest.approx(COLLISION, abs=1e-8)
+    assert error.bodies == ((1, 2) if extra else (0, 1))
+    assert 0.0 < error.distance < 1e-6
+    kept = error.trajectory
+    assert kept.t[-1] == pytest.approx(2.2)
+    assert np.array_equal(kept.t, TIMES[: len(kept.t)])
+    # Distance at t from the closed form of the same fall.
+    exact = colliding(extra).run(t=kept.t) if not extra else colliding().run(t=kept.t)
+    assert np.abs(kept.position[:, -2:] - exact.position).max() < 1e-7
+
+
+def test_a_close_encounter_backwards() -> None:
+    with pytest.raises(vv.CloseEncounter) as caught:
+        colliding().run(t=-TIMES, method="dop853", rtol=1e-10)
+    assert caught.value.time == pytest.approx(-COLLISION, abs=1e-8)
+
+
+def test_a_fixed_centre_is_met_by_one_body() -> None:
+    scene = vv.Scene(
+        vv.Particles([1.0, 1.0], [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]], [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0]]),
+        vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=5.0)),
+    )
+    with pytest.raises(vv.CloseEncounter) as caught:
+        scene.run(t=5.0, method="dop853", rtol=1e-10)
+    assert caught.value.bodies == (0, 0)
+    assert 0.0 < caught.value.distance < 1e-6
+
+
+@pytest.mark.parametrize("bad", [0, 4, 10])
+@pytest.mark.parametrize("threads", [1, 2])
+def test_one_colliding_copy_spoils_no_other(bad: int, threads: int) -> None:
+    velocity: NDArray[np.float64] = np.zeros((11, 2, 3))
+    velocity[:, 0, 1] = 0.3 + 0.001 * np.arange(11)
+    velocity[:, 1] = -velocity[:, 0]
+    velocity[bad] = 0.0
+    scene = colliding()
+    out = scene.ensemble(velocity=velocity).run(t=TIMES, method="dop853", rtol=1e-10, threads=threads)
+    assert np.flatnonzero(out.status).tolist() == [bad]
+    for index in range(11):
+        if index == bad:
+            continue
+        alone = scene.with_state(scene.particles.position, velocity[index]).run(t=TIMES, method="dop853", rtol=1e-10)
+        assert np.array_equal(out.position[index], alone.position)
+        assert np.array_equal(out.velocity[index], alone.velocity)
+        assert out.per_trajectory["steps"][index] == alone.stats.steps
+        assert out.per_trajectory["evaluations"][index] == alone.stats.evaluations
+    # Until it failed it is like the lone run, and from there NaN.
+    with pytest.raises(vv.CloseEncounter) as caught:
+        scene.run(t=TIMES, method="dop853", rtol=1e-10)
+    kept = caught.value.trajectory
+    assert np.array_equal(out.position[bad, : len(kept.t)], kept.position)
+    assert np.isnan(out.position[bad, len(kept.t) :]).all()
+    assert np.isnan(out.velocity[bad, len(kept.t) :]).all()
+
+
+def test_too_few_steps_keep_what_was_done() -> None:
+    with pytest.raises(vv.ConvergenceError) as caught:
+        vv.problems.pleiades().scene.run(t=np.linspace(0, 3, 31), method="dop853", rtol=1e-10, max_steps=50)
+    error = caught.value
+    assert error.time is not None
+    assert 0.0 < error.time < 3.0
+    assert error.trajectory.t[-1] <= error.time

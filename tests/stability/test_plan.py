@@ -1,0 +1,179 @@
+"""Each row of the plan: what it promises, and that the work is really left out."""
+
+import resource
+import time
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+DOP853_STAGES = 12
+DENSE_STAGES = 3
+
+
+def some(count: int, seed: int = 1, masses: float = 0.0) -> vv.Particles:
+    random = np.random.default_rng(seed)
+    return vv.Particles(np.full(count, masses), random.uniform(-1, 1, (count, 3)), random.uniform(-1, 1, (count, 3)))
+
+
+def join(*parts: vv.Particles) -> vv.Particles:
+    return vv.Particles(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("mass", "position", "velocity")))
+
+
+STARS = vv.Particles(
+    [1.0, 0.8, 0.1], [[-1, 0, 0], [1, 0.2, 0.1], [6, 0, 1.0]], [[0, -0.5, 0], [0, 0.6, 0.1], [0, 0.5, 0]]
+)
+CLOSED = {
+    "no force": vv.Scene(some(4)),
+    "uniform field": vv.Scene(some(4, masses=1.0), vv.UniformField([0.0, 0.0, -9.81])),
+    "two bodies": vv.problems.kepler(e=0.3).scene,
+    "one massive body": vv.Scene(join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)),
+    "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
+}
+
+
+@pytest.mark.parametrize("name", CLOSED)
+def test_a_closed_form_takes_no_step(name: str) -> None:
+    scene = CLOSED[name]
+    out = scene.run(t=np.linspace(0.0, 2.0, 7))
+    assert out.plan.closed_form
+    assert "stepping" in dict(out.plan.skipped)
+    assert (out.stats.steps, out.stats.rejected, out.stats.evaluations) == (0, 0, 0)
+    # And it is the same motion; a named method is the method that runs.
+    named = scene.run(t=np.linspace(0.0, 2.0, 7), method="dop853", rtol=1e-13)
+    assert named.stats.evaluations > 0
+    assert np.abs(named.position - out.position).max() < 1e-9
+
+
+def test_softening_and_other_forces_are_not_closed_forms() -> None:
+    pair = vv.problems.kepler(e=0.3).scene.particles
+    assert not vv.Scene(pair, vv.Gravity(1.0, softening=0.1)).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.Gravity(1.0), vv.UniformField([0, 0, 1.0])).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
+
+
+@pytest.mark.parametrize(("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
+@pytest.mark.parametrize("passives", [1, 5, 64, 65, 200])
+def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, float], passives: int) -> None:
+    alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
+    out = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
+    assert np.array_equal(out.position[:, :3], alone.position)
+    assert np.array_equal(out.velocity[:, :3], alone.velocity)
+    assert out.plan.pairs_per_evaluation == 3 + 3 * passives
+    if method != "dop853":
+        assert out.stats.evaluations == alone.stats.evaluations
+
+
+def test_time_grows_linearly_with_massless_bodies() -> None:
+    """Four times the passives: four times the time if no pair of them is formed, sixteen times if one were."""
+
+    def seconds(passives: int) -> float:
+        scene = vv.Scene(join(STARS, some(passives)), vv.Gravity(1.0))
+        return min(scene.run(t=0.5, method="leapfrog", dt=0.01, threads=1).stats.seconds for _ in range(5))
+
+    assert seconds(16_000) < 8 * seconds(4_000)
+
+
+def test_particles_that_do_not_interact_run_as_if_alone() -> None:
+    field = vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))
+    bodies = some(19, masses=1.0)
+    out = vv.Scene(bodies, field).run(t=[0.3, 2.0], method="dop853", rtol=1e-10)
+    evaluations = steps = 0
+    for i in range(19):
+        one = vv.Particles(bodies.mass[i : i + 1], bodies.position[i : i + 1], bodies.velocity[i : i + 1])
+        alone = vv.Scene(one, field).run(t=[0.3, 2.0], method="dop853", rtol=1e-10)
+        assert np.array_equal(out.position[:, i : i + 1], alone.position)
+        assert np.array_equal(out.velocity[:, i : i + 1], alone.velocity)
+        evaluations += alone.stats.evaluations
+        steps += alone.stats.steps
+    assert (out.stats.evaluations, out.stats.steps) == (evaluations, steps)
+    assert out.plan.pairs_per_evaluation == 0
+
+
+@pytest.mark.parametrize("count", [3, 8, 9, 40])
+@pytest.mark.parametrize(("method", "step"), [("kahan_li8", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
+def test_a_plane_has_the_bits_of_space(count: int, method: str, step: dict[str, float]) -> None:
+    bodies = some(count, masses=1.0)
+    position, velocity = bodies.position * [1, 1, 0], bodies.velocity * [1, 1, 0]
+    flat = vv.Particles(bodies.mass, position, velocity)
+    gravity = vv.Gravity(0.1, softening=0.3)
+    plane = vv.Scene(flat, gravity).run(t=[0.1, 0.5], method=method, **step)
+    assert "the z components" in dict(plane.plan.skipped)
+    # A massless body above the plane: now all three components are computed.
+    above = vv.Particles([0.0], [[0.0, 0.0, 1.0]], [[0.0, 0.0, 0.0]])
+    space = vv.Scene(join(flat, above), gravity).run(t=[0.1, 0.5], method=method, **step)
+    assert "the z components" not in dict(space.plan.skipped)
+    assert np.array_equal(plane.position, space.position[:, :count])
+    assert np.array_equal(plane.velocity, space.velocity[:, :count])
+    assert not plane.position[..., 2].any()
+
+
+def test_columns_that_are_not_asked_for_are_not_there() -> None:
+    scene = vv.Scene(STARS, vv.Gravity(1.0))
+    run = {"t": np.linspace(0.0, 1.0, 5), "method": "leapfrog", "dt": 0.01}
+    full = scene.run(**run, record=("position", "velocity", "energy", "momentum"))
+    for record in [("position",), ("velocity",), ("energy",), ("position", "energy")]:
+        out = scene.run(**run, record=record)
+        assert set(out.recorded) == set(record)
+        for name in record:
+            assert np.array_equal(getattr(out, name), getattr(full, name))
+        for name in {"position", "velocity"} - set(record):
+            assert f"the {name} column" in dict(out.plan.skipped)
+            with pytest.raises(vv.InvalidInput):
+                getattr(out, name)
+
+
+def test_evaluations_of_an_adaptive_run_are_counted_to_the_last_one() -> None:
+    """Two to start; eleven for a step tried and one more if it is kept; three more only for steps with an output inside."""
+    scene = vv.Scene(STARS, vv.Gravity(1.0))
+    end_only = scene.run(t=5.0, method="dop853", rtol=1e-10)
+    steps, rejected = end_only.stats.steps, end_only.stats.rejected
+    plain = 2 + (DOP853_STAGES - 1) * (steps + rejected) + steps
+    assert end_only.stats.evaluations == plain
+    assert "dense output" in dict(end_only.plan.skipped)
+    one = scene.run(t=[2.5, 5.0], method="dop853", rtol=1e-10)
+    assert one.stats.evaluations == plain + DENSE_STAGES
+    twice_in_a_step = scene.run(t=[2.5, 2.5 + 1e-9, 5.0], method="dop853", rtol=1e-10)
+    assert twice_in_a_step.stats.evaluations == plain + DENSE_STAGES
+    crowded = scene.run(t=np.linspace(0.0, 5.0, 5001), method="dop853", rtol=1e-10)
+    assert crowded.stats.evaluations == plain + DENSE_STAGES * steps
+    assert np.array_equal(crowded.position[-1], end_only.position[-1])
+    assert np.array_equal(crowded.velocity[-1], end_only.velocity[-1])
+
+
+@pytest.mark.parametrize("method", [m for m in vv.methods() if not m.adaptive], ids=lambda m: m.name)
+def test_evaluations_of_a_fixed_step_run(method: vv.Method) -> None:
+    """One per stage; a splitting that begins and ends with a kick needs one more in all. Outputs on nodes are free."""
+    scene = vv.Scene(STARS, vv.Gravity(1.0))
+    out = scene.run(t=1.0, method=method.name, dt=1 / 64)
+    more = out.stats.evaluations - 64 * method.stages
+    assert more == (1 if method.symplectic else 0)
+    nodes = scene.run(t=np.arange(65) / 64, method=method.name, dt=1 / 64)
+    assert nodes.stats.evaluations == out.stats.evaluations
+    between = scene.run(t=[0.3, 1.0], method=method.name, dt=1 / 64)
+    assert 0 < between.stats.evaluations - out.stats.evaluations <= method.stages + 1
+    for busy in (nodes, between):
+        assert np.array_equal(busy.position[-1], out.position[-1])
+        assert np.array_equal(busy.velocity[-1], out.velocity[-1])
+    # A time on a node gives the node's bits, whatever the end of the run.
+    assert np.array_equal(nodes.position[20], scene.run(t=20 / 64, method=method.name, dt=1 / 64).position[-1])
+
+
+def test_dense_output_reads_the_same_whoever_else_is_read() -> None:
+    scene = vv.Scene(STARS, vv.Gravity(1.0))
+    many = scene.run(t=np.linspace(0.0, 5.0, 501), method="dop853", rtol=1e-10)
+    few = scene.run(t=np.array([many.t[123], many.t[124], many.t[400], 5.0]), method="dop853", rtol=1e-10)
+    assert np.array_equal(few.position[:3], many.position[[123, 124, 400]])
+
+
+def test_ten_million_steps_do_not_grow_in_memory() -> None:
+    """Beyond the two recorded states: a byte per step would be 10 MB."""
+    scene = vv.problems.kepler(e=0.3).scene
+    scene.run(t=1.0, method="leapfrog", dt=1e-3)
+    before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    began = time.perf_counter()
+    out = scene.run(t=[50.0, 100.0], method="leapfrog", dt=1e-5)
+    assert out.stats.steps == 10_000_000
+    assert resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before < 2048  # kB
+    assert time.perf_counter() - began < 60
