@@ -109,7 +109,10 @@ def test_units_of_1e100_in_powers_of_two_change_no_bit(method: str, powers: tupl
 
 
 @pytest.mark.parametrize("method", list(FINE))
-@pytest.mark.parametrize("exponents", [(100, 0, 0), (-100, 0, 0), (0, 100, 0), (0, 0, 100), (0, 0, -100), (100, 100, 100), (-100, -100, -100)])
+@pytest.mark.parametrize(
+    "exponents",
+    [(100, 0, 0), (-100, 0, 0), (0, 100, 0), (0, 0, 100), (0, 0, -100), (100, 100, 100), (-100, -100, -100)],
+)
 def test_units_of_1e100_in_decimals(method: str, exponents: tuple[int, int, int]) -> None:
     """To the rounding of the input; adaptive steps that move with it show their tolerance (1e-9 for auto)."""
     length, mass, time = (10.0**exponent for exponent in exponents)

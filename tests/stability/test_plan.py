@@ -18,7 +18,9 @@ def some(count: int, seed: int = 1, masses: float = 0.0) -> vv.Particles:
 
 
 def join(*parts: vv.Particles) -> vv.Particles:
-    return vv.Particles(*(np.concatenate([getattr(p, name) for p in parts]) for name in ("mass", "position", "velocity")))
+    return vv.Particles(
+        *(np.concatenate([getattr(p, name) for p in parts]) for name in ("mass", "position", "velocity"))
+    )
 
 
 STARS = vv.Particles(
@@ -28,7 +30,9 @@ CLOSED = {
     "no force": vv.Scene(some(4)),
     "uniform field": vv.Scene(some(4, masses=1.0), vv.UniformField([0.0, 0.0, -9.81])),
     "two bodies": vv.problems.kepler(e=0.3).scene,
-    "one massive body": vv.Scene(join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)),
+    "one massive body": vv.Scene(
+        join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)
+    ),
     "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
 }
 
@@ -53,7 +57,9 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
 
 
-@pytest.mark.parametrize(("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})])
+@pytest.mark.parametrize(
+    ("method", "step"), [("leapfrog", {"dt": 0.01}), ("rk4", {"dt": 0.01}), ("dop853", {"rtol": 1e-10})]
+)
 @pytest.mark.parametrize("passives", [1, 5, 64, 65, 200])
 def test_massless_bodies_never_touch_the_massive(method: str, step: dict[str, float], passives: int) -> None:
     alone = vv.Scene(STARS, vv.Gravity(1.0)).run(t=[0.5, 1.0], method=method, **step)
