@@ -1,4 +1,4 @@
-"""Write tests/reference/kepler.json: Kepler's problem to at least 60 of 180 digits, inputs taken as exact binary64 numbers.
+"""Write tests/reference/kepler.json: Kepler's problem to at least 60 of 180 digits, inputs as exact binary64.
 
 The method is deliberately not the library's: classical eccentric, hyperbolic and parabolic anomalies with 180
 digits, so that their cancellations (near-parabolic, near-circular, radial) cost nothing that matters.

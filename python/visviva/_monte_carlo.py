@@ -283,6 +283,7 @@ def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float
     pairs: list[tuple[str, int | NDArray[np.float64]]]
     if isinstance(tally, str):
         return [(tally, bins)]
+    pairs: list[tuple[str, int | NDArray[np.float64]]]
     if isinstance(tally, Mapping):
         pairs = [(name, float_array(str(name), edges, (None,))) for name, edges in tally.items()]
     elif isinstance(tally, tuple | list | set | frozenset):

@@ -31,10 +31,10 @@ def outer_solar_system(output: Path, days: float, threads: int | None) -> list[P
     data = vv.datasets.outer_solar_system()
     step = 50.0
     print(f"The outer Solar System for {days:g} days ({data.source})")
-    out = problem.scene.run(
+    out = problem.scene.center_of_mass_frame().run(
         t=np.linspace(0.0, days, 2001), method="kahan_li8", dt=step, threads=threads, progress=_progress()
     )
-    print(f"\n{'':<9}{'x':>20}{'y':>20}{'z':>20}   [AU]")
+    print(f"\n{'':<9}{'x':>20}{'y':>20}{'z':>20}   [AU, from the centre of mass]")
     for name, row in zip(data.names, out.position[-1], strict=True):
         print(f"{name:<9}" + "".join(f"{value:>20.12f}" for value in row))
     print(f"\n{out.conservation()}\n")

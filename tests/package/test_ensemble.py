@@ -70,3 +70,27 @@ def test_refusals_by_name(given: dict[str, np.ndarray], argument: str) -> None:
     with pytest.raises(vv.InvalidInput) as caught:
         SCENE.ensemble(**given)
     assert caught.value.argument == argument
+
+
+def test_a_member_that_fails_keeps_its_own_status() -> None:
+    """The middle copy falls head-on; its neighbours have the bits of single runs."""
+    pair = vv.Scene(vv.Particles([1.0, 1.0], [[-1, 0, 0], [1, 0, 0]], [[0, -0.5, 0], [0, 0.5, 0]]), vv.Gravity(1.0))
+    velocity = pair.particles.velocity * np.array([1.0, 0.0, 0.9])[:, None, None]
+    out = pair.ensemble(velocity=velocity).run(t=[1.0, 5.0], method="dop853", rtol=1e-10)
+    assert out.status.tolist() == [vv.Status.OK, vv.Status.CLOSE_ENCOUNTER, vv.Status.OK]
+    assert [member.status for member in out] == [vv.Status.OK, vv.Status.CLOSE_ENCOUNTER, vv.Status.OK]
+    assert np.isfinite(out.position[1, 0]).all()
+    assert np.isnan(out.position[1, 1]).all()
+    for index in (0, 2):
+        alone = pair.with_state(pair.particles.position, velocity[index]).run(t=[1.0, 5.0], method="dop853", rtol=1e-10)
+        assert np.array_equal(out.position[index], alone.position)
+    with pytest.raises(vv.InvalidInput) as caught:
+        _ = out.final
+    assert caught.value.argument == "final"
+    # Two masses 1 at distance 2, from rest: they meet after π √(d³ / (8 G M)) = π / √2.
+    with pytest.raises(vv.CloseEncounter) as encounter:
+        pair.with_state(pair.particles.position, np.zeros((2, 3))).run(t=5.0, method="dop853", rtol=1e-10)
+    assert encounter.value.bodies == (0, 1)
+    assert encounter.value.time == pytest.approx(np.pi / np.sqrt(2), rel=1e-6)
+    assert encounter.value.trajectory.status is vv.Status.CLOSE_ENCOUNTER
+    assert encounter.value.trajectory.t.tolist() == [0.0]

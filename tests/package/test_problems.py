@@ -74,3 +74,11 @@ def test_refusals_by_name(make: object, argument: str) -> None:
     with pytest.raises(vv.InvalidInput) as caught:
         make()  # type: ignore[operator]
     assert caught.value.argument == argument
+
+
+def test_the_triangle_states_its_instability() -> None:
+    """Equal masses: perturbations grow as exp(ω t / √2) (Gascheau); one heavy body: stable."""
+    (_, equal), *_ = vv.problems.lagrange_triangle(masses=(1.0, 1.0, 1.0)).conditioning
+    assert equal == pytest.approx(np.exp(2 * np.pi / np.sqrt(2)), rel=1e-12)
+    (_, stable), *_ = vv.problems.lagrange_triangle(masses=(1.0, 1e-2, 1e-3)).conditioning
+    assert stable == 1.0

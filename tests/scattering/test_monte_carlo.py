@@ -1,10 +1,10 @@
 """The Monte Carlo: against the law, against NumPy event by event, and against itself divided in every way."""
 
+import itertools
 import os
 import pickle
 import subprocess
 import sys
-from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -148,7 +148,7 @@ def test_every_partition_gives_the_same_counts() -> None:
         other = run(n_events=3_000_001, tally=TALLIES, threads=threads)
         assert all((whole[name].counts == other[name].counts).all() for name in TALLIES)
     cuts = [0, 1, 1000, 1_500_001, 3_000_001]
-    parts = [run(n_events=end - start, first_event=start, tally=TALLIES) for start, end in pairwise(cuts)]
+    parts = [run(n_events=end - start, first_event=start, tally=TALLIES) for start, end in itertools.pairwise(cuts)]
     total = parts[2] + parts[0] + parts[3] + parts[1]
     assert total.events == whole.events
     assert all((whole[name].counts == total[name].counts).all() for name in TALLIES)
