@@ -149,7 +149,7 @@ class EnsembleScene:
     ) -> Plan:
         """What `run` would do with the same arguments, without doing it."""
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(**request, ensemble=True))
+        return Plan._from_core(_core.plan(**request))
 
 
 class EnsembleTrajectory:

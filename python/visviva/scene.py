@@ -207,7 +207,7 @@ class Scene:
         ('leapfrog', 1, 15)
         """
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(**request, ensemble=False))
+        return Plan._from_core(_core.plan(**request))
 
     def ensemble(
         self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None
