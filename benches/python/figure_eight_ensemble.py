@@ -98,9 +98,7 @@ def loosest(
 def rows() -> Iterator[Row]:
     ensemble = perturbed(vv.problems.figure_eight().scene)
     reference = Reference(ensemble.scene)
-    truth = np.array(
-        [reference.positions(END, ensemble.position[i], ensemble.velocity[i]) for i in range(SUBSET)]
-    )
+    truth = np.array([reference.positions(END, ensemble.position[i], ensemble.velocity[i]) for i in range(SUBSET)])
     tolerances = 10.0 ** -np.arange(9.5, 13.0, 0.25)
     candidates = {
         **{
@@ -121,7 +119,9 @@ def rows() -> Iterator[Row]:
         figures = f"{seconds[name]:.3f} s, error {error:.1e}"
         ours_here = not name.startswith("heyoka")
         kind = "tol" if not ours_here else ("rtol" if name == "dop853" else "dt")
-        yield Row(f"{name}, {kind} = {value:.2e}", figures if ours_here else "", "" if ours_here else figures, "", "", None)
+        yield Row(
+            f"{name}, {kind} = {value:.2e}", figures if ours_here else "", "" if ours_here else figures, "", "", None
+        )
     yield faster(
         f"best against best: {mine} against {theirs}",
         f"{seconds[mine]:.3f} s",
@@ -135,5 +135,6 @@ if __name__ == "__main__":
     report(
         "Ensemble of figure-eights",
         rows(),
-        f"{COPIES} copies to t = {END:g} on {WORKERS} threads; rms position error at most {TARGET:g} over {SUBSET} copies.",
+        f"{COPIES} copies to t = {END:g} on {WORKERS} threads; rms position error at most {TARGET:g} "
+        f"over {SUBSET} copies.",
     )

@@ -45,7 +45,9 @@ def rows() -> Iterator[Row]:
         lambda: run(end), *(lambda times=times: run(times) for _, times, _ in cases), repeats=40
     )
     theirs = minima(
-        lambda: by_rebound(np.array([end])), *(lambda times=times: by_rebound(times) for _, times, _ in cases[:2]), repeats=5
+        lambda: by_rebound(np.array([end])),
+        *(lambda times=times: by_rebound(times) for _, times, _ in cases[:2]),
+        repeats=5,
     )
     peer = dict(zip((name for name, _, _ in cases), theirs[1:], strict=False))
     for (name, times, bar), seconds in zip(cases, with_outputs, strict=True):

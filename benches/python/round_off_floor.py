@@ -25,7 +25,9 @@ OUTPUTS = 1001
 POSITION_BAR, ENERGY_BAR = 5e-10, 1e-14
 
 
-def by_rebound(scene: vv.Scene, integrator: str, kind: str, step: float, end: float) -> tuple[NDArray[np.float64], float]:
+def by_rebound(
+    scene: vv.Scene, integrator: str, kind: str, step: float, end: float
+) -> tuple[NDArray[np.float64], float]:
     """Positions at the end and the largest relative change of the energy at 100 synchronised times on the way."""
     simulation = rebound_simulation(scene)
     simulation.integrator = integrator
