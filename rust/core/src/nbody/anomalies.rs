@@ -8,7 +8,7 @@ use super::kepler_equation::{after_apocentre, after_pericentre};
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::{cbrt, ln};
+use crate::numerics::elementary::{cbrt, ln};
 use crate::numerics::stumpff::UniversalFunctions;
 use core::f64::consts::{FRAC_PI_2, PI};
 

@@ -6,7 +6,7 @@
 
 use super::kepler_equation::{Reached, after_apocentre, after_pericentre};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::ln;
+use crate::numerics::elementary::ln;
 use crate::numerics::real::Real;
 use crate::numerics::stumpff::UniversalFunctions;
 use core::f64::consts::FRAC_PI_2;

@@ -11,7 +11,7 @@ use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::scale_by_power_of_two;
+use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
@@ -78,7 +78,7 @@ impl Elements {
     }
 
     fn from_conic(conic: &Conic, length: i32, speed: i32) -> Self {
-        let lengths = |x: f64| scale_by_power_of_two(x, length);
+        let lengths = |x: f64| scale(x, length);
         let strength = DoubleDouble::from(conic.mu).abs();
         let (beta, h, zeta) = (conic.beta, conic.angular_momentum, conic.zeta);
         let size = beta.abs();
@@ -125,11 +125,11 @@ impl Elements {
         let turning = if bound { f64::NAN } else { 2.0 * atan2(strength.to_f64(), h_size * rate.to_f64()) };
         let infinite_if = |condition: bool, value: f64| if condition { f64::INFINITY } else { value };
         Self {
-            angular_momentum: normal * scale_by_power_of_two(h_size, length + speed),
-            energy: scale_by_power_of_two(-0.5 * beta.to_f64(), 2 * speed),
-            laplace_runge_lenz: conic.towards * scale_by_power_of_two(zeta.to_f64(), length + 2 * speed),
-            hodograph_centre: conic.along * scale_by_power_of_two((zeta / h).to_f64(), speed),
-            hodograph_radius: scale_by_power_of_two((strength / h).to_f64(), speed),
+            angular_momentum: normal * scale(h_size, length + speed),
+            energy: scale(-0.5 * beta.to_f64(), 2 * speed),
+            laplace_runge_lenz: conic.towards * scale(zeta.to_f64(), length + 2 * speed),
+            hodograph_centre: conic.along * scale((zeta / h).to_f64(), speed),
+            hodograph_radius: scale((strength / h).to_f64(), speed),
             eccentricity: e,
             semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
             semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
@@ -142,12 +142,12 @@ impl Elements {
             true_anomaly: atan2(sine, cosine),
             eccentric_anomaly: eccentric.to_f64(),
             mean_anomaly: mean.to_f64(),
-            time_since_pericentre: scale_by_power_of_two(since.to_f64(), length - speed),
+            time_since_pericentre: scale(since.to_f64(), length - speed),
             period: infinite_if(
                 !bound,
-                scale_by_power_of_two(conic.period.map_or(0.0, DoubleDouble::to_f64), length - speed),
+                scale(conic.period.map_or(0.0, DoubleDouble::to_f64), length - speed),
             ),
-            areal_rate: scale_by_power_of_two(0.5 * h_size, length + speed),
+            areal_rate: scale(0.5 * h_size, length + speed),
             turning_angle: turning,
         }
     }

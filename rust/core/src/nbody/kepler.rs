@@ -13,7 +13,7 @@ use super::conic::Conic;
 use super::kepler_equation::{Anchor, solve};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::exponentials::{exponent, power_of_two, scale_by_power_of_two};
+use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use nalgebra::Vector3;
 
 /// Beyond this many dynamical times a hyperbola is its asymptote.
@@ -85,9 +85,9 @@ impl KeplerOrbit {
             (false, true) => field.div_euclid(2),
             (false, false) => 0,
         };
-        let mu_scaled = scale_by_power_of_two(mu, -length - 2 * speed);
-        let r = position.map(|component| scale_by_power_of_two(component, -length));
-        let v = velocity.map(|component| scale_by_power_of_two(component, -speed));
+        let mu_scaled = scale(mu, -length - 2 * speed);
+        let r = position.map(|component| scale(component, -length));
+        let v = velocity.map(|component| scale(component, -speed));
         let conic = (mu_scaled.abs() > power_of_two(-300)).then(|| Conic::new(mu_scaled, &r, &v));
         let distance = r.norm();
         let beta = conic.as_ref().map_or(0.0, |conic| conic.beta.to_f64());
@@ -116,7 +116,7 @@ impl KeplerOrbit {
         }
         // Times whose count of dynamical times would overflow are taken as 2^960 of them.
         let limit = power_of_two(960);
-        let time = scale_by_power_of_two(t, self.speed - self.length).clamp(-limit, limit);
+        let time = scale(t, self.speed - self.length).clamp(-limit, limit);
         let (position, velocity) = match &self.conic {
             None => (straight(&self.scaled.position, &self.scaled.velocity, time), self.scaled.velocity),
             Some(_) if time.abs() <= self.scaled.near => self.scaled.near_epoch(time),
@@ -127,15 +127,15 @@ impl KeplerOrbit {
             Some(conic) => conic.state(time),
         };
         (
-            position.map(|component| scale_by_power_of_two(component, self.length)),
-            velocity.map(|component| scale_by_power_of_two(component, self.speed)),
+            position.map(|component| scale(component, self.length)),
+            velocity.map(|component| scale(component, self.speed)),
         )
     }
 
     /// The period; infinite for an unbound orbit.
     pub fn period(&self) -> f64 {
         match self.conic.as_ref().and_then(|conic| conic.period) {
-            Some(period) => scale_by_power_of_two(period.to_f64(), self.length - self.speed),
+            Some(period) => scale(period.to_f64(), self.length - self.speed),
             None => f64::INFINITY,
         }
     }

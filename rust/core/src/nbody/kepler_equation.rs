@@ -5,7 +5,7 @@
 //! the rounding of s (which an exponential would magnify) never reaches the answer.
 //! Source: Stiefel & Scheifele (1971) §11; Danby, *Fundamentals of Celestial Mechanics* (1988) §6.6 (the step).
 
-use crate::numerics::exponentials::{cbrt, ln};
+use crate::numerics::elementary::{cbrt, ln};
 use crate::numerics::stumpff::UniversalFunctions;
 
 /// The point from which time and s are counted.

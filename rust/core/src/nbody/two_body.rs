@@ -1,31 +1,32 @@
 //! Two bodies under mutual inverse-square attraction: centre of mass and relative Kepler motion.
 //!
 //! The one idea: R = (m₁r₁ + m₂r₂)/M moves on a straight line, r = r₁ − r₂ is Kepler's problem with μ = G M, and
-//! r₁ = R + (m₂/M) r, r₂ = R − (m₁/M) r. Either mass may be zero (a test particle), not both.
+//! r₁ = R + (m₂/M) r, r₂ = R − (m₁/M) r. R, the shares and these sums are carried in double-double, so that neither
+//! a mass ratio nor a far-off centre of mass costs digits: what is left is the error of r, times each body's share.
+//! Either mass may be zero (a test particle), not both.
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.1.
 
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::power_of_two::{exponent, scale};
 use nalgebra::Vector3;
 
 /// Position and velocity.
 pub type State = (Vector3<f64>, Vector3<f64>);
 
+/// Position and velocity before they are rounded.
+pub type ExactState = ([DoubleDouble; 3], [DoubleDouble; 3]);
+
 /// Two bodies, ready to be asked for their states at any time.
 #[derive(Clone, Debug)]
 pub struct TwoBody {
     initial: [State; 2],
-    centre: CentreOfMass,
-    /// m₂/M and m₁/M.
-    shares: [f64; 2],
+    /// R and its velocity.
+    centre: ExactState,
+    /// m₂/M and −m₁/M.
+    shares: [DoubleDouble; 2],
     relative: KeplerOrbit,
-}
-
-/// The straight line of the centre of mass.
-#[derive(Clone, Debug)]
-struct CentreOfMass {
-    position: Vector3<f64>,
-    velocity: Vector3<f64>,
 }
 
 impl TwoBody {
@@ -40,19 +41,27 @@ impl TwoBody {
                 return Err(Error::invalid("mass", format!("expected a finite mass ≥ 0, got {mass}")));
             }
         }
-        let total = masses[0] + masses[1];
-        if total == 0.0 {
+        if masses == [0.0, 0.0] {
             return Err(Error::invalid("mass", "expected at least one mass above 0, got 0 and 0"));
         }
+        // In units of the greater mass, so that the sum cannot overflow.
+        let unit = exponent(masses[0].max(masses[1]));
+        let masses = masses.map(|mass| scale(mass, -unit));
+        let total = DoubleDouble::sum(masses[0], masses[1]);
+        let mu = scale((DoubleDouble::from(gravitational_constant) * total).to_f64(), unit);
         let [(r1, v1), (r2, v2)] = states;
-        let relative = KeplerOrbit::new(gravitational_constant * total, r1 - r2, v1 - v2)?;
-        let shares = [masses[1] / total, masses[0] / total];
+        let relative = KeplerOrbit::new(mu, r1 - r2, v1 - v2)?;
+        let shares = [DoubleDouble::from(masses[1]) / total, -(DoubleDouble::from(masses[0]) / total)];
         // From the heavier body, so that a massless companion leaves its straight line exact.
-        let weighted = |a: Vector3<f64>, b: Vector3<f64>| {
-            if masses[0] >= masses[1] { a + (b - a) * shares[0] } else { b + (a - b) * shares[1] }
+        let heavier = usize::from(masses[1] > masses[0]);
+        let share = shares[heavier];
+        let centre = |values: [Vector3<f64>; 2]| {
+            core::array::from_fn(|c| {
+                let way = DoubleDouble::sum(values[0][c], -values[1][c]);
+                DoubleDouble::from(values[heavier][c]) - share * way
+            })
         };
-        let centre = CentreOfMass { position: weighted(r1, r2), velocity: weighted(v1, v2) };
-        Ok(Self { initial: states, centre, shares, relative })
+        Ok(Self { initial: states, centre: (centre([r1, r2]), centre([v1, v2])), shares, relative })
     }
 
     /// The states of both bodies at the time `t` since the epoch; `t = 0` gives the input bits.
@@ -60,13 +69,23 @@ impl TwoBody {
         if t == 0.0 {
             return self.initial;
         }
-        let (r, v) = self.relative.state(t);
-        let position = self.centre.position + self.centre.velocity * t;
-        let velocity = self.centre.velocity;
-        [
-            (position + r * self.shares[0], velocity + v * self.shares[0]),
-            (position - r * self.shares[1], velocity - v * self.shares[1]),
-        ]
+        let rounded = |values: [DoubleDouble; 3]| Vector3::from(values.map(DoubleDouble::to_f64));
+        self.unrounded(DoubleDouble::from(t))
+            .map(|(position, velocity)| (rounded(position), rounded(velocity)))
+    }
+
+    /// The states of both bodies before rounding; `elapsed` is rounded only for the relative motion.
+    pub fn unrounded(&self, elapsed: DoubleDouble) -> [ExactState; 2] {
+        let (r, v) = self.relative.state(elapsed.to_f64());
+        let (position, velocity) = &self.centre;
+        self.shares.map(|share| {
+            (
+                core::array::from_fn(|c| {
+                    (position[c] + velocity[c] * elapsed) + share * DoubleDouble::from(r[c])
+                }),
+                core::array::from_fn(|c| velocity[c] + share * DoubleDouble::from(v[c])),
+            )
+        })
     }
 
     /// The relative motion r₁ − r₂.

@@ -1,4 +1,4 @@
-//! The exponential function with the same bits on every machine and in every lane.
+//! Exponential, logarithm and cube root with the same bits on every machine; the exponential in every lane too.
 //!
 //! The one idea: a fixed sequence of correctly rounded `+ - * /` and exact exponent moves, written
 //! once over [`Binary`] scalars, so `f64` and every SIMD tier agree bit for bit; no platform libm,
@@ -8,6 +8,7 @@
 
 use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
+use super::power_of_two::{exponent, scale};
 use super::real::Real;
 
 #[cfg(target_arch = "x86_64")]
@@ -91,7 +92,7 @@ fn exponential<S: Binary>(x: S) -> S {
     let low = n * S::splat(LN2_LOW);
     let r = high - low;
     let rest = (high - r) - low;
-    let value = S::one() + (r + (r * r * polynomial(r, &EXPONENTIAL) + rest));
+    let value = S::one() + (r + (r * r * polynomial(r, &EXPONENTIAL) + (rest + rest * r)));
     // In two steps, so that 2ⁿ itself need be neither subnormal nor infinite.
     let half = nearest_integer(n * S::splat(0.5));
     let scaled = value * half.power_of_two() * (n - half).power_of_two();
@@ -154,6 +155,52 @@ impl Exponential for DoubleDouble {
         let half = (n * 0.5).round();
         (sum + Self::one()).scale(half.power_of_two()).scale((n - half).power_of_two())
     }
+}
+
+/// The natural logarithm; NaN below 0, −∞ at 0.
+pub fn ln(x: f64) -> f64 {
+    if x.is_nan() || x < 0.0 {
+        return f64::NAN;
+    }
+    if x == 0.0 {
+        return f64::NEG_INFINITY;
+    }
+    if x.is_infinite() {
+        return x;
+    }
+    let mut k = exponent(x);
+    let mut m = scale(x, -k);
+    if m > core::f64::consts::SQRT_2 {
+        m *= 0.5;
+        k += 1;
+    }
+    // ln(1 + f) = 2 artanh(w), w = f/(2 + f), |w| ≤ 0.1716; written as f - (f²/2 - w(f²/2 + R)).
+    let f = m - 1.0;
+    let w = f / (2.0 + f);
+    let w2 = w * w;
+    let mut series = 2.0 / 23.0;
+    for odd in [21.0, 19.0, 17.0, 15.0, 13.0, 11.0, 9.0, 7.0, 5.0, 3.0] {
+        series = series * w2 + 2.0 / odd;
+    }
+    let half_square = 0.5 * f * f;
+    let k = f64::from(k);
+    k * LN2_HIGH - ((half_square - (w * (half_square + w2 * series) + k * LN2_LOW)) - f)
+}
+
+/// The cube root.
+pub fn cbrt(x: f64) -> f64 {
+    if x == 0.0 || !x.is_finite() {
+        return x;
+    }
+    let k = exponent(x).div_euclid(3);
+    let m = scale(x.abs(), -3 * k); // 1 ≤ m < 8
+    // A line, then Halley's iteration, which triples the digits: 7 % → 2e-4 → 1e-11 → below rounding.
+    let mut root = 0.85 + 0.165 * m;
+    for _ in 0..3 {
+        let cube = root * root * root;
+        root -= root * (cube - m) / (2.0 * cube + m);
+    }
+    scale(root, k).copysign(x)
 }
 
 #[cfg(test)]

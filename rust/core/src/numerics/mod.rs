@@ -4,7 +4,6 @@ pub mod angles;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
-pub mod exponentials;
 pub mod lanes;
 pub mod philox;
 pub mod power_of_two;

@@ -7,7 +7,7 @@
 
 use super::angles::sin_cos;
 use super::double_double::DoubleDouble;
-use super::exponentials::exp;
+use super::elementary::Exponential;
 use super::real::Real;
 
 /// 1/n! for n = 2 … 33.
@@ -98,7 +98,7 @@ impl UniversalFunctions<f64> {
         let rate = beta.abs().sqrt();
         let angle = rate * s;
         if z < 0.0 {
-            let grown = exp(angle.abs());
+            let grown = Exponential::exp(angle.abs());
             let sine = (0.5 * (grown - 1.0 / grown)).copysign(s);
             let cosine = 0.5 * (grown + 1.0 / grown);
             return Self {

@@ -9,6 +9,7 @@ use super::plan::{Plan, Solution};
 use super::run::Outcome;
 use crate::error::Result;
 use crate::nbody::kepler::KeplerOrbit;
+use crate::nbody::two_body::{ExactState, TwoBody};
 use crate::numerics::double_double::DoubleDouble;
 use crate::parallel::Ticker;
 use nalgebra::Vector3;
@@ -17,8 +18,8 @@ use nalgebra::Vector3;
 enum Path {
     /// Uniform acceleration (which may be zero).
     Parabola { position: [f64; 3], velocity: [f64; 3], acceleration: [f64; 3] },
-    /// A Kepler orbit about a point, scaled by a fraction, seen from a moving base.
-    Orbit { orbit: Box<KeplerOrbit>, fraction: DoubleDouble, base: Box<Path> },
+    /// A Kepler orbit about a point, seen from a moving base.
+    Orbit { orbit: Box<KeplerOrbit>, base: Box<Path> },
 }
 
 impl Path {
@@ -26,9 +27,8 @@ impl Path {
         Self::Parabola { position, velocity, acceleration: [0.0; 3] }
     }
 
-    /// Position and velocity at `t`, unrounded where they can be.
-    fn state(&self, t: f64, t0: f64) -> ([DoubleDouble; 3], [DoubleDouble; 3]) {
-        let elapsed = DoubleDouble::sum(t, -t0);
+    /// Position and velocity after a time, unrounded where they can be.
+    fn state(&self, elapsed: DoubleDouble) -> ExactState {
         match self {
             Self::Parabola { position, velocity, acceleration } => {
                 let at = |c: usize| {
@@ -39,15 +39,33 @@ impl Path {
                 let states: [_; 3] = core::array::from_fn(at);
                 (states.map(|state| state.0), states.map(|state| state.1))
             }
-            Self::Orbit { orbit, fraction, base } => {
-                let (mut position, mut velocity) = base.state(t, t0);
+            Self::Orbit { orbit, base } => {
+                let (mut position, mut velocity) = base.state(elapsed);
                 let (relative, rate) = orbit.state(elapsed.to_f64());
                 for c in 0..3 {
-                    position[c] += *fraction * DoubleDouble::from(relative[c]);
-                    velocity[c] += *fraction * DoubleDouble::from(rate[c]);
+                    position[c] += DoubleDouble::from(relative[c]);
+                    velocity[c] += DoubleDouble::from(rate[c]);
                 }
                 (position, velocity)
             }
+        }
+    }
+}
+
+/// The motion of the particles of a copy.
+enum Motion {
+    /// Each on its own path.
+    Paths(Vec<Path>),
+    /// Two that attract each other.
+    Pair(Box<TwoBody>),
+}
+
+impl Motion {
+    fn states(&self, elapsed: DoubleDouble, states: &mut Vec<ExactState>) {
+        states.clear();
+        match self {
+            Self::Paths(paths) => states.extend(paths.iter().map(|path| path.state(elapsed))),
+            Self::Pair(pair) => states.extend(pair.unrounded(elapsed)),
         }
     }
 }
@@ -57,33 +75,19 @@ fn orbit(mu: f64, from: ([f64; 3], [f64; 3]), to: ([f64; 3], [f64; 3])) -> Resul
     Ok(Box::new(KeplerOrbit::new(mu, difference(from.0, to.0), difference(from.1, to.1))?))
 }
 
-/// The paths of the particles of a copy.
-fn paths(scene: &Scene, plan: &Plan, copy: usize) -> Result<Vec<Path>> {
+fn motion(scene: &Scene, plan: &Plan, copy: usize) -> Result<Motion> {
     let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
     let state = |i: usize| (position[i], velocity[i]);
     let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
     let all = 0..scene.particles;
-    match &plan.solution {
+    let paths: Result<Vec<Path>> = match &plan.solution {
+        Solution::TwoBody => {
+            let states = [0, 1].map(|i| (Vector3::from(position[i]), Vector3::from(velocity[i])));
+            return Ok(Motion::Pair(Box::new(TwoBody::new(constant, [mass[0], mass[1]], states)?)));
+        }
         Solution::Uniform(g) => Ok(all
             .map(|i| Path::Parabola { position: position[i], velocity: velocity[i], acceleration: *g })
             .collect()),
-        Solution::TwoBody => {
-            let total = DoubleDouble::sum(mass[0], mass[1]);
-            let mu = DoubleDouble::from(constant) * total;
-            // The centre of mass, from the first body by the second's share of the way between them.
-            let share = |i: usize| DoubleDouble::from(mass[i]) / total;
-            let mean = |values: &[[f64; 3]]| {
-                core::array::from_fn(|c| {
-                    let way = DoubleDouble::sum(values[1][c], -values[0][c]);
-                    (DoubleDouble::from(values[0][c]) + share(1) * way).to_f64()
-                })
-            };
-            let base = || Box::new(Path::line(mean(position), mean(velocity)));
-            let path = |fraction: DoubleDouble| -> Result<Path> {
-                Ok(Path::Orbit { orbit: orbit(mu.to_f64(), state(0), state(1))?, fraction, base: base() })
-            };
-            Ok(vec![path(-share(1))?, path(share(0))?])
-        }
         Solution::OneMassive(center) => all
             .map(|i| {
                 let base = Path::line(position[*center], velocity[*center]);
@@ -91,21 +95,21 @@ fn paths(scene: &Scene, plan: &Plan, copy: usize) -> Result<Vec<Path>> {
                     return Ok(base);
                 }
                 let orbit = orbit(constant * mass[*center], state(*center), state(i))?;
-                Ok(Path::Orbit { orbit, fraction: DoubleDouble::from(1.0), base: Box::new(base) })
+                Ok(Path::Orbit { orbit, base: Box::new(base) })
             })
             .collect(),
         Solution::FixedCenter { k, center } => all
             .map(|i| {
                 let still = (*center, [0.0; 3]);
                 let orbit = orbit(-k / mass[i], still, state(i))?;
-                let base = Box::new(Path::line(*center, [0.0; 3]));
-                Ok(Path::Orbit { orbit, fraction: DoubleDouble::from(1.0), base })
+                Ok(Path::Orbit { orbit, base: Box::new(Path::line(*center, [0.0; 3])) })
             })
             .collect(),
         Solution::Free | Solution::Integration => {
             Ok(all.map(|i| Path::line(position[i], velocity[i])).collect())
         }
-    }
+    };
+    Ok(Motion::Paths(paths?))
 }
 
 /// Fills the columns from the closed form.
@@ -121,12 +125,13 @@ pub fn run(
 ) -> Result<Vec<Outcome>> {
     let mut outcomes = Vec::with_capacity(scene.copies);
     for copy in 0..scene.copies {
-        let paths = paths(scene, plan, copy)?;
-        let mut last = Vec::new();
+        let motion = motion(scene, plan, copy)?;
+        let (mut states, mut last) = (Vec::new(), Vec::new());
         for (index, &t) in times.iter().enumerate() {
+            motion.states(DoubleDouble::sum(t, -scene.t0), &mut states);
             last.clear();
-            for (particle, path) in paths.iter().enumerate() {
-                let entry = entry(scene, copy, particle, path, t);
+            for (particle, state) in states.iter().enumerate() {
+                let entry = entry(scene, copy, particle, *state, t);
                 writer.write(copy, index, particle, &entry);
                 last.push(entry);
             }
@@ -137,7 +142,7 @@ pub fn run(
     Ok(outcomes)
 }
 
-fn entry(scene: &Scene, copy: usize, particle: usize, path: &Path, t: f64) -> Entry {
+fn entry(scene: &Scene, copy: usize, particle: usize, (position, velocity): ExactState, t: f64) -> Entry {
     if t == scene.t0 {
         // The state at the start is the one that was given, to the bit.
         return Entry {
@@ -146,7 +151,6 @@ fn entry(scene: &Scene, copy: usize, particle: usize, path: &Path, t: f64) -> En
             ..Entry::default()
         };
     }
-    let (position, velocity) = path.state(t, scene.t0);
     Entry {
         position: position.map(DoubleDouble::high),
         velocity: velocity.map(DoubleDouble::high),
