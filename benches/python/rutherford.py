@@ -32,7 +32,7 @@ def peer(n: int, chunks: int, kappa: float, b_max: float, bins: int) -> np.ndarr
     for chunk in numba.prange(chunks):
         counts = np.zeros(bins, np.int64)
         for _ in range(n // chunks):
-            b = b_max * np.sqrt(np.random.random())  # noqa: NPY002 — the generator that numba compiles
+            b = b_max * np.sqrt(np.random.random())
             angle = 2.0 * np.arctan2(kappa, b)
             counts[min(int(angle * scale), bins - 1)] += 1
         partial[chunk] = counts
