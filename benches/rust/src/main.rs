@@ -42,6 +42,28 @@ fn cluster(particles: usize, solar: bool) -> Scene {
     }
 }
 
+/// Perturbed copies of the figure-eight of three equal bodies (Chenciner & Montgomery).
+fn figure_eights(copies: usize) -> Scene {
+    let (x, v) = ([0.97000436, -0.24308753, 0.0], [0.466_203_684_069_539_35, 0.432_365_730_917_476_85, 0.0]);
+    let scaled = |a: [f64; 3], factor: f64| a.map(|a| a * factor);
+    let mut seed = 1;
+    let mut position = Vec::new();
+    for _ in 0..copies {
+        for body in [x, scaled(x, -1.0), [0.0; 3]] {
+            position.push([body[0] + 1e-4 * noise(&mut seed), body[1] + 1e-4 * noise(&mut seed), 0.0]);
+        }
+    }
+    Scene {
+        copies,
+        particles: 3,
+        mass: vec![1.0; 3 * copies],
+        position,
+        velocity: [v, v, scaled(v, -2.0)].repeat(copies),
+        forces: vec![ForceSpec::Gravity { constant: 1.0, softening: 0.0 }],
+        t0: 0.0,
+    }
+}
+
 fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -> Request {
     Request {
         times,
@@ -103,6 +125,14 @@ fn main() {
             let times = (0..=steps / every).map(|i| (i * every) as f64 * 1e-5).collect();
             let some = time(&scene, &request("leapfrog", Some(1e-5), times, 1));
             format!("{:.3} x", some / none)
+        });
+    }
+    for (method, dt) in [("kahan_li8", Some(0.0625)), ("dop853", None)] {
+        report(&format!("ensemble/figure_eight/{method}"), &|| {
+            let copies = 512;
+            let all =
+                time(&figure_eights(copies), &Request { rtol: 1e-11, ..request(method, dt, vec![50.0], 1) });
+            format!("{:.1} us per copy", all * 1e-3 / copies as f64)
         });
     }
     report("dop853/6", &|| {

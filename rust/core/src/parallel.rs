@@ -11,7 +11,7 @@ use core::cell::Cell;
 use core::sync::atomic::{AtomicBool, AtomicU64, AtomicUsize, Ordering};
 use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, OnceLock, PoisonError};
 use std::time::{Duration, Instant};
 
 /// Between two calls of the monitor.
@@ -244,6 +244,9 @@ pub fn thread_count(argument: Option<i64>) -> Result<usize> {
     count(argument, std::env::var_os("VISVIVA_THREADS").map(|text| text.to_string_lossy().into_owned()))
 }
 
+/// The cores available, asked for once: the answer is read from files, and would cost more than a closed form.
+static CORES: OnceLock<usize> = OnceLock::new();
+
 /// As [`thread_count`], with the variable given.
 fn count(argument: Option<i64>, variable: Option<String>) -> Result<usize> {
     let (name, got, number) = match (argument, variable.as_deref().map(str::trim)) {
@@ -251,7 +254,7 @@ fn count(argument: Option<i64>, variable: Option<String>) -> Result<usize> {
         (None, Some(text)) if !text.is_empty() => {
             ("VISVIVA_THREADS", format!("'{text}'"), text.parse::<i64>().ok())
         }
-        _ => return Ok(std::thread::available_parallelism().map_or(1, usize::from)),
+        _ => return Ok(*CORES.get_or_init(|| std::thread::available_parallelism().map_or(1, usize::from))),
     };
     number.filter(|number| (1..=MOST_THREADS).contains(number)).and_then(|n| usize::try_from(n).ok()).ok_or_else(
         || {

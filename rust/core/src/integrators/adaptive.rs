@@ -209,15 +209,9 @@ impl<S: Element> Adaptive<S> {
         Ok(())
     }
 
-    /// `(square)^(1 / (2·error_exponent))`.
+    /// `square^(1 / (2·error_exponent))`, the exponent being a power of two.
     fn root(&self, square: S) -> S {
-        let mut root = square;
-        let mut exponent = 2 * self.error_exponent;
-        while exponent > 1 {
-            root = root.sqrt();
-            exponent /= 2;
-        }
-        root
+        square.repeated_sqrt((2 * self.error_exponent).ilog2())
     }
 
     /// Tries one step in every lane.

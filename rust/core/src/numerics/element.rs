@@ -8,7 +8,7 @@
 //! with about twice the digits, so that round-off grows like a random walk of the *increments*.
 
 use super::double_double::{DoubleDouble, two_sum};
-use super::lanes::{Lanes, Vector8};
+use super::lanes::{Bits, Lanes, Vector8};
 use super::real::Real;
 use crate::tiered;
 
@@ -59,6 +59,8 @@ pub trait Element: Real {
         k: &[Self],
         stride: usize,
     ) -> Self;
+    /// The square root of the square root of …, `times` times.
+    fn repeated_sqrt(self, times: u32) -> Self;
     /// `if mask { from } else { into }`, element by element.
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
 }
@@ -117,23 +119,46 @@ fn advance<S: Real>((y, e): (&mut [S], &mut [S]), k: &[S], step: Scaled<S>) {
     }
 }
 
-/// `Σ weight·k[stage]` at element `i`, in the order of the terms.
+/// `Σ weight·k[stage]` at `G` elements from `i` on, in the order of the terms. Several elements at a time,
+/// because one sum alone waits for each of its additions.
 #[inline(always)]
-fn weighted<S: Real>(terms: &[Term<S>], k: &[S], stride: usize, i: usize) -> S {
-    let mut sum = S::zero();
+fn weighted<S: Real, const G: usize>(terms: &[Term<S>], k: &[S], stride: usize, i: usize) -> [S; G] {
+    let mut sums = [S::zero(); G];
     for &Term { stage, weight } in terms {
-        sum += weight * k[stage * stride + i];
+        let column = &k[stage * stride + i..][..G];
+        for g in 0..G {
+            sums[g] += weight * column[g];
+        }
     }
-    sum
+    sums
+}
+
+/// Runs `$body` with `$i` and `$sum = Σ weight·k[stage]` for every element below `$n`, six at a time while
+/// there are six. A macro and not a closure: a closure would be compiled without the tier's instructions.
+macro_rules! for_weighted {
+    (($n:expr, $terms:expr, $k:expr), |$i:ident, $sum:ident| $body:expr) => {{
+        let mut start = 0;
+        for_weighted!(@groups 6, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 2, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 1, ($n, $terms, $k), start, |$i, $sum| $body);
+    }};
+    (@groups $g:literal, ($n:expr, $terms:expr, $k:expr), $start:ident, |$i:ident, $sum:ident| $body:expr) => {
+        while $start + $g <= $n {
+            let sums = weighted::<S, $g>($terms, $k, $n, $start);
+            for g in 0..$g {
+                let ($i, $sum) = ($start + g, sums[g]);
+                $body;
+            }
+            $start += $g;
+        }
+    };
 }
 
 #[inline(always)]
 fn combine<S: Real>(out: &mut [S], (y, e): (&[S], &[S]), h: S, terms: &[Term<S>], k: &[S]) {
     let n = out.len();
     let (y, e) = (&y[..n], &e[..n]);
-    for i in 0..n {
-        out[i] = y[i] + (e[i] + h * weighted(terms, k, n, i));
-    }
+    for_weighted!((n, terms, k), |i, sum| out[i] = y[i] + (e[i] + h * sum));
 }
 
 #[inline(always)]
@@ -146,9 +171,7 @@ fn combine_compensated<S: Real>(
 ) {
     let n = out.len();
     let (y, e, out_error) = (&y[..n], &e[..n], &mut out_error[..n]);
-    for i in 0..n {
-        (out[i], out_error[i]) = two_sum(y[i], e[i] + h * weighted(terms, k, n, i));
-    }
+    for_weighted!((n, terms, k), |i, sum| (out[i], out_error[i]) = two_sum(y[i], e[i] + h * sum));
 }
 
 /// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
@@ -169,9 +192,15 @@ fn largest_error<S: Real>(
     for row in 0..shape.rows {
         let mut error2 = S::zero();
         let mut distance2 = S::zero();
+        let mut sums = [S::zero(); 3];
+        for &Term { stage, weight } in terms {
+            for component in 0..shape.components {
+                sums[component] += weight * k[stage * stride + component * shape.rows + row];
+            }
+        }
         for component in 0..shape.components {
             let i = component * shape.rows + row;
-            let error = h * weighted(terms, k, stride, i);
+            let error = h * sums[component];
             let distance = y[i] - reference[component];
             error2 += error * error;
             distance2 += distance * distance;
@@ -183,6 +212,11 @@ fn largest_error<S: Real>(
         largest = largest.max(ratio);
     }
     largest
+}
+
+#[inline(always)]
+fn repeated_sqrt<S: Real>(value: S, times: u32) -> S {
+    (0..times).fold(value, |value, _| value.sqrt())
 }
 
 #[inline(always)]
@@ -230,6 +264,9 @@ macro_rules! plain_element {
                 stride: usize,
             ) -> Self {
                 largest_error(shape, y, reference, tolerance, h, terms, k, stride)
+            }
+            fn repeated_sqrt(self, times: u32) -> Self {
+                repeated_sqrt(self, times)
             }
             fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
                 replace(into, from, mask);
@@ -324,7 +361,18 @@ fn largest_error_lanes<V: Vector8>(
     .store()
 }
 
+#[inline(always)]
+fn repeated_sqrt_lanes<V: Vector8>(value: Lanes, times: u32) -> Lanes {
+    repeated_sqrt(V::load(value), times).store()
+}
+#[inline(always)]
+fn replace_lanes<V: Vector8>(into: &mut [Lanes], from: &[Lanes], mask: Bits) {
+    replace::<V>(V::view_mut(into), V::view(from), mask);
+}
+
 tiered! {
+    fn repeated_sqrt_tier[][](value: Lanes, times: u32) -> Lanes = repeated_sqrt_lanes;
+    fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: Scaled<Lanes>, drift: Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: Scaled<Lanes>) = advance_lanes;
     fn combine_tier[][](out: &mut [Lanes], y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_lanes;
@@ -369,7 +417,10 @@ impl Element for Lanes {
     ) -> Self {
         largest_error_tier(shape, y, reference, tolerance, h, terms, k, stride)
     }
+    fn repeated_sqrt(self, times: u32) -> Self {
+        repeated_sqrt_tier(self, times)
+    }
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
-        replace(into, from, mask);
+        replace_tier(into, from, mask);
     }
 }

@@ -3,7 +3,7 @@
 //! The loops run over pairs; the lanes, if any, over trajectories. Adds each body's terms in the ring
 //! order of the module header, as [`ring`](super::ring) does with lanes over bodies.
 
-use super::passive::{Source, attraction};
+use super::passive::attraction;
 use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::double_double::DoubleDouble;
@@ -20,42 +20,44 @@ pub struct FewBodies<S> {
     /// `G·m` of the massive bodies.
     strength: Vec<S>,
     softening2: f64,
-    /// `d·w` of each pair of the current ring distance.
-    pull: Vec<S>,
 }
 
 impl<S: Element> FewBodies<S> {
-    /// From `G·m` of the massive bodies, which come first in the state.
+    /// From `G·m` of the massive bodies, at most [`RING_MAX`](super::RING_MAX), which come first in the state.
     pub fn new(shape: Shape, strength: Vec<S>, softening: f64) -> Self {
-        let pull = vec![S::zero(); 3 * strength.len()];
-        Self { shape, strength, softening2: softening * softening, pull }
+        Self { shape, strength, softening2: softening * softening }
     }
 }
 
+/// `N` massive bodies; known when compiled, so that everything about them stays in registers.
 #[inline(always)]
-fn kernel<S: Real, const PLANAR: bool, const SOFT: bool>(
+fn kernel<S: Real, const N: usize, const PLANAR: bool, const SOFT: bool>(
     shape: Shape,
     strength: &[S],
     softening2: f64,
-    pull: &mut [S],
     q: &[S],
     a: &mut [S],
     first: bool,
 ) {
-    let n = strength.len();
     let rows = shape.rows;
     let components = if PLANAR { 2 } else { 3 };
     let softening2 = S::splat(softening2);
-    // The accelerations of the massive bodies are gathered here and then written or added once, so that
-    // a force that is not the first of its scene has the same bits.
-    let mut sum = [[S::zero(); 3]; super::RING_MAX];
-    for distance in 1..=n / 2 {
-        let opposite = 2 * distance == n;
-        for i in 0..n {
-            let j = (i + distance) % n;
+    let strength = &strength[..N];
+    let mut position = [[S::zero(); 3]; N];
+    for i in 0..N {
+        for c in 0..components {
+            position[i][c] = q[c * rows + i];
+        }
+    }
+    let mut sum = [[S::zero(); 3]; N];
+    for distance in 1..=N / 2 {
+        let opposite = 2 * distance == N;
+        let mut pull = [[S::zero(); 3]; N];
+        for i in 0..N {
+            let j = (i + distance) % N;
             let mut d = [S::zero(); 3];
             for c in 0..components {
-                d[c] = q[c * rows + j] - q[c * rows + i];
+                d[c] = position[j][c] - position[i][c];
             }
             let mut r2 = d[0] * d[0];
             if SOFT {
@@ -67,27 +69,28 @@ fn kernel<S: Real, const PLANAR: bool, const SOFT: bool>(
             }
             let w = S::one() / (r2 * r2.sqrt());
             for c in 0..components {
-                pull[3 * i + c] = d[c] * w;
-                sum[i][c] += strength[j] * pull[3 * i + c];
+                pull[i][c] = d[c] * w;
+                sum[i][c] += strength[j] * pull[i][c];
             }
         }
         if !opposite {
-            for i in 0..n {
-                let j = (i + n - distance) % n;
+            for i in 0..N {
+                let j = (i + N - distance) % N;
                 for c in 0..components {
-                    sum[i][c] -= strength[j] * pull[3 * j + c];
+                    sum[i][c] -= strength[j] * pull[j][c];
                 }
             }
         }
     }
     for i in 0..rows {
-        let term = if i < n {
+        let term = if i < N {
             sum[i]
         } else {
-            let at = |c: usize, i: usize| if c < components { q[c * rows + i] } else { S::zero() };
-            let sources =
-                (0..n).map(|j| Source { position: [at(0, j), at(1, j), at(2, j)], strength: strength[j] });
-            attraction::<S, PLANAR, SOFT>([at(0, i), at(1, i), at(2, i)], sources, softening2)
+            let mut place = [S::zero(); 3];
+            for c in 0..components {
+                place[c] = q[c * rows + i];
+            }
+            attraction::<S, PLANAR, SOFT>(place, &position, strength, softening2)
         };
         for c in 0..components {
             let a = &mut a[c * rows + i];
@@ -96,22 +99,24 @@ fn kernel<S: Real, const PLANAR: bool, const SOFT: bool>(
     }
 }
 
+/// The kernel for so many massive bodies, in the plane or in space, softened or not.
 #[inline(always)]
-fn select_kernel<S: Real>(
-    shape: Shape,
-    strength: &[S],
-    softening2: f64,
-    pull: &mut [S],
-    q: &[S],
-    a: &mut [S],
-    first: bool,
-) {
-    match (shape.components == 2, softening2 > 0.0) {
-        (false, false) => kernel::<S, false, false>(shape, strength, softening2, pull, q, a, first),
-        (false, true) => kernel::<S, false, true>(shape, strength, softening2, pull, q, a, first),
-        (true, false) => kernel::<S, true, false>(shape, strength, softening2, pull, q, a, first),
-        (true, true) => kernel::<S, true, true>(shape, strength, softening2, pull, q, a, first),
+fn select_kernel<S: Real>(shape: Shape, strength: &[S], softening2: f64, q: &[S], a: &mut [S], first: bool) {
+    macro_rules! select {
+        ($($bodies:literal)+) => {
+            match (strength.len(), shape.components == 2, softening2 > 0.0) {
+                $(
+                    ($bodies, false, false) => kernel::<S, $bodies, false, false>(shape, strength, softening2, q, a, first),
+                    ($bodies, false, true) => kernel::<S, $bodies, false, true>(shape, strength, softening2, q, a, first),
+                    ($bodies, true, false) => kernel::<S, $bodies, true, false>(shape, strength, softening2, q, a, first),
+                    ($bodies, true, true) => kernel::<S, $bodies, true, true>(shape, strength, softening2, q, a, first),
+                )+
+                // More than RING_MAX bodies never come here.
+                _ => {}
+            }
+        };
     }
+    select!(1 2 3 4 5 6 7 8);
 }
 
 #[inline(always)]
@@ -119,24 +124,15 @@ fn lanes_kernel<V: Vector8>(
     shape: Shape,
     strength: &[Lanes],
     softening2: f64,
-    pull: &mut [Lanes],
     q: &[Lanes],
     a: &mut [Lanes],
     first: bool,
 ) {
-    select_kernel::<V>(
-        shape,
-        V::view(strength),
-        softening2,
-        V::view_mut(pull),
-        V::view(q),
-        V::view_mut(a),
-        first,
-    );
+    select_kernel::<V>(shape, V::view(strength), softening2, V::view(q), V::view_mut(a), first);
 }
 
 tiered! {
-    fn lanes_tier[][](shape: Shape, strength: &[Lanes], softening2: f64, pull: &mut [Lanes], q: &[Lanes], a: &mut [Lanes], first: bool) = lanes_kernel;
+    fn lanes_tier[][](shape: Shape, strength: &[Lanes], softening2: f64, q: &[Lanes], a: &mut [Lanes], first: bool) = lanes_kernel;
 }
 
 impl Force<Lanes> for FewBodies<Lanes> {
@@ -148,7 +144,7 @@ impl Force<Lanes> for FewBodies<Lanes> {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        lanes_tier(self.shape, &self.strength, self.softening2, &mut self.pull, q, a, first);
+        lanes_tier(self.shape, &self.strength, self.softening2, q, a, first);
         Ok(())
     }
 }
@@ -164,7 +160,7 @@ macro_rules! plain_force {
                 first: bool,
                 _: &mut Ticker<'_>,
             ) -> Result<()> {
-                select_kernel(self.shape, &self.strength, self.softening2, &mut self.pull, q, a, first);
+                select_kernel(self.shape, &self.strength, self.softening2, q, a, first);
                 Ok(())
             }
         }

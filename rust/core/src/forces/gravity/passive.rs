@@ -1,40 +1,69 @@
 //! Massless bodies in the field of massive ones: no third law, no pairs among themselves.
 
+use crate::numerics::lanes::Vector8;
 use crate::numerics::real::Real;
 
-/// A massive body as a passive one sees it: position and `G·m`, each the same in all its lanes.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Source<S> {
-    pub(super) position: [S; 3],
-    pub(super) strength: S,
-}
-
-/// The acceleration at `position` from all sources, in their order.
+/// The acceleration at `position` from massive bodies at `places`, in their order; `strengths` are their `G·m`.
+///
+/// No closures here or in the callers' loops: they would be compiled without the tier's instructions.
 #[inline(always)]
 pub(super) fn attraction<S: Real, const PLANAR: bool, const SOFT: bool>(
     position: [S; 3],
-    sources: impl Iterator<Item = Source<S>>,
+    places: &[[S; 3]],
+    strengths: &[S],
     softening2: S,
 ) -> [S; 3] {
     let mut a = [S::zero(); 3];
-    for source in sources {
-        let dx = source.position[0] - position[0];
-        let dy = source.position[1] - position[1];
-        let dz = source.position[2] - position[2];
-        let mut r2 = dx * dx;
-        if SOFT {
-            r2 += softening2;
-        }
-        r2 += dy * dy;
-        if !PLANAR {
-            r2 += dz * dz;
-        }
-        let w = source.strength / (r2 * r2.sqrt());
-        a[0] += w * dx;
-        a[1] += w * dy;
-        if !PLANAR {
-            a[2] += w * dz;
-        }
+    for j in 0..places.len() {
+        a = attract::<S, PLANAR, SOFT>(a, position, places[j], strengths[j], softening2);
+    }
+    a
+}
+
+/// Adds to `a` the pull at `position` of one body.
+#[inline(always)]
+pub(super) fn attract<S: Real, const PLANAR: bool, const SOFT: bool>(
+    mut a: [S; 3],
+    position: [S; 3],
+    place: [S; 3],
+    strength: S,
+    softening2: S,
+) -> [S; 3] {
+    let dx = place[0] - position[0];
+    let dy = place[1] - position[1];
+    let dz = place[2] - position[2];
+    let mut r2 = dx * dx;
+    if SOFT {
+        r2 += softening2;
+    }
+    r2 += dy * dy;
+    if !PLANAR {
+        r2 += dz * dz;
+    }
+    let w = strength / (r2 * r2.sqrt());
+    a[0] += w * dx;
+    a[1] += w * dy;
+    if !PLANAR {
+        a[2] += w * dz;
+    }
+    a
+}
+
+/// As [`attraction`], of bodies packed in lanes: `numbers` holds their coordinates, component after
+/// component at `stride`, and `strengths` their `G·m`.
+#[inline(always)]
+pub(super) fn packed_attraction<V: Vector8, const PLANAR: bool, const SOFT: bool>(
+    position: [V; 3],
+    numbers: &[f64],
+    stride: usize,
+    strengths: &[f64],
+    softening2: V,
+) -> [V; 3] {
+    let mut a = [V::zero(); 3];
+    for (j, &strength) in strengths.iter().enumerate() {
+        let z = if PLANAR { 0.0 } else { numbers[2 * stride + j] };
+        let place = [V::splat(numbers[j]), V::splat(numbers[stride + j]), V::splat(z)];
+        a = attract::<V, PLANAR, SOFT>(a, position, place, V::splat(strength), softening2);
     }
     a
 }

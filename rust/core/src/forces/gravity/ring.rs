@@ -4,7 +4,7 @@
 //! distance `k`, so `n/2` vector square roots and divisions serve all `n(n-1)/2` pairs and the third law
 //! gives the other half. Same bits as [`few`](super::few).
 
-use super::passive::{Source, attraction};
+use super::passive::packed_attraction;
 use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::element::Shape;
@@ -91,13 +91,10 @@ fn kernel<V: Vector8, const PLANAR: bool>(ring: &Ring, q: &[Lanes], a: &mut [Lan
             }
         }
     }
-    let mut write = |index: usize, term: V| {
-        a[index] = if first { term } else { V::load(a[index]) + term }.store();
-    };
-    write(0, ax);
-    write(rows, ay);
-    if !PLANAR {
-        write(2 * rows, az);
+    let sum = [ax, ay, az];
+    for c in 0..ring.shape.components {
+        let a = &mut a[c * rows];
+        *a = if first { sum[c] } else { V::load(*a) + sum[c] }.store();
     }
     if rows > 1 {
         if ring.softening2 > 0.0 {
@@ -119,15 +116,13 @@ fn passive_rows<V: Vector8, const PLANAR: bool, const SOFT: bool>(
     let numbers = as_numbers(q);
     let components = if PLANAR { 2 } else { 3 };
     for row in 1..rows {
-        let at = |c: usize| if c < components { V::load(q[c * rows + row]) } else { V::zero() };
-        let body = |c: usize, j: usize| {
-            if c < components { V::splat(numbers[c * rows * WIDTH + j]) } else { V::zero() }
-        };
-        let sources = ring.strength.iter().enumerate().map(|(j, &strength)| Source {
-            position: [body(0, j), body(1, j), body(2, j)],
-            strength: V::splat(strength),
-        });
-        let term = attraction::<V, PLANAR, SOFT>([at(0), at(1), at(2)], sources, V::splat(ring.softening2));
+        let mut position = [V::zero(); 3];
+        for c in 0..components {
+            position[c] = V::load(q[c * rows + row]);
+        }
+        let softening2 = V::splat(ring.softening2);
+        let term =
+            packed_attraction::<V, PLANAR, SOFT>(position, numbers, rows * WIDTH, &ring.strength, softening2);
         for c in 0..components {
             let a = &mut a[c * rows + row];
             *a = if first { term[c] } else { V::load(*a) + term[c] }.store();

@@ -8,7 +8,7 @@
 //! body `j` receives its terms in ascending `i`; body `i` then the horizontal sum of its lanes. The
 //! shards' results are added in ascending order. Threads and SIMD tiers do not enter.
 
-use super::passive::{Source, attraction};
+use super::passive::packed_attraction;
 use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::element::Shape;
@@ -180,21 +180,27 @@ fn passive_rows<V: Vector8>(tiles: &Tiles, q: &[Lanes], start: usize, end: usize
     let planar = tiles.shape.components == 2;
     let numbers = as_numbers(q);
     let strengths = as_numbers(&tiles.strength);
+    let strengths = &strengths[..tiles.bodies];
+    let softening2 = V::splat(tiles.softening2);
+    let stride = rows * WIDTH;
     for row in start..end {
-        let at = |c: usize| if planar && c == 2 { V::zero() } else { V::load(q[c * rows + row]) };
-        let body = |c: usize, j: usize| {
-            if planar && c == 2 { V::zero() } else { V::splat(numbers[c * rows * WIDTH + j]) }
-        };
-        let sources = (0..tiles.bodies).map(|j| Source {
-            position: [body(0, j), body(1, j), body(2, j)],
-            strength: V::splat(strengths[j]),
-        });
-        let (position, softening2) = ([at(0), at(1), at(2)], V::splat(tiles.softening2));
+        let mut position = [V::zero(); 3];
+        for c in 0..tiles.shape.components {
+            position[c] = V::load(q[c * rows + row]);
+        }
         let term = match (planar, tiles.softening2 > 0.0) {
-            (false, false) => attraction::<V, false, false>(position, sources, softening2),
-            (false, true) => attraction::<V, false, true>(position, sources, softening2),
-            (true, false) => attraction::<V, true, false>(position, sources, softening2),
-            (true, true) => attraction::<V, true, true>(position, sources, softening2),
+            (false, false) => {
+                packed_attraction::<V, false, false>(position, numbers, stride, strengths, softening2)
+            }
+            (false, true) => {
+                packed_attraction::<V, false, true>(position, numbers, stride, strengths, softening2)
+            }
+            (true, false) => {
+                packed_attraction::<V, true, false>(position, numbers, stride, strengths, softening2)
+            }
+            (true, true) => {
+                packed_attraction::<V, true, true>(position, numbers, stride, strengths, softening2)
+            }
         };
         for c in 0..tiles.shape.components {
             out[c * (end - start) + row - start] = term[c].store();
