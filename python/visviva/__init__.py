@@ -41,7 +41,7 @@ _HOME = {
     "load": "io",
     "methods": "integrators",
 }
-_ROOMS = ("datasets", "errors", "forces", "potentials", "problems", "scattering")
+_ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering")
 
 __all__ = [
     "CentralField",
@@ -68,13 +68,14 @@ __all__ = [
     "forces",
     "load",
     "methods",
+    "orbits",
     "potentials",
     "problems",
     "scattering",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, forces, potentials, problems, scattering
+    from visviva import datasets, errors, forces, orbits, potentials, problems, scattering
     from visviva.conservation import Conservation
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

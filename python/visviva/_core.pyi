@@ -82,3 +82,37 @@ def scattering_function(
 ) -> NDArray[np.float64]: ...
 def solid_angles(edges: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def info() -> dict[str, Any]: ...
+def orbit_elements(
+    mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]: ...
+def orbit_state(
+    mu: NDArray[np.float64],
+    pericentre: NDArray[np.float64],
+    eccentricity: NDArray[np.float64],
+    inclination: NDArray[np.float64],
+    node: NDArray[np.float64],
+    argument_of_pericentre: NDArray[np.float64],
+    true_anomaly: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def orbit_propagate(
+    mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64], t: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def orbit_anomaly(
+    name: str, anomaly: NDArray[np.float64], eccentricity: NDArray[np.float64], repulsive: bool
+) -> NDArray[np.float64]: ...
+def orbit_period(mu: NDArray[np.float64], semi_major_axis: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def orbit_free_fall_time(
+    mu: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
+) -> NDArray[np.float64]: ...
+def conic_from_state(
+    mass: NDArray[np.float64],
+    strength: NDArray[np.float64],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+) -> dict[str, NDArray[np.float64]]: ...
+def conic_from_constants(
+    mass: NDArray[np.float64],
+    strength: NDArray[np.float64],
+    angular_momentum: NDArray[np.float64],
+    energy: NDArray[np.float64],
+) -> dict[str, NDArray[np.float64]]: ...

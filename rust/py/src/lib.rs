@@ -8,6 +8,7 @@ mod diagnostic;
 mod errors;
 mod gate;
 mod info;
+mod orbits;
 mod registry;
 mod scattering;
 mod scene;
@@ -24,6 +25,11 @@ mod _core {
     use crate::diagnostic::{_busy, _echo};
     #[pymodule_export]
     use crate::info::info;
+    #[pymodule_export]
+    use crate::orbits::{
+        conic_from_constants, conic_from_state, orbit_anomaly, orbit_elements, orbit_free_fall_time,
+        orbit_period, orbit_propagate, orbit_state,
+    };
     #[pymodule_export]
     use crate::registry::{methods, potential, potentials};
     #[pymodule_export]

@@ -72,9 +72,26 @@ pub fn hyperbolic_anomaly(mean: f64, eccentricity: f64, repulsive: bool) -> Resu
 pub fn parabolic_anomaly(mean: f64) -> f64 {
     // D³ + 3D = 3M by Cardano, without the cancellation.
     let k = 1.5 * mean.abs();
-    let w = cbrt(k + (k * k + 1.0).sqrt());
+    // Beyond 1e9 the one is nothing beside k², which might overflow.
+    let w = if k > 1e9 { cbrt(2.0 * k) } else { cbrt(k + (k * k + 1.0).sqrt()) };
     let inverse = 1.0 / w;
     (2.0 * k / (w * w + 1.0 + inverse * inverse)).copysign(mean)
+}
+
+/// M = D + D³/3.
+pub fn mean_from_parabolic(parabolic: f64) -> f64 {
+    parabolic + parabolic * (parabolic * parabolic) / 3.0
+}
+
+/// ν = 2 arctan D.
+pub fn true_from_parabolic(parabolic: f64) -> f64 {
+    2.0 * atan2(parabolic, 1.0)
+}
+
+/// D = tan(ν/2), of |ν| < π.
+pub fn parabolic_from_true(true_anomaly: f64) -> f64 {
+    let (sine, cosine) = sin_cos(0.5 * true_anomaly);
+    sine / cosine
 }
 
 /// The true anomaly ν of E, in the same half turns; tan(ν/2) = √((1+e)/(1−e)) tan(E/2).
@@ -93,7 +110,8 @@ pub fn eccentric_from_true(true_anomaly: f64, eccentricity: f64) -> f64 {
 
 /// The true anomaly of H: tan(ν/2) = √((e+1)/(e−1)) tanh(H/2), with e → −e for repulsion.
 pub fn true_from_hyperbolic(hyperbolic: f64, eccentricity: f64, repulsive: bool) -> f64 {
-    let g = UniversalFunctions::<f64>::new(-1.0, 0.5 * hyperbolic);
+    // tanh 40 is 1 to 34 digits; beyond, sinh and cosh would overflow.
+    let g = UniversalFunctions::<f64>::new(-1.0, 0.5 * hyperbolic.clamp(-80.0, 80.0));
     let (above, below) = ((eccentricity + 1.0).sqrt(), (eccentricity - 1.0).sqrt());
     let (y, x) = if repulsive { (below, above) } else { (above, below) };
     2.0 * atan2(y * g.g1, x * g.g0)
@@ -113,4 +131,56 @@ pub fn hyperbolic_from_true(true_anomaly: f64, eccentricity: f64, repulsive: boo
     // ln(1 + w) without losing what 1 + w rounds away (Kahan's quotient).
     let logarithm = if grown == 1.0 { w } else { ln(grown) * (w / (grown - 1.0)) };
     logarithm.copysign(true_anomaly)
+}
+
+/// A conversion between anomalies by its name, `to_from_from`, with its arguments checked.
+///
+/// # Errors
+/// [`Error::InvalidInput`] for an unknown name, a number that is not finite, an eccentricity outside the range of the
+/// conic, and a true anomaly on or beyond an asymptote.
+pub fn convert(name: &str, anomaly: f64, eccentricity: f64, repulsive: bool) -> Result<f64> {
+    let (to, from) = name.split_once("_from_").unwrap_or((name, ""));
+    let (argument, conic) = (
+        if from == "true" { "true_anomaly" } else { from },
+        if from == "mean" || from == "true" { to } else { from },
+    );
+    let e = eccentricity;
+    check(argument, anomaly, anomaly.abs() < 1e300, "a finite number")?;
+    match conic {
+        "eccentric" => check("eccentricity", e, (0.0..1.0).contains(&e), "0 ≤ e < 1, as ellipses have")?,
+        "hyperbolic" => {
+            check("eccentricity", e, e.is_finite() && e > 1.0, "a finite e > 1, as hyperbolas have")?
+        }
+        _ => {}
+    }
+    match name {
+        "mean_from_eccentric" => Ok(mean_from_eccentric(anomaly, e)),
+        "mean_from_hyperbolic" => Ok(mean_from_hyperbolic(anomaly, e, repulsive)),
+        "mean_from_parabolic" => Ok(mean_from_parabolic(anomaly)),
+        "eccentric_from_mean" => eccentric_anomaly(anomaly, e),
+        "hyperbolic_from_mean" => hyperbolic_anomaly(anomaly, e, repulsive),
+        "parabolic_from_mean" => Ok(parabolic_anomaly(anomaly)),
+        "true_from_eccentric" => Ok(true_from_eccentric(anomaly, e)),
+        "true_from_hyperbolic" => Ok(true_from_hyperbolic(anomaly, e, repulsive)),
+        "true_from_parabolic" => Ok(true_from_parabolic(anomaly)),
+        "eccentric_from_true" => Ok(eccentric_from_true(anomaly, e)),
+        "hyperbolic_from_true" => {
+            let hyperbolic = hyperbolic_from_true(anomaly, e, repulsive);
+            check(
+                argument,
+                anomaly,
+                anomaly.abs() < PI && hyperbolic.is_finite(),
+                "an angle inside the asymptotes",
+            )?;
+            Ok(hyperbolic)
+        }
+        "parabolic_from_true" => {
+            check(argument, anomaly, anomaly.abs() < PI, "an angle between −π and π")?;
+            Ok(parabolic_from_true(anomaly))
+        }
+        _ => Err(Error::invalid(
+            "name",
+            format!("expected a conversion such as true_from_eccentric, got {name}"),
+        )),
+    }
 }

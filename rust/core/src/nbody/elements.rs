@@ -7,6 +7,7 @@
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9; hodograph: Hamilton (1847).
 
 use super::conic::Conic;
+use super::constants::dynamical_time;
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2, sin_cos};
@@ -25,9 +26,9 @@ pub struct Elements {
     pub energy: f64,
     /// v×L − μ r̂: towards the pericentre, length |μ| e.
     pub laplace_runge_lenz: Vector3<f64>,
-    /// The velocities lie on a circle about this point (infinite for radial motion: NaN components).
+    /// The velocities lie on a circle about this point (radial motion has none: NaN).
     pub hodograph_centre: Vector3<f64>,
-    /// |μ|/L.
+    /// |μ|/L; infinite for radial motion.
     pub hodograph_radius: f64,
     /// e.
     pub eccentricity: f64,
@@ -129,7 +130,7 @@ impl Elements {
             energy: scale(-0.5 * beta.to_f64(), 2 * speed),
             laplace_runge_lenz: conic.towards * scale(zeta.to_f64(), length + 2 * speed),
             hodograph_centre: conic.along * scale((zeta / h).to_f64(), speed),
-            hodograph_radius: scale((strength / h).to_f64(), speed),
+            hodograph_radius: infinite_if(h_size == 0.0, scale((strength / h).to_f64(), speed)),
             eccentricity: e,
             semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
             semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
@@ -213,20 +214,25 @@ pub fn state_from_elements(
     ))
 }
 
-/// The time to fall from rest at distance `from` to distance `to` ≤ `from` of an attracting centre.
+/// The time to fall from rest at the distance `start` to the distance `end` ≤ `start` of an attracting centre.
 ///
 /// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the centre itself π √(R³/(8μ)).
 ///
 /// # Errors
-/// [`Error::InvalidInput`] unless `mu` > 0 and 0 ≤ `to` ≤ `from`, all finite.
-pub fn free_fall_time(mu: f64, from: f64, to: f64) -> Result<f64> {
-    if !(mu > 0.0 && mu.is_finite()) {
-        return Err(Error::invalid("mu", format!("expected a positive number, got {mu}")));
+/// [`Error::InvalidInput`] unless `mu` > 0 and 0 ≤ `end` ≤ `start`, all finite, `start` > 0.
+pub fn free_fall_time(mu: f64, start: f64, end: f64) -> Result<f64> {
+    for (name, value) in [("mu", mu), ("start", start)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::invalid(name, format!("expected a positive number, got {value}")));
+        }
     }
-    if !(from > 0.0 && from.is_finite() && (0.0..=from).contains(&to)) {
-        return Err(Error::invalid("to", format!("expected 0 ≤ to ≤ from, got from = {from}, to = {to}")));
+    if !(0.0..=start).contains(&end) {
+        return Err(Error::invalid(
+            "end",
+            format!("expected a distance from 0 to start = {start}, got {end}"),
+        ));
     }
-    let (fallen, left) = ((from - to) / from, to / from);
-    let angle = if to == 0.0 { FRAC_PI_2 } else { atan2(fallen.sqrt(), left.sqrt()) };
-    Ok(from * (from / mu * 0.5).sqrt() * (angle + (fallen * left).sqrt()))
+    let (fallen, left) = ((start - end) / start, end / start);
+    let angle = if end == 0.0 { FRAC_PI_2 } else { atan2(fallen.sqrt(), left.sqrt()) };
+    Ok(core::f64::consts::FRAC_1_SQRT_2 * dynamical_time(mu, start) * (angle + (fallen * left).sqrt()))
 }

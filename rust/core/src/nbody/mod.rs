@@ -2,6 +2,7 @@
 
 pub mod anomalies;
 mod conic;
+pub mod constants;
 pub mod elements;
 pub mod kepler;
 mod kepler_equation;

@@ -166,3 +166,47 @@ fn stumpff_series(z: f64) -> (f64, f64) {
     let odd3 = term(5) + w * (term(9) + w * (term(13) + w * (term(17) + w * term(21))));
     (even2 - z * odd2, even3 - z * odd3)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::elementary::Exponential;
+
+    fn functions(beta: f64, s: f64) -> UniversalFunctions<DoubleDouble> {
+        UniversalFunctions::<DoubleDouble>::new(DoubleDouble::from(beta), DoubleDouble::from(s))
+    }
+
+    /// The two series are made of different coefficients, all of which this identity needs to 31 digits.
+    #[test]
+    fn squares_of_the_cosine_and_the_sine_sum_to_one() {
+        let mut worst = 0.0_f64;
+        for z in [0.7, 0.55, 0.3, 0.05, -0.05, -0.3, -0.55, -0.7] {
+            for s in [0.75_f64, 1.0, 1.5] {
+                let beta = z / (s * s);
+                let g = functions(beta, s);
+                let one = g.g0 * g.g0 + DoubleDouble::from(beta) * g.g1 * g.g1;
+                worst = worst.max((one - DoubleDouble::one()).to_f64().abs());
+            }
+        }
+        // Measured 4.3e-32: four roundings of 2^-106 each.
+        assert!(worst <= 6e-32, "{worst:e}");
+    }
+
+    #[test]
+    fn hyperbolic_functions_against_the_exponential() {
+        let mut worst = 0.0_f64;
+        for s in [0.125, 0.5, 0.8, 1.0, 3.0, 10.0] {
+            let (grown, x) = (DoubleDouble::from(s).exp(), DoubleDouble::from(s));
+            let sine = (grown - DoubleDouble::one() / grown).scale(0.5);
+            let g = functions(-1.0, s);
+            // sinh s − s, whose cancellation costs the reference 6/s² of its digits.
+            for (found, expected, loss) in
+                [(g.g1, sine, 1.0), (g.g0, grown - sine, 1.0), (g.g3, sine - x, 1.0 + 6.0 / (s * s))]
+            {
+                worst = worst.max(((found - expected) / expected).to_f64().abs() / loss / (1.0 + s));
+            }
+        }
+        // Measured 8.0e-33.
+        assert!(worst <= 1.2e-32, "{worst:e}");
+    }
+}

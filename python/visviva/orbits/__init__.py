@@ -1,0 +1,51 @@
+"""Kepler orbits: elements, states, propagation in closed form, anomalies, and the constants of a conic.
+
+The one idea: everything about the motion under r̈ = −μ r/|r|³ is known without a step. Ellipses, parabolas, hyperbolas,
+repulsion (μ < 0) and radial motion are one set of formulas; the work is done by the core in double-double where digits
+would be lost. Arguments may be numbers or arrays, and broadcast against each other; the vector axis is the last.
+
+Units are yours: with lengths in L and times in T, μ = G(m₁ + m₂) is in L³/T². Angles are in radians; x is the
+reference direction and z the pole. Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9;
+Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
+"""
+
+from visviva.orbits._anomalies import (
+    eccentric_from_mean,
+    eccentric_from_true,
+    hyperbolic_from_mean,
+    hyperbolic_from_true,
+    mean_from_eccentric,
+    mean_from_hyperbolic,
+    mean_from_parabolic,
+    parabolic_from_mean,
+    parabolic_from_true,
+    true_from_eccentric,
+    true_from_hyperbolic,
+    true_from_parabolic,
+)
+from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period
+from visviva.orbits._elements import Elements, elements, propagate, state
+
+__all__ = [
+    "Conic",
+    "Elements",
+    "conic",
+    "conic_from_constants",
+    "eccentric_from_mean",
+    "eccentric_from_true",
+    "elements",
+    "free_fall_time",
+    "hyperbolic_from_mean",
+    "hyperbolic_from_true",
+    "mean_from_eccentric",
+    "mean_from_hyperbolic",
+    "mean_from_parabolic",
+    "parabolic_from_mean",
+    "parabolic_from_true",
+    "period",
+    "propagate",
+    "state",
+    "true_from_eccentric",
+    "true_from_hyperbolic",
+    "true_from_parabolic",
+]

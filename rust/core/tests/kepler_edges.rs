@@ -1,0 +1,168 @@
+//! The edges of Kepler's problem: radial and parabolic elements, refusals, infinite times, extreme units.
+#![allow(clippy::unwrap_used, missing_docs)]
+
+use core::f64::consts::PI;
+use nalgebra::Vector3;
+use visviva_core::nbody::anomalies::*;
+use visviva_core::nbody::constants::{ConicConstants, period};
+use visviva_core::nbody::elements::{Elements, free_fall_time, state_from_elements};
+use visviva_core::nbody::kepler::KeplerOrbit;
+
+fn close(found: f64, expected: f64) {
+    assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{found:?} ≠ {expected:?}");
+}
+
+#[test]
+fn elements_of_a_radial_ellipse() {
+    // At rest at r = 2, then at r = 1 on the way down and up: a = 1, E − sin E = M, cos E = 1 − r/a.
+    let rest = Elements::from_state(1.0, Vector3::new(0.0, 2.0, 0.0), Vector3::zeros()).unwrap();
+    assert_eq!(
+        (rest.eccentricity, rest.pericentre, rest.semi_minor_axis, rest.areal_rate),
+        (1.0, 0.0, 0.0, 0.0)
+    );
+    assert_eq!(
+        (rest.semi_major_axis, rest.apocentre, rest.energy, rest.semi_latus_rectum),
+        (1.0, 2.0, -0.5, 0.0)
+    );
+    close(rest.eccentric_anomaly.abs(), PI);
+    close(rest.time_since_pericentre.abs(), PI);
+    assert_eq!(rest.laplace_runge_lenz, Vector3::new(0.0, -1.0, 0.0));
+    assert!(rest.inclination.is_nan() && rest.node.is_nan() && rest.argument_of_pericentre.is_nan());
+    assert!(rest.hodograph_radius.is_infinite());
+    for sign in [-1.0, 1.0] {
+        let moving = Elements::from_state(1.0, Vector3::x(), Vector3::x() * sign).unwrap();
+        assert_eq!((moving.eccentricity, moving.pericentre), (1.0, 0.0));
+        close(moving.semi_major_axis, 1.0);
+        close(moving.eccentric_anomaly, sign * PI / 2.0);
+        close(moving.mean_anomaly, sign * (PI / 2.0 - 1.0));
+        close(moving.time_since_pericentre, sign * (PI / 2.0 - 1.0));
+    }
+}
+
+#[test]
+fn elements_of_radial_escape_and_repulsion() {
+    // v² = 2μ/r is the radial parabola: r³ = 9μt²/2.
+    let escape = Elements::from_state(1.0, Vector3::new(0.0, 0.0, 2.0), Vector3::z()).unwrap();
+    assert_eq!((escape.energy, escape.eccentricity, escape.pericentre), (0.0, 1.0, 0.0));
+    assert!(escape.semi_major_axis.is_infinite() && escape.period.is_infinite());
+    close(escape.time_since_pericentre, (16.0f64 / 9.0).sqrt());
+    close(escape.turning_angle, PI);
+    // Head-on against a repulsive centre: turned back at |μ|/E, e = 1 as the limit of p → 0.
+    let back = Elements::from_state(-1.0, Vector3::new(2.0, 0.0, 0.0), Vector3::zeros()).unwrap();
+    assert_eq!((back.energy, back.eccentricity, back.pericentre), (0.5, 1.0, 2.0));
+    assert_eq!(back.time_since_pericentre, 0.0);
+    close(back.turning_angle, PI);
+}
+
+#[test]
+fn elements_of_a_parabola() {
+    // r = (2, 1, 2), |r| = 3, v² = 2μ/r exactly with μ = 1.5.
+    for v in [Vector3::new(0.0, 0.0, 1.0), Vector3::new(-0.6, 0.0, -0.8), Vector3::new(0.0, 1.0, 0.0)] {
+        let r = Vector3::new(2.0, 1.0, 2.0);
+        let found = Elements::from_state(1.5 * v.norm_squared(), r, v).unwrap();
+        let l2 = r.cross(&v).norm_squared();
+        if found.energy == 0.0 {
+            assert_eq!(found.eccentricity, 1.0);
+            assert!(found.semi_major_axis.is_infinite() && found.semi_minor_axis.is_infinite());
+            close(found.turning_angle, PI);
+        }
+        close(found.pericentre, l2 / (3.0 * v.norm_squared()));
+        // r = q (1 + D²), D = tan(ν/2), r·v > 0 after the pericentre.
+        let d = (3.0 / found.pericentre - 1.0).sqrt().copysign(r.dot(&v));
+        assert!((found.true_anomaly - 2.0 * d.atan()).abs() < 1e-15);
+        if found.energy == 0.0 {
+            assert!((found.eccentric_anomaly - d).abs() <= 4.0 * f64::EPSILON * d.abs());
+            close(found.mean_anomaly, mean_from_parabolic(d));
+            let rate = (1.5 * v.norm_squared() / (2.0 * found.pericentre.powi(3))).sqrt();
+            close(found.time_since_pericentre, found.mean_anomaly / rate);
+        }
+    }
+}
+
+#[test]
+fn state_from_elements_refuses_by_name() {
+    let good = [1.0, 1.0, 0.5, 0.1, 0.2, 0.3, 0.4];
+    let call = |x: [f64; 7]| state_from_elements(x[0], x[1], x[2], x[3], x[4], x[5], x[6]);
+    let _ = call(good).unwrap();
+    let hyperbola = [1.0, 1.0, 2.0, 0.1, 0.2, 0.3, 2.0];
+    let _ = call(hyperbola).unwrap();
+    for (base, place, value, name) in [
+        (good, 0, 0.0, "mu"),
+        (good, 0, f64::NAN, "mu"),
+        (good, 0, -1.0, "eccentricity"),
+        (good, 1, 0.0, "pericentre"),
+        (good, 1, f64::INFINITY, "pericentre"),
+        (good, 2, -0.1, "eccentricity"),
+        (good, 2, f64::NAN, "eccentricity"),
+        (good, 3, f64::NAN, "angles"),
+        (good, 6, f64::INFINITY, "angles"),
+        (hyperbola, 6, 2.1, "true_anomaly"),
+        (hyperbola, 6, PI, "true_anomaly"),
+        (hyperbola, 0, -1.0, "true_anomaly"),
+    ] {
+        let mut bad = base;
+        bad[place] = value;
+        assert!(call(bad).unwrap_err().to_string().starts_with(name), "{name}");
+    }
+}
+
+#[test]
+fn an_infinite_time_is_no_state() {
+    for (mu, v) in [(1.0, 1.0), (1.0, 2.0), (-1.0, 1.0), (0.0, 1.0)] {
+        let orbit = KeplerOrbit::new(mu, Vector3::x(), Vector3::y() * v).unwrap();
+        for t in [f64::INFINITY, f64::NEG_INFINITY, f64::NAN] {
+            let (r, v) = orbit.state(t);
+            assert!(r.iter().chain(v.iter()).all(|x| x.is_nan()));
+        }
+    }
+}
+
+#[test]
+fn anomalies_at_the_ends_of_their_ranges() {
+    close(parabolic_anomaly(1e210), 3e210f64.cbrt());
+    close(parabolic_anomaly(-1e-200), -1e-200);
+    assert_eq!(true_from_hyperbolic(3000.0, 2.0, false), true_from_hyperbolic(90.0, 2.0, false));
+    close(true_from_hyperbolic(-3000.0, 2.0, false), -(-0.5f64).acos());
+    for (name, anomaly, e, argument) in [
+        ("eccentric_from_mean", 1.0, 1.0, "eccentricity"),
+        ("true_from_eccentric", 1.0, f64::NAN, "eccentricity"),
+        ("mean_from_hyperbolic", 1.0, 1.0, "eccentricity"),
+        ("hyperbolic_from_true", 2.2, 2.0, "true_anomaly"),
+        ("parabolic_from_true", PI, 1.0, "true_anomaly"),
+        ("mean_from_parabolic", f64::NAN, 1.0, "parabolic"),
+        ("true_from_mean", 1.0, 0.5, "name"),
+    ] {
+        assert!(convert(name, anomaly, e, false).unwrap_err().to_string().starts_with(argument), "{name}");
+    }
+}
+
+#[test]
+fn constants_agree_with_those_of_a_state_and_know_no_units() {
+    for (mass, strength, r, v) in [(2.0, 3.0, 1.25, 0.875), (0.5, 1.0, 1.0, 3.0), (1.5, -2.0, 1.0, 0.5)] {
+        let state =
+            ConicConstants::from_state(mass, strength, Vector3::x() * r, Vector3::new(0.25, v, 0.0)).unwrap();
+        let found =
+            ConicConstants::from_constants(mass, strength, state.angular_momentum, state.energy).unwrap();
+        let numbers = |c: &ConicConstants| {
+            [c.eccentricity, c.semi_major_axis, c.semi_minor_axis, c.r_min, c.areal_rate]
+        };
+        for (a, b) in numbers(&found).into_iter().zip(numbers(&state)) {
+            assert!((a - b).abs() <= 16.0 * f64::EPSILON * b, "{a} {b}");
+        }
+        // Lengths × 2^300, times × 2^-200, masses × 2^100: energy × 2^(100 + 1000) would overflow; here × 2^-100 first.
+        let (length, speed, unit) = (2f64.powi(300), 2f64.powi(-350), 2f64.powi(100));
+        let large = ConicConstants::from_constants(
+            mass * unit,
+            strength * unit * speed * speed * length,
+            state.angular_momentum * unit * speed * length,
+            state.energy * unit * speed * speed,
+        )
+        .unwrap();
+        assert_eq!(large.semi_major_axis, found.semi_major_axis * length);
+        assert_eq!(large.eccentricity, found.eccentricity);
+        assert_eq!(large.r_min, found.r_min * length);
+        assert_eq!(large.period, found.period * length / speed);
+    }
+    close(period(1e250, 1e-100).unwrap(), 2.0 * PI * 1e-275);
+    close(free_fall_time(1e250, 1e-100, 0.0).unwrap(), PI * 0.125f64.sqrt() * 1e-275);
+}
