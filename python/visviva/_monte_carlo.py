@@ -280,7 +280,6 @@ def monte_carlo(
 
 
 def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float64]]]:
-    pairs: list[tuple[str, int | NDArray[np.float64]]]
     if isinstance(tally, str):
         return [(tally, bins)]
     pairs: list[tuple[str, int | NDArray[np.float64]]]

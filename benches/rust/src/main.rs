@@ -44,7 +44,7 @@ fn cluster(particles: usize, solar: bool) -> Scene {
 
 /// Perturbed copies of the figure-eight of three equal bodies (Chenciner & Montgomery).
 fn figure_eights(copies: usize) -> Scene {
-    let (x, v) = ([0.97000436, -0.24308753, 0.0], [0.466_203_684_069_539_35, 0.432_365_730_917_476_85, 0.0]);
+    let (x, v) = ([0.97000436, -0.24308753, 0.0], [0.466_203_684_069_539_3, 0.432_365_730_917_476_8, 0.0]);
     let scaled = |a: [f64; 3], factor: f64| a.map(|a| a * factor);
     let mut seed = 1;
     let mut position = Vec::new();

@@ -143,7 +143,7 @@ macro_rules! for_weighted {
         for_weighted!(@groups 1, ($n, $terms, $k), start, |$i, $sum| $body);
     }};
     (@groups $g:literal, ($n:expr, $terms:expr, $k:expr), $start:ident, |$i:ident, $sum:ident| $body:expr) => {
-        while $start + $g <= $n {
+        while $n - $start >= $g {
             let sums = weighted::<S, $g>($terms, $k, $n, $start);
             for g in 0..$g {
                 let ($i, $sum) = ($start + g, sums[g]);
