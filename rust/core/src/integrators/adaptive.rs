@@ -138,13 +138,13 @@ impl<S: Element> Adaptive<S> {
         }
     }
 
-    /// The larger squared scaled size of the two halves of `h Σ weight·k`.
-    fn scaled_size(&self, y: &[S], h: S, terms: &[Term<S>], reduce: &impl Reduce<S>) -> S {
+    /// The larger squared scaled size of the two halves of `h Σ weight·k`, for two sets of weights.
+    fn scaled_sizes(&self, y: &[S], h: S, terms: [&[Term<S>]; 2], reduce: &impl Reduce<S>) -> [S; 2] {
         let shape: Shape = self.next.shape;
         let n = shape.len();
         let (k, stride) = (&self.stages.k, self.stages.len());
-        let size = |half: usize, atol: S| {
-            S::largest_error(
+        let sizes = |half: usize, atol: S| {
+            S::largest_errors(
                 shape,
                 &y[half * n..],
                 &self.reference_now[3 * half..],
@@ -155,7 +155,8 @@ impl<S: Element> Adaptive<S> {
                 stride,
             )
         };
-        reduce.largest(size(0, self.tolerance.atol_q).max(size(1, self.tolerance.atol_v)))
+        let [of_q, of_v] = [sizes(0, self.tolerance.atol_q), sizes(1, self.tolerance.atol_v)];
+        [reduce.largest(of_q[0].max(of_v[0])), reduce.largest(of_q[1].max(of_v[1]))]
     }
 
     /// Changes what errors are measured against, when lanes take up other trajectories.
@@ -189,7 +190,7 @@ impl<S: Element> Adaptive<S> {
         let first = [Term { stage: 0, weight: S::one() }];
         let y = state.all().0;
         // With a zero derivative any step will do; the span is then the step.
-        let slope2 = self.scaled_size(y, S::one(), &first, reduce);
+        let slope2 = self.scaled_sizes(y, S::one(), [&first, &[]], reduce)[0];
         let span = (clock.end - clock.elapsed).abs();
         let longest = span.min(self.max_step);
         let still = slope2.less_equal(S::zero());
@@ -199,7 +200,7 @@ impl<S: Element> Adaptive<S> {
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         self.stages.evaluate_at(end_stage, state, trial * direction, &first, dynamics, ticker)?;
         let change = [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
-        let curvature2 = self.scaled_size(y, time / trial, &change, reduce);
+        let curvature2 = self.scaled_sizes(y, time / trial, [&change, &[]], reduce)[0];
         // Both sizes in units of that time, so that the choice does not depend on the unit of time.
         let largest = (slope2 * time * time).max(curvature2 * time * time);
         let by_order = time * self.root(S::splat(1e-4) / largest);
@@ -269,9 +270,10 @@ impl<S: Element> Adaptive<S> {
     /// The squared scaled error of the step.
     fn error_size(&self, state: &State<S>, h: S, reduce: &impl Reduce<S>) -> S {
         let y = state.all().0;
-        let main = self.scaled_size(y, h, &self.error, reduce);
-        let Some(second) = &self.second_error else { return main };
-        let second = self.scaled_size(y, h, second, reduce);
+        let Some(second) = &self.second_error else {
+            return self.scaled_sizes(y, h, [&self.error, &[]], reduce)[0];
+        };
+        let [main, second] = self.scaled_sizes(y, h, [&self.error, second], reduce);
         // (E² / sqrt(E² + 0.01 E3²))², with E² and E3² at hand.
         let denominator = main + S::splat(0.01) * second;
         let size2 = main * (main / denominator);

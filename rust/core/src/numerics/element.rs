@@ -48,17 +48,17 @@ pub trait Element: Real {
         k: &[Self],
     );
     /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the
-    /// rows (particles); each row is a vector of `shape.components` components.
-    fn largest_error(
+    /// rows (particles), for two sets of weights at once; each row is a vector of `shape.components` components.
+    fn largest_errors(
         shape: Shape,
         y: &[Self],
         reference: &[Self],
         tolerance: (Self, Self),
         h: Self,
-        terms: &[Term<Self>],
+        terms: [&[Term<Self>]; 2],
         k: &[Self],
         stride: usize,
-    ) -> Self;
+    ) -> [Self; 2];
     /// The square root of the square root of …, `times` times.
     fn repeated_sqrt(self, times: u32) -> Self;
     /// `if mask { from } else { into }`, element by element.
@@ -178,38 +178,41 @@ fn combine_compensated<S: Real>(
 const HUGE: f64 = 1e300;
 
 #[inline(always)]
-fn largest_error<S: Real>(
+fn largest_errors<S: Real>(
     shape: Shape,
     y: &[S],
     reference: &[S],
     (atol, rtol): (S, S),
     h: S,
-    terms: &[Term<S>],
+    terms: [&[Term<S>]; 2],
     k: &[S],
     stride: usize,
-) -> S {
-    let mut largest = S::zero();
+) -> [S; 2] {
+    let mut largest = [S::zero(); 2];
     for row in 0..shape.rows {
-        let mut error2 = S::zero();
         let mut distance2 = S::zero();
-        let mut sums = [S::zero(); 3];
-        for &Term { stage, weight } in terms {
-            for component in 0..shape.components {
-                sums[component] += weight * k[stage * stride + component * shape.rows + row];
-            }
-        }
         for component in 0..shape.components {
-            let i = component * shape.rows + row;
-            let error = h * sums[component];
-            let distance = y[i] - reference[component];
-            error2 += error * error;
+            let distance = y[component * shape.rows + row] - reference[component];
             distance2 += distance * distance;
         }
         let scale = atol + rtol * distance2.sqrt();
-        let ratio = error2 / (scale * scale);
-        let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
-        let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
-        largest = largest.max(ratio);
+        for estimate in 0..2 {
+            let mut sums = [S::zero(); 3];
+            for &Term { stage, weight } in terms[estimate] {
+                for component in 0..shape.components {
+                    sums[component] += weight * k[stage * stride + component * shape.rows + row];
+                }
+            }
+            let mut error2 = S::zero();
+            for component in 0..shape.components {
+                let error = h * sums[component];
+                error2 += error * error;
+            }
+            let ratio = error2 / (scale * scale);
+            let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
+            let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
+            largest[estimate] = largest[estimate].max(ratio);
+        }
     }
     largest
 }
@@ -253,17 +256,17 @@ macro_rules! plain_element {
             ) {
                 combine_compensated(out, y, h, terms, k);
             }
-            fn largest_error(
+            fn largest_errors(
                 shape: Shape,
                 y: &[Self],
                 reference: &[Self],
                 tolerance: (Self, Self),
                 h: Self,
-                terms: &[Term<Self>],
+                terms: [&[Term<Self>]; 2],
                 k: &[Self],
                 stride: usize,
-            ) -> Self {
-                largest_error(shape, y, reference, tolerance, h, terms, k, stride)
+            ) -> [Self; 2] {
+                largest_errors(shape, y, reference, tolerance, h, terms, k, stride)
             }
             fn repeated_sqrt(self, times: u32) -> Self {
                 repeated_sqrt(self, times)
@@ -338,27 +341,27 @@ fn combine_compensated_lanes<V: Vector8>(
     );
 }
 #[inline(always)]
-fn largest_error_lanes<V: Vector8>(
+fn largest_errors_lanes<V: Vector8>(
     shape: Shape,
     y: &[Lanes],
     reference: &[Lanes],
     tolerance: (Lanes, Lanes),
     h: Lanes,
-    terms: &[Term<Lanes>],
+    terms: [&[Term<Lanes>]; 2],
     k: &[Lanes],
     stride: usize,
-) -> Lanes {
-    largest_error::<V>(
+) -> [Lanes; 2] {
+    let [first, second] = largest_errors::<V>(
         shape,
         V::view(y),
         V::view(reference),
         load(tolerance),
         V::load(h),
-        view_terms(terms),
+        [view_terms(terms[0]), view_terms(terms[1])],
         V::view(k),
         stride,
-    )
-    .store()
+    );
+    [first.store(), second.store()]
 }
 
 #[inline(always)]
@@ -377,7 +380,7 @@ tiered! {
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: Scaled<Lanes>) = advance_lanes;
     fn combine_tier[][](out: &mut [Lanes], y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_lanes;
     fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_compensated_lanes;
-    fn largest_error_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (Lanes, Lanes), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes], stride: usize) -> Lanes = largest_error_lanes;
+    fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (Lanes, Lanes), h: Lanes, terms: [&[Term<Lanes>]; 2], k: &[Lanes], stride: usize) -> [Lanes; 2] = largest_errors_lanes;
 }
 
 impl Element for Lanes {
@@ -405,17 +408,17 @@ impl Element for Lanes {
     ) {
         combine_compensated_tier(out, y, h, terms, k);
     }
-    fn largest_error(
+    fn largest_errors(
         shape: Shape,
         y: &[Self],
         reference: &[Self],
         tolerance: (Self, Self),
         h: Self,
-        terms: &[Term<Self>],
+        terms: [&[Term<Self>]; 2],
         k: &[Self],
         stride: usize,
-    ) -> Self {
-        largest_error_tier(shape, y, reference, tolerance, h, terms, k, stride)
+    ) -> [Self; 2] {
+        largest_errors_tier(shape, y, reference, tolerance, h, terms, k, stride)
     }
     fn repeated_sqrt(self, times: u32) -> Self {
         repeated_sqrt_tier(self, times)

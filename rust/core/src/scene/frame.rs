@@ -64,6 +64,10 @@ impl Units {
     pub fn acceleration(self) -> i32 {
         2 * self.time - self.length
     }
+    /// The unit of energy, mass · length² / time².
+    pub fn energy(self) -> i32 {
+        self.mass - 2 * self.velocity()
+    }
     /// `G·m` of these units.
     pub fn strength(self, constant: f64, mass: f64) -> f64 {
         scale(constant, 2 * self.time - 3 * self.length + self.mass) * scale(mass, -self.mass)

@@ -245,8 +245,10 @@ impl Reduce<Lanes> for Layout {
         match self {
             Self::Batched => value,
             Self::Packed => {
-                let largest = value.0.into_iter().fold(0.0, |largest: f64, x| largest.max(x));
-                Lanes::splat(largest)
+                let [a, b, c, d, e, f, g, h] = value.0;
+                let larger = |x: f64, y: f64| if x > y { x } else { y };
+                let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
+                Lanes::splat(larger(low, high))
             }
         }
     }

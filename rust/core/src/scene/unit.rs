@@ -149,7 +149,25 @@ impl Prepared {
         let total: f64 = self.strength.iter().map(|x| x.abs()).sum();
         let orbital = (total / extent.max(length)).sqrt();
         let velocity = speed.max(orbital);
+        // A body at rest in a field gets its scale from the fall over that length.
+        let velocity = if velocity > 0.0 { velocity } else { (length * self.field_strength(plan)).sqrt() };
         self.size = (length, if velocity > 0.0 { velocity } else { 1.0 });
+    }
+
+    /// The largest acceleration that the central fields give to a body of the unit.
+    fn field_strength(&self, plan: &Plan) -> f64 {
+        let mut strongest = 0.0_f64;
+        for force in &plan.forces {
+            if let ForceSpec::CentralField { potential, center } = force {
+                let potential = potential.scaled(plan.units.length, plan.units.energy());
+                let center = center.map(|x| scale(x, -plan.units.length));
+                for (position, mass) in self.position.iter().zip(&self.mass) {
+                    let [_, force, _] = potential.evaluate(&[distance(*position, center)]);
+                    strongest = strongest.max(force[0].abs() / mass);
+                }
+            }
+        }
+        strongest
     }
 
     /// The forces, for `units` (one if packed, up to eight if batched) of the same make-up.
@@ -177,9 +195,7 @@ impl Prepared {
                             Layout::Batched => inverse_mass[slot] = lanes(&|unit| 1.0 / unit.mass[slot]),
                         }
                     }
-                    // Energy in these units: mass · length² / time².
-                    let energy = exponents.mass + 2 * (exponents.length - exponents.time);
-                    let scaled = potential.scaled(exponents.length, energy);
+                    let scaled = potential.scaled(exponents.length, exponents.energy());
                     scaled.central_force(shape, center.map(|x| scale(x, -exponents.length)), inverse_mass)
                 }
                 ForceSpec::Gravity { softening, .. } => {
