@@ -56,6 +56,9 @@ impl Bits {
 
 /// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
 pub trait Vector8: Real<Mask = Bits> {
+    /// Whether the eight lanes fit one register (of thirty-two).
+    const ONE_REGISTER: bool;
+
     /// From memory.
     fn load(lanes: Lanes) -> Self;
     /// To memory.
@@ -231,6 +234,8 @@ impl Real for Lanes {
 }
 
 impl Vector8 for Lanes {
+    const ONE_REGISTER: bool = false;
+
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         lanes

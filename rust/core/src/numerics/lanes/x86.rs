@@ -69,6 +69,8 @@ impl Real for Avx512 {
 }
 
 impl Vector8 for Avx512 {
+    const ONE_REGISTER: bool = true;
+
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         Self(unsafe { _mm512_load_pd(lanes.0.as_ptr()) })
@@ -191,6 +193,8 @@ impl Real for Avx2 {
 }
 
 impl Vector8 for Avx2 {
+    const ONE_REGISTER: bool = false;
+
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         unsafe { Self(_mm256_load_pd(lanes.0.as_ptr()), _mm256_load_pd(lanes.0.as_ptr().add(4))) }
