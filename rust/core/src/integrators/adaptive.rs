@@ -258,11 +258,7 @@ impl<S: Element> Adaptive<S> {
         let stuck = clock.h.abs().less_equal(smallest).and(running).and(finished.not());
         if accepted.any() {
             let end_stage = self.end_stage();
-            let next =
-                core::mem::replace(&mut self.next, State::new(Shape { rows: 0, components: 0 }, &[], &[]));
-            let evaluated = self.stages.evaluate(end_stage, next.all().0, dynamics, ticker);
-            self.next = next;
-            evaluated?;
+            self.stages.evaluate(end_stage, self.next.all().0, dynamics, ticker)?;
         }
         Ok(Outcome { accepted, finished, stuck, from, h })
     }

@@ -182,6 +182,25 @@ fn largest_errors<S: Real>(
     shape: Shape,
     y: &[S],
     reference: &[S],
+    tolerance: (S, S),
+    h: S,
+    terms: [&[Term<S>]; 2],
+    k: &[S],
+    stride: usize,
+) -> [S; 2] {
+    if shape.components == 2 {
+        largest_vector_errors::<S, 2>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+    } else {
+        largest_vector_errors::<S, 3>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+    }
+}
+
+/// As [`largest_errors`], the number of components known when compiled.
+#[inline(always)]
+fn largest_vector_errors<S: Real, const C: usize>(
+    rows: usize,
+    y: &[S],
+    reference: &[S],
     (atol, rtol): (S, S),
     h: S,
     terms: [&[Term<S>]; 2],
@@ -189,26 +208,28 @@ fn largest_errors<S: Real>(
     stride: usize,
 ) -> [S; 2] {
     let mut largest = [S::zero(); 2];
-    for row in 0..shape.rows {
+    for row in 0..rows {
         let mut distance2 = S::zero();
-        for component in 0..shape.components {
-            let distance = y[component * shape.rows + row] - reference[component];
+        for c in 0..C {
+            let distance = y[c * rows + row] - reference[c];
             distance2 += distance * distance;
         }
         let scale = atol + rtol * distance2.sqrt();
+        let inverse_scale2 = S::one() / (scale * scale);
         for estimate in 0..2 {
-            let mut sums = [S::zero(); 3];
+            let mut sums = [S::zero(); C];
             for &Term { stage, weight } in terms[estimate] {
-                for component in 0..shape.components {
-                    sums[component] += weight * k[stage * stride + component * shape.rows + row];
+                let column = &k[stage * stride + row..][..(C - 1) * rows + 1];
+                for c in 0..C {
+                    sums[c] += weight * column[c * rows];
                 }
             }
             let mut error2 = S::zero();
-            for component in 0..shape.components {
-                let error = h * sums[component];
+            for c in 0..C {
+                let error = h * sums[c];
                 error2 += error * error;
             }
-            let ratio = error2 / (scale * scale);
+            let ratio = error2 * inverse_scale2;
             let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
             let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
             largest[estimate] = largest[estimate].max(ratio);
