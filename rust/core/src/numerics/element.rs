@@ -85,11 +85,13 @@ impl Shape {
     }
 }
 
-/// `y += increment + rest`. The rest is less than half a unit in the last place of the increment: added to
-/// it first it would be rounded away every time, and a coefficient's low part with it. So it joins `e`.
+/// `y += increment + rest`. The rest joins the increment before `e` does: so a step stays the symplectic map
+/// of its rounded coefficients. Added to `e` first it is kept or lost depending on the state, which is no
+/// symplectic map: over 1.5e6 steps of kahan_li8 the mean energy error of 32 outer Solar Systems then drifts
+/// to 1.8e-14, three times its scatter, instead of 1e-15.
 #[inline(always)]
 fn add_compensated<S: Real>(y: &mut S, e: &mut S, increment: S, rest: S) {
-    let (sum, error) = two_sum(*y, increment + (*e + rest));
+    let (sum, error) = two_sum(*y, (increment + rest) + *e);
     *y = sum;
     *e = error;
 }
