@@ -71,4 +71,8 @@ def rows_of(steps: int) -> Iterator[Row]:
 
 
 if __name__ == "__main__":
-    report("Outputs", rows(), "Six bodies, {} and {} steps; time with outputs over time with the end only.".format(*LENGTHS))
+    report(
+        "Outputs",
+        rows(),
+        "Six bodies, {} and {} steps; time with outputs over time with the end only.".format(*LENGTHS),
+    )
