@@ -192,6 +192,12 @@ impl Real for DoubleDouble {
     fn from_double_double(value: DoubleDouble) -> Self {
         value
     }
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        self * factor + term
+    }
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        term - self * factor
+    }
     fn sqrt(self) -> Self {
         if self.high <= 0.0 {
             return Self::from(self.high.sqrt());

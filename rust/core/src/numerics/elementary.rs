@@ -6,6 +6,7 @@
 //! Method: argument reduction with a split constant (Cody & Waite, *Software Manual for the
 //! Elementary Functions*, 1980), then a polynomial.
 
+use super::binary::Binary;
 use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 use super::power_of_two::{exponent, scale};
@@ -14,30 +15,8 @@ use super::real::Real;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 
-/// Binary floating point whose exponent field can be reached.
-pub trait Binary: Real {
-    /// 2ⁿ for integers n from -1022 to 1023; anything else is a broken promise of the caller.
-    fn power_of_two(self) -> Self;
-}
-
 /// Added to an integer n, |n| < 2^51, leaves n in the low bits of the sum.
 pub(super) const INTEGER_SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
-/// As above with the exponent bias, for n > -1023.
-pub(super) const BIASED_SHIFT: f64 = 4_503_599_627_370_496.0 + 1023.0; // 2^52 + bias
-
-impl Binary for f64 {
-    #[inline(always)]
-    fn power_of_two(self) -> Self {
-        f64::from_bits((self + BIASED_SHIFT).to_bits() << 52)
-    }
-}
-
-impl Binary for Lanes {
-    #[inline(always)]
-    fn power_of_two(self) -> Self {
-        self.map(f64::power_of_two)
-    }
-}
 
 /// Σ cᵢ xⁱ, even and odd powers in two chains (half the latency of Horner's rule).
 #[inline(always)]

@@ -200,6 +200,14 @@ impl Real for Lanes {
         Self::splat(value.to_f64())
     }
     #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        Self(core::array::from_fn(|i| self.0[i].mul_add(factor.0[i], term.0[i])))
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        Self(core::array::from_fn(|i| (-self.0[i]).mul_add(factor.0[i], term.0[i])))
+    }
+    #[inline(always)]
     fn sqrt(self) -> Self {
         self.map(f64::sqrt)
     }

@@ -1,9 +1,11 @@
 //! The numerical ground: scalars and SIMD lanes, double-double, elementary functions, random numbers.
 
 pub mod angles;
+pub mod binary;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
+pub mod inverse_cube;
 pub mod lanes;
 pub mod philox;
 pub mod power_of_two;

@@ -53,8 +53,9 @@ impl Mask for bool {
 
 /// A real number, or several independent ones side by side.
 ///
-/// Every operation is correctly rounded where IEEE 754 defines it (`+ - * / sqrt`) and never
-/// contracted, so that one source gives the same bits on every instruction set.
+/// Every operation is correctly rounded where IEEE 754 defines it (`+ - * / sqrt` and the fused ones) and
+/// fused only where the source says so: one source gives the same bits on every instruction set. Without an
+/// instruction for it a fused operation is a slow call.
 pub trait Real:
     Copy
     + Debug
@@ -76,6 +77,10 @@ pub trait Real:
     fn splat(value: f64) -> Self;
     /// A constant, as exactly as the scalar allows.
     fn from_double_double(value: DoubleDouble) -> Self;
+    /// `self * factor + term`, rounded once.
+    fn multiply_add(self, factor: Self, term: Self) -> Self;
+    /// `term - self * factor`, rounded once.
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self;
     /// Square root.
     fn sqrt(self) -> Self;
     /// Absolute value.
@@ -116,6 +121,14 @@ impl Real for f64 {
     #[inline(always)]
     fn from_double_double(value: DoubleDouble) -> Self {
         value.to_f64()
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        f64::mul_add(self, factor, term)
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        f64::mul_add(-self, factor, term)
     }
     #[inline(always)]
     fn sqrt(self) -> Self {

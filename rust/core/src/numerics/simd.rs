@@ -13,9 +13,9 @@ use core::sync::atomic::{AtomicU8, Ordering};
 pub enum Tier {
     /// Whatever the build targets (SSE2 on x86-64, NEON on aarch64).
     Portable = 1,
-    /// 256-bit AVX2.
+    /// 256-bit AVX2 and FMA.
     Avx2 = 2,
-    /// 512-bit AVX-512 F, DQ, VL.
+    /// 512-bit AVX-512 F, DQ, VL, beside AVX2 and FMA.
     Avx512 = 3,
 }
 
@@ -32,13 +32,15 @@ impl Tier {
     pub fn detect() -> Self {
         #[cfg(target_arch = "x86_64")]
         {
-            if is_x86_feature_detected!("avx512f")
+            let avx2 = is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma");
+            if avx2
+                && is_x86_feature_detected!("avx512f")
                 && is_x86_feature_detected!("avx512dq")
                 && is_x86_feature_detected!("avx512vl")
             {
                 return Self::Avx512;
             }
-            if is_x86_feature_detected!("avx2") {
+            if avx2 {
                 return Self::Avx2;
             }
         }
@@ -107,11 +109,11 @@ macro_rules! tiered {
             #[cfg(target_arch = "x86_64")]
             {
                 use $crate::numerics::{lanes, simd::Tier};
-                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2")]
+                #[target_feature(enable = "avx512f,avx512dq,avx512vl,avx2,fma")]
                 fn avx512<$($bounds)*>($($argument: $type),*) $(-> $return)? {
                     $body::<lanes::Avx512, $($generics)*>($($argument),*)
                 }
-                #[target_feature(enable = "avx2")]
+                #[target_feature(enable = "avx2,fma")]
                 fn avx2<$($bounds)*>($($argument: $type),*) $(-> $return)? {
                     $body::<lanes::Avx2, $($generics)*>($($argument),*)
                 }

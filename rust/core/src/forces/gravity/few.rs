@@ -3,13 +3,14 @@
 //! The loops run over pairs; the lanes, if any, over trajectories. Adds each body's terms in the ring
 //! order of the module header, as [`ring`](super::ring) does with lanes over bodies.
 
+use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
-use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -31,7 +32,7 @@ impl<S: Element> FewBodies<S> {
 
 /// `N` massive bodies; known when compiled, so that everything about them stays in registers.
 #[inline(always)]
-fn kernel<S: Real, const N: usize, const PLANAR: bool, const SOFT: bool>(
+fn kernel<S: InverseCube, const N: usize, const PLANAR: bool, const SOFT: bool>(
     shape: Shape,
     strength: &[S],
     softening2: f64,
@@ -59,25 +60,17 @@ fn kernel<S: Real, const N: usize, const PLANAR: bool, const SOFT: bool>(
             for c in 0..components {
                 d[c] = position[j][c] - position[i][c];
             }
-            let mut r2 = d[0] * d[0];
-            if SOFT {
-                r2 += softening2;
-            }
-            r2 += d[1] * d[1];
-            if !PLANAR {
-                r2 += d[2] * d[2];
-            }
-            let w = S::one() / (r2 * r2.sqrt());
+            let w = squared_distance::<S, PLANAR, SOFT>(d, softening2).inverse_cube();
             for c in 0..components {
                 pull[i][c] = d[c] * w;
-                sum[i][c] += strength[j] * pull[i][c];
+                sum[i][c] = strength[j].multiply_add(pull[i][c], sum[i][c]);
             }
         }
         if !opposite {
             for i in 0..N {
                 let j = (i + N - distance) % N;
                 for c in 0..components {
-                    sum[i][c] -= strength[j] * pull[j][c];
+                    sum[i][c] = strength[j].multiply_subtract_from(pull[j][c], sum[i][c]);
                 }
             }
         }
@@ -101,7 +94,14 @@ fn kernel<S: Real, const N: usize, const PLANAR: bool, const SOFT: bool>(
 
 /// The kernel for so many massive bodies, in the plane or in space, softened or not.
 #[inline(always)]
-fn select_kernel<S: Real>(shape: Shape, strength: &[S], softening2: f64, q: &[S], a: &mut [S], first: bool) {
+fn select_kernel<S: InverseCube>(
+    shape: Shape,
+    strength: &[S],
+    softening2: f64,
+    q: &[S],
+    a: &mut [S],
+    first: bool,
+) {
     macro_rules! select {
         ($($bodies:literal)+) => {
             match (strength.len(), shape.components == 2, softening2 > 0.0) {
@@ -120,7 +120,7 @@ fn select_kernel<S: Real>(shape: Shape, strength: &[S], softening2: f64, q: &[S]
 }
 
 #[inline(always)]
-fn lanes_kernel<V: Vector8>(
+fn lanes_kernel<V: Vector8 + InverseCube>(
     shape: Shape,
     strength: &[Lanes],
     softening2: f64,

@@ -1,7 +1,8 @@
 //! Newtonian gravity, summed directly.
 //!
-//! Every kernel computes a pair as `d = x_j - x_i`, `r² = ((dx² [+ ε²]) + dy²) + dz²`, `w = 1/(r²·√r²)`
-//! with IEEE operations only. The order in which a body's terms are added is canonical:
+//! Every kernel computes a pair as `d = x_j - x_i`, `r² = ((dx² [+ ε²]) + dy²) + dz²`, `w = r⁻³`, products
+//! fused with the sums they go into; [`inverse_cube`](crate::numerics::inverse_cube) says how w is computed.
+//! The order in which a body's terms are added is canonical:
 //!
 //! - up to eight massive bodies ([`few`]): partners `i+1, i-1, i+2, i-2, …` around the ring of indices,
 //!   whether the lanes are bodies ([`ring`]) or trajectories ([`few`]): the same bits alone and in a batch;
@@ -11,6 +12,7 @@
 //! A massless body exerts nothing, so pairs of them are never formed.
 
 pub mod few;
+mod pair;
 mod passive;
 pub mod ring;
 pub mod tiles;

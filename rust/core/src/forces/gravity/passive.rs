@@ -1,13 +1,14 @@
 //! Massless bodies in the field of massive ones: no third law, no pairs among themselves.
 
+use super::pair::squared_distance;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Vector8;
-use crate::numerics::real::Real;
 
 /// The acceleration at `position` from massive bodies at `places`, in their order; `strengths` are their `G·m`.
 ///
 /// No closures here or in the callers' loops: they would be compiled without the tier's instructions.
 #[inline(always)]
-pub(super) fn attraction<S: Real, const PLANAR: bool, const SOFT: bool>(
+pub(super) fn attraction<S: InverseCube, const PLANAR: bool, const SOFT: bool>(
     position: [S; 3],
     places: &[[S; 3]],
     strengths: &[S],
@@ -22,7 +23,7 @@ pub(super) fn attraction<S: Real, const PLANAR: bool, const SOFT: bool>(
 
 /// Adds to `a` the pull at `position` of one body.
 #[inline(always)]
-pub(super) fn attract<S: Real, const PLANAR: bool, const SOFT: bool>(
+pub(super) fn attract<S: InverseCube, const PLANAR: bool, const SOFT: bool>(
     mut a: [S; 3],
     position: [S; 3],
     place: [S; 3],
@@ -32,19 +33,11 @@ pub(super) fn attract<S: Real, const PLANAR: bool, const SOFT: bool>(
     let dx = place[0] - position[0];
     let dy = place[1] - position[1];
     let dz = place[2] - position[2];
-    let mut r2 = dx * dx;
-    if SOFT {
-        r2 += softening2;
-    }
-    r2 += dy * dy;
+    let w = strength * squared_distance::<S, PLANAR, SOFT>([dx, dy, dz], softening2).inverse_cube();
+    a[0] = w.multiply_add(dx, a[0]);
+    a[1] = w.multiply_add(dy, a[1]);
     if !PLANAR {
-        r2 += dz * dz;
-    }
-    let w = strength / (r2 * r2.sqrt());
-    a[0] += w * dx;
-    a[1] += w * dy;
-    if !PLANAR {
-        a[2] += w * dz;
+        a[2] = w.multiply_add(dz, a[2]);
     }
     a
 }
@@ -52,7 +45,7 @@ pub(super) fn attract<S: Real, const PLANAR: bool, const SOFT: bool>(
 /// As [`attraction`], of bodies packed in lanes: `numbers` holds their coordinates, component after
 /// component at `stride`, and `strengths` their `G·m`.
 #[inline(always)]
-pub(super) fn packed_attraction<V: Vector8, const PLANAR: bool, const SOFT: bool>(
+pub(super) fn packed_attraction<V: Vector8 + InverseCube, const PLANAR: bool, const SOFT: bool>(
     position: [V; 3],
     numbers: &[f64],
     stride: usize,

@@ -4,10 +4,12 @@
 //! distance `k`, so `n/2` vector square roots and divisions serve all `n(n-1)/2` pairs and the third law
 //! gives the other half. Same bits as [`few`](super::few).
 
+use super::pair::squared_distance;
 use super::passive::packed_attraction;
 use crate::error::Result;
 use crate::forces::Force;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
 use crate::parallel::Ticker;
 use crate::tiered;
@@ -59,7 +61,12 @@ impl Ring {
 }
 
 #[inline(always)]
-fn kernel<V: Vector8, const PLANAR: bool>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
+fn kernel<V: Vector8 + InverseCube, const PLANAR: bool>(
+    ring: &Ring,
+    q: &[Lanes],
+    a: &mut [Lanes],
+    first: bool,
+) {
     let rows = ring.shape.rows;
     let softening2 = V::load(ring.softening2_first_row);
     let x = V::load(q[0]);
@@ -70,24 +77,20 @@ fn kernel<V: Vector8, const PLANAR: bool>(ring: &Ring, q: &[Lanes], a: &mut [Lan
         let dx = x.permute(&turn.forward) - x;
         let dy = y.permute(&turn.forward) - y;
         let dz = if PLANAR { V::zero() } else { z.permute(&turn.forward) - z };
-        let mut r2 = (dx * dx + softening2) + dy * dy;
-        if !PLANAR {
-            r2 += dz * dz;
-        }
-        let w = V::one() / (r2 * r2.sqrt());
+        let w = squared_distance::<V, PLANAR, true>([dx, dy, dz], softening2).inverse_cube();
         let (px, py, pz) = (dx * w, dy * w, dz * w);
         let ahead = V::load(turn.strength_ahead);
-        ax += ahead * px;
-        ay += ahead * py;
+        ax = ahead.multiply_add(px, ax);
+        ay = ahead.multiply_add(py, ay);
         if !PLANAR {
-            az += ahead * pz;
+            az = ahead.multiply_add(pz, az);
         }
         if let Some(behind) = turn.strength_behind {
             let behind = V::load(behind);
-            ax -= behind * px.permute(&turn.backward);
-            ay -= behind * py.permute(&turn.backward);
+            ax = behind.multiply_subtract_from(px.permute(&turn.backward), ax);
+            ay = behind.multiply_subtract_from(py.permute(&turn.backward), ay);
             if !PLANAR {
-                az -= behind * pz.permute(&turn.backward);
+                az = behind.multiply_subtract_from(pz.permute(&turn.backward), az);
             }
         }
     }
@@ -106,7 +109,7 @@ fn kernel<V: Vector8, const PLANAR: bool>(ring: &Ring, q: &[Lanes], a: &mut [Lan
 }
 
 #[inline(always)]
-fn passive_rows<V: Vector8, const PLANAR: bool, const SOFT: bool>(
+fn passive_rows<V: Vector8 + InverseCube, const PLANAR: bool, const SOFT: bool>(
     ring: &Ring,
     q: &[Lanes],
     a: &mut [Lanes],
@@ -131,7 +134,7 @@ fn passive_rows<V: Vector8, const PLANAR: bool, const SOFT: bool>(
 }
 
 #[inline(always)]
-fn apply<V: Vector8>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
+fn apply<V: Vector8 + InverseCube>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
     if ring.shape.components == 2 {
         kernel::<V, true>(ring, q, a, first);
     } else {

@@ -1,9 +1,10 @@
 use super::*;
+use crate::numerics::binary::Binary;
 use proptest::prelude::*;
 
 /// What every tier must agree on, bit for bit.
 #[inline(always)]
-fn exercise<V: Vector8>(input: &[Lanes; 3]) -> [Lanes; 9] {
+fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 13] {
     let [a, b, c] = input.map(V::load);
     let mask = a.less(b).or(b.less_equal(c).not());
     [
@@ -16,15 +17,19 @@ fn exercise<V: Vector8>(input: &[Lanes; 3]) -> [Lanes; 9] {
         V::splat(a.horizontal_sum()),
         a.scaled_by(DoubleDouble::PI).0,
         a.scaled_by(DoubleDouble::PI).1,
+        a.multiply_add(b, c),
+        a.multiply_subtract_from(b, c),
+        (a * a).inverse_root_guess(),
+        a.leading_bits(),
     ]
     .map(V::store)
 }
 
 crate::tiered! {
-    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 9] = exercise;
+    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 13] = exercise;
 }
 
-fn bits(lanes: [Lanes; 9]) -> Vec<u64> {
+fn bits(lanes: [Lanes; 13]) -> Vec<u64> {
     lanes.iter().flat_map(|lane| lane.0.map(f64::to_bits)).collect()
 }
 
@@ -38,12 +43,12 @@ proptest! {
         let expected = bits(exercise::<Lanes>(&input));
         prop_assert_eq!(&bits(exercised(&input)), &expected);
         #[cfg(target_arch = "x86_64")]
-        if is_x86_feature_detected!("avx2") {
-            #[target_feature(enable = "avx2")]
-            fn avx2(input: &[Lanes; 3]) -> [Lanes; 9] {
+        if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
+            #[target_feature(enable = "avx2,fma")]
+            fn avx2(input: &[Lanes; 3]) -> [Lanes; 13] {
                 exercise::<Avx2>(input)
             }
-            // SAFETY: the machine has AVX2.
+            // SAFETY: the machine has AVX2 and FMA.
             prop_assert_eq!(&bits(unsafe { avx2(&input) }), &expected);
         }
     }

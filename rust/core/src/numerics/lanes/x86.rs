@@ -4,8 +4,8 @@
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
 use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
+use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elementary::{BIASED_SHIFT, Binary};
 use crate::numerics::real::Real;
 use core::arch::x86_64::*;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
@@ -33,6 +33,14 @@ impl Real for Avx512 {
     #[inline(always)]
     fn from_double_double(value: DoubleDouble) -> Self {
         Self::splat(value.to_f64())
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, term.0) })
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -93,6 +101,17 @@ impl Binary for Avx512 {
         let shifted = self + Self::splat(BIASED_SHIFT);
         Self(unsafe { _mm512_castsi512_pd(_mm512_slli_epi64::<52>(_mm512_castpd_si512(shifted.0))) })
     }
+    #[inline(always)]
+    fn inverse_root_guess(self) -> Self {
+        unsafe {
+            let half = _mm512_srli_epi64::<1>(_mm512_castpd_si512(self.0));
+            Self(_mm512_castsi512_pd(_mm512_sub_epi64(_mm512_set1_epi64(INVERSE_ROOT_LINE), half)))
+        }
+    }
+    #[inline(always)]
+    fn leading_bits(self) -> Self {
+        Self(unsafe { _mm512_and_pd(self.0, _mm512_castsi512_pd(_mm512_set1_epi64(LEADING_BITS))) })
+    }
 }
 
 /// Eight lanes in two 256-bit registers.
@@ -141,6 +160,16 @@ impl Real for Avx2 {
     #[inline(always)]
     fn from_double_double(value: DoubleDouble) -> Self {
         Self::splat(value.to_f64())
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        unsafe { Self(_mm256_fmadd_pd(self.0, factor.0, term.0), _mm256_fmadd_pd(self.1, factor.1, term.1)) }
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        unsafe {
+            Self(_mm256_fnmadd_pd(self.0, factor.0, term.0), _mm256_fnmadd_pd(self.1, factor.1, term.1))
+        }
     }
     #[inline(always)]
     fn sqrt(self) -> Self {
@@ -220,5 +249,23 @@ impl Binary for Avx2 {
         let shifted = self + Self::splat(BIASED_SHIFT);
         let shift = |half| unsafe { _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(half))) };
         Self(shift(shifted.0), shift(shifted.1))
+    }
+    #[inline(always)]
+    fn inverse_root_guess(self) -> Self {
+        unsafe {
+            let line = _mm256_set1_epi64x(INVERSE_ROOT_LINE);
+            let (low, high) = (_mm256_castpd_si256(self.0), _mm256_castpd_si256(self.1));
+            Self(
+                _mm256_castsi256_pd(_mm256_sub_epi64(line, _mm256_srli_epi64::<1>(low))),
+                _mm256_castsi256_pd(_mm256_sub_epi64(line, _mm256_srli_epi64::<1>(high))),
+            )
+        }
+    }
+    #[inline(always)]
+    fn leading_bits(self) -> Self {
+        unsafe {
+            let mask = _mm256_castsi256_pd(_mm256_set1_epi64x(LEADING_BITS));
+            Self(_mm256_and_pd(self.0, mask), _mm256_and_pd(self.1, mask))
+        }
     }
 }

@@ -1,0 +1,128 @@
+//! `s^(-3/2)`: the weight of an inverse-square pull, from the squared distance `s`.
+//!
+//! The one idea: no square root and no division, whose units are the bottleneck of every gravity kernel, but
+//! a guess from the bits of `s` and two corrections. `y` is 1/√s to 17 bits, so y² and y³ are exact; what is
+//! wrong with it, e = 1 - s·y², is then known to 1e-21 from one fused operation, and
+//! `s^(-3/2) = y³·(1 - e)^(-3/2)`. The one rounding that counts is the last: the result is the nearest number,
+//! but for one case in thousands (measured: within 0.501 units in the last place).
+//!
+//! Nothing but IEEE operations, fused ones included: the same bits on every machine. For `s` beyond
+//! 1e±205, where the result leaves the range of numbers, it is 0, infinite or NaN.
+
+use super::binary::Binary;
+use super::double_double::DoubleDouble;
+use super::lanes::Lanes;
+#[cfg(target_arch = "x86_64")]
+use super::lanes::{Avx2, Avx512};
+use super::real::Real;
+
+/// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
+const CENTRE: f64 = 1.0 + 1.0 / 131_072.0;
+
+/// The best cubic for (1 - e)^(-1/2) where the guess leaves e, from -0.0692 to 0.0676 (Remez; error 7.5e-7).
+const INVERSE_ROOT: [f64; 4] = [
+    0.999_999_253_625_072_6 * CENTRE,
+    0.500_000_423_485_519 * CENTRE,
+    0.376_279_010_074_042_7 * CENTRE,
+    0.313_054_047_425_769_9 * CENTRE,
+];
+
+#[inline(always)]
+fn inverse_cube<S: Binary>(s: S) -> S {
+    let guess = s.inverse_root_guess();
+    let e = (s * guess).multiply_subtract_from(guess, S::one());
+    let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
+    let y = (guess * e.multiply_add(e.multiply_add(e.multiply_add(c3, c2), c1), c0)).leading_bits();
+    let square = y * y;
+    let cube = square * y;
+    let e = s.multiply_subtract_from(square, S::one());
+    // (1 - e)^(-3/2) - 1 = e(3/2 + e(15/8 + e·35/16)) to 2e-19, e being below 1.7e-5.
+    let series = e.multiply_add(e.multiply_add(S::splat(35.0 / 16.0), S::splat(15.0 / 8.0)), S::splat(1.5));
+    (e * cube).multiply_add(series, cube)
+}
+
+/// Scalars that have the power -3/2.
+pub trait InverseCube: Real {
+    /// `self^(-3/2)`, for positive `self`.
+    fn inverse_cube(self) -> Self;
+}
+
+impl InverseCube for f64 {
+    #[inline(always)]
+    fn inverse_cube(self) -> Self {
+        inverse_cube(self)
+    }
+}
+impl InverseCube for Lanes {
+    #[inline(always)]
+    fn inverse_cube(self) -> Self {
+        inverse_cube(self)
+    }
+}
+#[cfg(target_arch = "x86_64")]
+impl InverseCube for Avx2 {
+    #[inline(always)]
+    fn inverse_cube(self) -> Self {
+        inverse_cube(self)
+    }
+}
+#[cfg(target_arch = "x86_64")]
+impl InverseCube for Avx512 {
+    #[inline(always)]
+    fn inverse_cube(self) -> Self {
+        inverse_cube(self)
+    }
+}
+impl InverseCube for DoubleDouble {
+    fn inverse_cube(self) -> Self {
+        Self::one() / (self * self.sqrt())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// In units in the last place of the result.
+    fn error(s: f64) -> f64 {
+        let exact = DoubleDouble::from(s).inverse_cube();
+        let value = s.inverse_cube();
+        let ulp = value.to_bits() + 1;
+        ((DoubleDouble::from(value) - exact).to_f64() / (f64::from_bits(ulp) - value)).abs()
+    }
+
+    /// A sixteenth of a percent apart over two powers of four, on which everything but the exponent depends.
+    #[test]
+    fn is_the_nearest_number_all_but_always() {
+        let mut largest = 0.0_f64;
+        let mut s = 1.0;
+        while s < 16.0 {
+            largest = largest.max(error(s));
+            s *= 1.000_017_3;
+        }
+        assert!(largest < 0.501, "{largest}");
+    }
+
+    #[test]
+    fn powers_of_four_are_exact() {
+        for k in -300..=300 {
+            assert_eq!(2.0_f64.powi(2 * k).inverse_cube(), 2.0_f64.powi(-3 * k), "4^{k}");
+        }
+    }
+
+    #[test]
+    fn a_vanishing_distance_gives_no_number() {
+        for s in [0.0, 5e-324, 1e-310, 1e-206, f64::NAN] {
+            assert!(!s.inverse_cube().is_finite(), "{s}");
+        }
+        assert_eq!(1e300.inverse_cube(), 0.0);
+    }
+
+    proptest! {
+        #[test]
+        fn holds_over_the_exponents(mantissa in 1.0..2.0f64, exponent in -600..600i32) {
+            prop_assert!(error(mantissa * 2.0_f64.powi(exponent)) < 0.501);
+        }
+    }
+}
