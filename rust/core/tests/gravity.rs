@@ -1,8 +1,8 @@
 //! The gravity kernels against a plain sum in double-double, and against each other to the bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use visviva_core::forces::Force;
 use visviva_core::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles};
+use visviva_core::forces::{Force, Phase};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::Shape;
 use visviva_core::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
@@ -54,7 +54,7 @@ fn apply<S: visviva_core::numerics::element::Element>(
 ) {
     let control = Control::default();
     let v = vec![S::zero(); q.len()];
-    force.apply(q, &v, a, first, &mut Ticker::quiet(&control)).unwrap();
+    force.apply(&Phase { q, v: &v }, a, first, &mut Ticker::quiet(&control)).unwrap();
 }
 
 impl Bodies {

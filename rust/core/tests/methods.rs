@@ -8,7 +8,7 @@ mod support;
 use support::{
     Problem, Stepper, advance, bodies, distance, exactly, harmonic, henon_heiles, momenta, three_bodies,
 };
-use visviva_core::forces::{Dynamics, Force};
+use visviva_core::forces::{Dynamics, Force, Phase};
 use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
 use visviva_core::integrators::fixed::{Place, place, run};
 use visviva_core::integrators::state::State;
@@ -452,12 +452,12 @@ struct Watch(std::sync::Arc<std::sync::Mutex<(f64, f64)>>);
 impl Force<f64> for Watch {
     fn apply(
         &mut self,
-        q: &[f64],
-        _: &[f64],
+        phase: &Phase<'_, f64>,
         a: &mut [f64],
         _: bool,
         _: &mut Ticker<'_>,
     ) -> visviva_core::Result<()> {
+        let q = phase.q;
         let mut seen = self.0.lock().unwrap();
         *seen = (seen.0.min(q[0]), seen.1.max(q[0]));
         a.copy_from_slice(&[0.0, -q[1].powi(3)]);

@@ -1,6 +1,6 @@
 //! A fixed centre: the force −dV/dr along the line to it, on every particle.
 
-use super::Force;
+use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::elementary::Exponential;
@@ -60,13 +60,12 @@ tiered! {
 impl<P: Formula> Force<Lanes> for CentralField<P> {
     fn apply(
         &mut self,
-        q: &[Lanes],
-        _: &[Lanes],
+        phase: &Phase<'_, Lanes>,
         a: &mut [Lanes],
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        kernel_tier(self, q, a, first);
+        kernel_tier(self, phase.q, a, first);
         Ok(())
     }
 }

@@ -12,13 +12,28 @@ use crate::error::Result;
 use crate::numerics::element::{Element, Shape};
 use crate::parallel::Ticker;
 
+/// Where the particles are and how they move.
+#[derive(Debug)]
+pub struct Phase<'a, S> {
+    /// Coordinates.
+    pub q: &'a [S],
+    /// Velocities.
+    pub v: &'a [S],
+}
+
 /// One force of a scene, ready to run.
 pub trait Force<S: Element>: Send {
     /// Writes its accelerations into `a` if `first`, else adds them.
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted) when the caller asked to stop; `a` is then unfinished.
-    fn apply(&mut self, q: &[S], v: &[S], a: &mut [S], first: bool, ticker: &mut Ticker<'_>) -> Result<()>;
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, S>,
+        a: &mut [S],
+        first: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
 
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
     /// changes a state between evaluations must then be able to take that back.
@@ -57,8 +72,9 @@ impl<S: Element> Dynamics<S> {
         if self.forces.is_empty() {
             a.fill(S::zero());
         }
+        let phase = Phase { q, v };
         for (index, force) in self.forces.iter_mut().enumerate() {
-            force.apply(q, v, a, index == 0, ticker)?;
+            force.apply(&phase, a, index == 0, ticker)?;
         }
         Ok(())
     }

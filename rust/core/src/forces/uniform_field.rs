@@ -1,6 +1,6 @@
 //! A uniform field: the same acceleration everywhere.
 
-use super::Force;
+use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::{Element, Shape};
 use crate::parallel::Ticker;
@@ -20,7 +20,7 @@ impl<S: Element> UniformField<S> {
 }
 
 impl<S: Element> Force<S> for UniformField<S> {
-    fn apply(&mut self, _: &[S], _: &[S], a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+    fn apply(&mut self, _: &Phase<'_, S>, a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
         for (component, a) in a.chunks_exact_mut(self.shape.rows.max(1)).enumerate() {
             for a in a {
                 *a = if first { self.g[component] } else { *a + self.g[component] };

@@ -59,7 +59,7 @@ impl<S: Element> SplittingStep<S> {
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        for (index, &(kick, drift)) in self.pairs.iter().enumerate() {
+        for (index, (kick, drift)) in self.pairs.iter().enumerate() {
             if self.idle[index] {
                 let ((q, q_error), (v, _)) = state.halves_mut();
                 S::advance((q, q_error), v, drift);
@@ -76,7 +76,7 @@ impl<S: Element> SplittingStep<S> {
             dynamics.acceleration(state.q(), state.v(), &mut self.acceleration, ticker)?;
             self.fresh = true;
             let (_, v) = state.halves_mut();
-            S::advance(v, &self.acceleration, self.last_kick);
+            S::advance(v, &self.acceleration, &self.last_kick);
         }
         Ok(())
     }

@@ -13,7 +13,7 @@ use super::binary::Binary;
 use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
-use super::lanes::{Avx2, Avx512};
+use super::lanes::{Avx2, Avx2Half, Avx512};
 use super::real::Real;
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
@@ -27,55 +27,68 @@ const INVERSE_ROOT: [f64; 4] = [
     0.313_054_047_425_769_9 * CENTRE,
 ];
 
+/// One operation for all before the next one for any: each result waits for the one before it, and there must be
+/// others to compute meanwhile, nearer than a processor looks ahead.
+macro_rules! each {
+    ($i:ident => $value:expr) => {{
+        let mut result = [S::zero(); N];
+        for $i in 0..N {
+            result[$i] = $value;
+        }
+        result
+    }};
+}
+
 #[inline(always)]
-fn inverse_cube<S: Binary>(s: S) -> S {
-    let guess = s.inverse_root_guess();
-    let e = (s * guess).multiply_subtract_from(guess, S::one());
+fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
+    let one = S::one();
     let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
-    let y = (guess * e.multiply_add(e.multiply_add(e.multiply_add(c3, c2), c1), c0)).leading_bits();
-    let square = y * y;
-    let cube = square * y;
-    let e = s.multiply_subtract_from(square, S::one());
+    let guess = each!(i => s[i].inverse_root_guess());
+    let product = each!(i => s[i] * guess[i]);
+    let e = each!(i => product[i].multiply_subtract_from(guess[i], one));
+    let cubic = each!(i => e[i].multiply_add(c3, c2));
+    let cubic = each!(i => e[i].multiply_add(cubic[i], c1));
+    let cubic = each!(i => e[i].multiply_add(cubic[i], c0));
+    let y = each!(i => (guess[i] * cubic[i]).leading_bits());
+    let square = each!(i => y[i] * y[i]);
+    let e = each!(i => s[i].multiply_subtract_from(square[i], one));
+    let cube = each!(i => square[i] * y[i]);
     // (1 - e)^(-3/2) - 1 = e(3/2 + e(15/8 + e·35/16)) to 2e-19, e being below 1.7e-5.
-    let series = e.multiply_add(e.multiply_add(S::splat(35.0 / 16.0), S::splat(15.0 / 8.0)), S::splat(1.5));
-    (e * cube).multiply_add(series, cube)
+    let series = each!(i => e[i].multiply_add(S::splat(35.0 / 16.0), S::splat(15.0 / 8.0)));
+    let part = each!(i => e[i] * cube[i]);
+    let series = each!(i => e[i].multiply_add(series[i], S::splat(1.5)));
+    each!(i => part[i].multiply_add(series[i], cube[i]))
 }
 
 /// Scalars that have the power -3/2.
 pub trait InverseCube: Real {
+    /// `s^(-3/2)` of several positive `s`, faster together than one by one.
+    fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N];
     /// `self^(-3/2)`, for positive `self`.
-    fn inverse_cube(self) -> Self;
+    #[inline(always)]
+    fn inverse_cube(self) -> Self {
+        let [cube] = Self::inverse_cubes([self]);
+        cube
+    }
 }
 
-impl InverseCube for f64 {
-    #[inline(always)]
-    fn inverse_cube(self) -> Self {
-        inverse_cube(self)
-    }
+macro_rules! binary {
+    ($($type:ty)+) => {$(
+        impl InverseCube for $type {
+            #[inline(always)]
+            fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
+                inverse_cubes(s)
+            }
+        }
+    )+};
 }
-impl InverseCube for Lanes {
-    #[inline(always)]
-    fn inverse_cube(self) -> Self {
-        inverse_cube(self)
-    }
-}
+binary!(f64 Lanes);
 #[cfg(target_arch = "x86_64")]
-impl InverseCube for Avx2 {
-    #[inline(always)]
-    fn inverse_cube(self) -> Self {
-        inverse_cube(self)
-    }
-}
-#[cfg(target_arch = "x86_64")]
-impl InverseCube for Avx512 {
-    #[inline(always)]
-    fn inverse_cube(self) -> Self {
-        inverse_cube(self)
-    }
-}
+binary!(Avx2Half Avx2 Avx512);
+
 impl InverseCube for DoubleDouble {
-    fn inverse_cube(self) -> Self {
-        Self::one() / (self * self.sqrt())
+    fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
+        s.map(|s| Self::one() / (s * s.sqrt()))
     }
 }
 

@@ -54,10 +54,32 @@ impl Bits {
     }
 }
 
+/// Lanes that fill one register of a tier (or what passes for one): all eight, or four of them.
+pub trait Register: Real<Mask = Bits> {
+    /// How many of them make up eight lanes.
+    const COUNT: usize;
+
+    /// A slice of lanes seen as registers.
+    #[inline(always)]
+    fn view(lanes: &[Lanes]) -> &[Self] {
+        const { assert!(size_of::<Self>() * Self::COUNT == 64 && align_of::<Self>() <= 64) }
+        // SAFETY: `COUNT` of them have the size of `Lanes` and no stricter alignment (checked above); any bits
+        // are valid for both types.
+        unsafe { core::slice::from_raw_parts(lanes.as_ptr().cast(), lanes.len() * Self::COUNT) }
+    }
+    /// A mutable slice of lanes seen as registers.
+    #[inline(always)]
+    fn view_mut(lanes: &mut [Lanes]) -> &mut [Self] {
+        const { assert!(size_of::<Self>() * Self::COUNT == 64 && align_of::<Self>() <= 64) }
+        // SAFETY: as in `view`.
+        unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len() * Self::COUNT) }
+    }
+}
+
 /// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
-pub trait Vector8: Real<Mask = Bits> {
-    /// Whether the eight lanes fit one register (of thirty-two).
-    const ONE_REGISTER: bool;
+pub trait Vector8: Register {
+    /// What it is made of.
+    type Register: Register;
 
     /// From memory.
     fn load(lanes: Lanes) -> Self;
@@ -65,27 +87,6 @@ pub trait Vector8: Real<Mask = Bits> {
     fn store(self) -> Lanes;
     /// Lane `i` of the result is lane `index[i]` of `self` (`index[i] < 8`).
     fn permute(self, index: &[i64; WIDTH]) -> Self;
-
-    /// The sum of the lanes in the canonical order ((0+4)+(2+6))+((1+5)+(3+7)).
-    #[inline(always)]
-    fn horizontal_sum(self) -> f64 {
-        let [a, b, c, d, e, f, g, h] = self.store().0;
-        ((a + e) + (c + g)) + ((b + f) + (d + h))
-    }
-    /// A slice of lanes seen as this tier's vectors.
-    #[inline(always)]
-    fn view(lanes: &[Lanes]) -> &[Self] {
-        const { assert!(size_of::<Self>() == 64 && align_of::<Self>() == 64) }
-        // SAFETY: same size and alignment (checked above); any bits are valid for both types.
-        unsafe { core::slice::from_raw_parts(lanes.as_ptr().cast(), lanes.len()) }
-    }
-    /// A mutable slice of lanes seen as this tier's vectors.
-    #[inline(always)]
-    fn view_mut(lanes: &mut [Lanes]) -> &mut [Self] {
-        const { assert!(size_of::<Self>() == 64 && align_of::<Self>() == 64) }
-        // SAFETY: same size and alignment (checked above); any bits are valid for both types.
-        unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len()) }
-    }
 }
 
 /// `Lanes` as numbers, eight to each.
@@ -103,6 +104,12 @@ pub fn as_numbers_mut(lanes: &mut [Lanes]) -> &mut [f64] {
 }
 
 impl Lanes {
+    /// The sum of the lanes in the canonical order ((0+4)+(2+6))+((1+5)+(3+7)).
+    #[inline(always)]
+    pub fn horizontal_sum(self) -> f64 {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        ((a + e) + (c + g)) + ((b + f) + (d + h))
+    }
     /// Lane by lane.
     #[inline(always)]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
@@ -241,8 +248,12 @@ impl Real for Lanes {
     }
 }
 
+impl Register for Lanes {
+    const COUNT: usize = 1;
+}
+
 impl Vector8 for Lanes {
-    const ONE_REGISTER: bool = false;
+    type Register = Self;
 
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
@@ -259,9 +270,13 @@ impl Vector8 for Lanes {
 }
 
 #[cfg(target_arch = "x86_64")]
-mod x86;
+mod avx2;
 #[cfg(target_arch = "x86_64")]
-pub use x86::{Avx2, Avx512};
+mod avx512;
+#[cfg(target_arch = "x86_64")]
+pub use avx2::{Avx2, Avx2Half};
+#[cfg(target_arch = "x86_64")]
+pub use avx512::Avx512;
 
 #[cfg(test)]
 mod tests;

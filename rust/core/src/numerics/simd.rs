@@ -125,7 +125,12 @@ macro_rules! tiered {
                     Tier::Portable => {}
                 }
             }
-            $body::<$crate::numerics::lanes::Lanes, $($generics)*>($($argument),*)
+            // A function of its own: inlined, its registers and stack would burden the way to the others.
+            #[inline(never)]
+            fn portable<$($bounds)*>($($argument: $type),*) $(-> $return)? {
+                $body::<$crate::numerics::lanes::Lanes, $($generics)*>($($argument),*)
+            }
+            portable::<$($generics)*>($($argument),*)
         }
     )+};
 }

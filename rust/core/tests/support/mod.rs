@@ -3,7 +3,7 @@
 
 use visviva_core::Result;
 use visviva_core::forces::gravity::{FewBodies, Ring};
-use visviva_core::forces::{Dynamics, Force};
+use visviva_core::forces::{Dynamics, Force, Phase};
 use visviva_core::integrators::fixed::FixedStep;
 use visviva_core::integrators::runge_kutta::RungeKuttaStep;
 use visviva_core::integrators::state::State;
@@ -17,8 +17,8 @@ use visviva_core::parallel::{Control, Ticker};
 pub struct HenonHeiles;
 
 impl<S: Element> Force<S> for HenonHeiles {
-    fn apply(&mut self, q: &[S], _: &[S], a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
-        let (x, y) = (q[0], q[1]);
+    fn apply(&mut self, phase: &Phase<'_, S>, a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+        let (x, y) = (phase.q[0], phase.q[1]);
         let terms = [-x - S::splat(2.0) * x * y, y * y - x * x - y];
         for (a, term) in a.iter_mut().zip(terms) {
             *a = if first { term } else { *a + term };
@@ -31,8 +31,8 @@ impl<S: Element> Force<S> for HenonHeiles {
 pub struct Harmonic;
 
 impl<S: Element> Force<S> for Harmonic {
-    fn apply(&mut self, q: &[S], _: &[S], a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
-        for (a, &q) in a.iter_mut().zip(q) {
+    fn apply(&mut self, phase: &Phase<'_, S>, a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
+        for (a, &q) in a.iter_mut().zip(phase.q) {
             *a = if first { -q } else { *a - q };
         }
         Ok(())

@@ -6,7 +6,7 @@
 use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
-use crate::forces::Force;
+use crate::forces::{Force, Phase};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
@@ -30,9 +30,35 @@ impl<S: Element> FewBodies<S> {
     }
 }
 
-/// `N` massive bodies; known when compiled, so that everything about them stays in registers.
+/// `(x_j - x_i)·r⁻³` of the pairs `j = i + distance` of the first `M` bodies.
 #[inline(always)]
-fn kernel<S: InverseCube, const N: usize, const PLANAR: bool, const SOFT: bool>(
+fn pulls<S: InverseCube, const M: usize, const PLANAR: bool, const SOFT: bool>(
+    position: &[[S; 3]],
+    distance: usize,
+    softening2: S,
+) -> [[S; 3]; M] {
+    let components = if PLANAR { 2 } else { 3 };
+    let mut pull = [[S::zero(); 3]; M];
+    let mut r2 = [S::zero(); M];
+    for i in 0..M {
+        let j = (i + distance) % position.len();
+        for c in 0..components {
+            pull[i][c] = position[j][c] - position[i][c];
+        }
+        r2[i] = squared_distance::<S, PLANAR, SOFT>(pull[i], softening2);
+    }
+    let w = S::inverse_cubes(r2);
+    for i in 0..M {
+        for c in 0..components {
+            pull[i][c] = pull[i][c] * w[i];
+        }
+    }
+    pull
+}
+
+/// `N` massive bodies; known when compiled, so that everything about them stays in registers. `HALF` is `N/2`.
+#[inline(always)]
+fn kernel<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool, const SOFT: bool>(
     shape: Shape,
     strength: &[S],
     softening2: f64,
@@ -51,27 +77,24 @@ fn kernel<S: InverseCube, const N: usize, const PLANAR: bool, const SOFT: bool>(
         }
     }
     let mut sum = [[S::zero(); 3]; N];
-    for distance in 1..=N / 2 {
-        let opposite = 2 * distance == N;
-        let mut pull = [[S::zero(); 3]; N];
+    for distance in 1..=(N - 1) / 2 {
+        let pull = pulls::<S, N, PLANAR, SOFT>(&position, distance, softening2);
         for i in 0..N {
-            let j = (i + distance) % N;
-            let mut d = [S::zero(); 3];
+            let (ahead, behind) = ((i + distance) % N, (i + N - distance) % N);
             for c in 0..components {
-                d[c] = position[j][c] - position[i][c];
-            }
-            let w = squared_distance::<S, PLANAR, SOFT>(d, softening2).inverse_cube();
-            for c in 0..components {
-                pull[i][c] = d[c] * w;
-                sum[i][c] = strength[j].multiply_add(pull[i][c], sum[i][c]);
+                sum[i][c] = strength[ahead].multiply_add(pull[i][c], sum[i][c]);
+                sum[i][c] = strength[behind].multiply_subtract_from(pull[behind][c], sum[i][c]);
             }
         }
-        if !opposite {
-            for i in 0..N {
-                let j = (i + N - distance) % N;
-                for c in 0..components {
-                    sum[i][c] = strength[j].multiply_subtract_from(pull[j][c], sum[i][c]);
-                }
+    }
+    if N.is_multiple_of(2) {
+        // Ahead and behind are the same body.
+        let pull = pulls::<S, HALF, PLANAR, SOFT>(&position, HALF, softening2);
+        for i in 0..HALF {
+            let opposite = i + HALF;
+            for c in 0..components {
+                sum[i][c] = strength[opposite].multiply_add(pull[i][c], sum[i][c]);
+                sum[opposite][c] = strength[i].multiply_subtract_from(pull[i][c], sum[opposite][c]);
             }
         }
     }
@@ -106,14 +129,17 @@ fn select_kernel<S: InverseCube>(
         ($($bodies:literal)+) => {
             match (strength.len(), shape.components == 2, softening2 > 0.0) {
                 $(
-                    ($bodies, false, false) => kernel::<S, $bodies, false, false>(shape, strength, softening2, q, a, first),
-                    ($bodies, false, true) => kernel::<S, $bodies, false, true>(shape, strength, softening2, q, a, first),
-                    ($bodies, true, false) => kernel::<S, $bodies, true, false>(shape, strength, softening2, q, a, first),
-                    ($bodies, true, true) => kernel::<S, $bodies, true, true>(shape, strength, softening2, q, a, first),
+                    ($bodies, false, false) => select!($bodies, false, false),
+                    ($bodies, false, true) => select!($bodies, false, true),
+                    ($bodies, true, false) => select!($bodies, true, false),
+                    ($bodies, true, true) => select!($bodies, true, true),
                 )+
                 // More than RING_MAX bodies never come here.
                 _ => {}
             }
+        };
+        ($bodies:literal, $planar:literal, $soft:literal) => {
+            kernel::<S, $bodies, { $bodies / 2 }, $planar, $soft>(shape, strength, softening2, q, a, first)
         };
     }
     select!(1 2 3 4 5 6 7 8);
@@ -121,30 +147,28 @@ fn select_kernel<S: InverseCube>(
 
 #[inline(always)]
 fn lanes_kernel<V: Vector8 + InverseCube>(
-    shape: Shape,
-    strength: &[Lanes],
-    softening2: f64,
+    bodies: &FewBodies<Lanes>,
     q: &[Lanes],
     a: &mut [Lanes],
     first: bool,
 ) {
-    select_kernel::<V>(shape, V::view(strength), softening2, V::view(q), V::view_mut(a), first);
+    let strength = V::view(&bodies.strength);
+    select_kernel::<V>(bodies.shape, strength, bodies.softening2, V::view(q), V::view_mut(a), first);
 }
 
 tiered! {
-    fn lanes_tier[][](shape: Shape, strength: &[Lanes], softening2: f64, q: &[Lanes], a: &mut [Lanes], first: bool) = lanes_kernel;
+    fn lanes_tier[][](bodies: &FewBodies<Lanes>, q: &[Lanes], a: &mut [Lanes], first: bool) = lanes_kernel;
 }
 
 impl Force<Lanes> for FewBodies<Lanes> {
     fn apply(
         &mut self,
-        q: &[Lanes],
-        _: &[Lanes],
+        phase: &Phase<'_, Lanes>,
         a: &mut [Lanes],
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        lanes_tier(self.shape, &self.strength, self.softening2, q, a, first);
+        lanes_tier(self, phase.q, a, first);
         Ok(())
     }
 }
@@ -154,13 +178,12 @@ macro_rules! plain_force {
         impl Force<$type> for FewBodies<$type> {
             fn apply(
                 &mut self,
-                q: &[$type],
-                _: &[$type],
+                phase: &Phase<'_, $type>,
                 a: &mut [$type],
                 first: bool,
                 _: &mut Ticker<'_>,
             ) -> Result<()> {
-                select_kernel(self.shape, &self.strength, self.softening2, q, a, first);
+                select_kernel(self.shape, &self.strength, self.softening2, phase.q, a, first);
                 Ok(())
             }
         }

@@ -7,7 +7,7 @@
 use super::pair::squared_distance;
 use super::passive::packed_attraction;
 use crate::error::Result;
-use crate::forces::Force;
+use crate::forces::{Force, Phase};
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
@@ -61,7 +61,7 @@ impl Ring {
 }
 
 #[inline(always)]
-fn kernel<V: Vector8 + InverseCube, const PLANAR: bool>(
+fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize>(
     ring: &Ring,
     q: &[Lanes],
     a: &mut [Lanes],
@@ -69,33 +69,36 @@ fn kernel<V: Vector8 + InverseCube, const PLANAR: bool>(
 ) {
     let rows = ring.shape.rows;
     let softening2 = V::load(ring.softening2_first_row);
-    let x = V::load(q[0]);
-    let y = V::load(q[rows]);
-    let z = if PLANAR { V::zero() } else { V::load(q[2 * rows]) };
-    let (mut ax, mut ay, mut az) = (V::zero(), V::zero(), V::zero());
-    for turn in &ring.turns {
-        let dx = x.permute(&turn.forward) - x;
-        let dy = y.permute(&turn.forward) - y;
-        let dz = if PLANAR { V::zero() } else { z.permute(&turn.forward) - z };
-        let w = squared_distance::<V, PLANAR, true>([dx, dy, dz], softening2).inverse_cube();
-        let (px, py, pz) = (dx * w, dy * w, dz * w);
+    let components = if PLANAR { 2 } else { 3 };
+    let mut place = [V::zero(); 3];
+    for c in 0..components {
+        place[c] = V::load(q[c * rows]);
+    }
+    let turns = &ring.turns[..TURNS];
+    let mut d = [[V::zero(); 3]; TURNS];
+    let mut r2 = [V::zero(); TURNS];
+    for (k, turn) in turns.iter().enumerate() {
+        for c in 0..components {
+            d[k][c] = place[c].permute(&turn.forward) - place[c];
+        }
+        r2[k] = squared_distance::<V, PLANAR, true>(d[k], softening2);
+    }
+    let w = V::inverse_cubes(r2);
+    let mut sum = [V::zero(); 3];
+    for (k, turn) in turns.iter().enumerate() {
         let ahead = V::load(turn.strength_ahead);
-        ax = ahead.multiply_add(px, ax);
-        ay = ahead.multiply_add(py, ay);
-        if !PLANAR {
-            az = ahead.multiply_add(pz, az);
+        for c in 0..components {
+            d[k][c] = d[k][c] * w[k];
+            sum[c] = ahead.multiply_add(d[k][c], sum[c]);
         }
         if let Some(behind) = turn.strength_behind {
             let behind = V::load(behind);
-            ax = behind.multiply_subtract_from(px.permute(&turn.backward), ax);
-            ay = behind.multiply_subtract_from(py.permute(&turn.backward), ay);
-            if !PLANAR {
-                az = behind.multiply_subtract_from(pz.permute(&turn.backward), az);
+            for c in 0..components {
+                sum[c] = behind.multiply_subtract_from(d[k][c].permute(&turn.backward), sum[c]);
             }
         }
     }
-    let sum = [ax, ay, az];
-    for c in 0..ring.shape.components {
+    for c in 0..components {
         let a = &mut a[c * rows];
         *a = if first { sum[c] } else { V::load(*a) + sum[c] }.store();
     }
@@ -135,11 +138,20 @@ fn passive_rows<V: Vector8 + InverseCube, const PLANAR: bool, const SOFT: bool>(
 
 #[inline(always)]
 fn apply<V: Vector8 + InverseCube>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
-    if ring.shape.components == 2 {
-        kernel::<V, true>(ring, q, a, first);
-    } else {
-        kernel::<V, false>(ring, q, a, first);
+    let planar = ring.shape.components == 2;
+    macro_rules! select {
+        ($($turns:literal)+) => {
+            match (ring.turns.len(), planar) {
+                $(
+                    ($turns, false) => kernel::<V, false, $turns>(ring, q, a, first),
+                    ($turns, true) => kernel::<V, true, $turns>(ring, q, a, first),
+                )+
+                // More than RING_MAX bodies never come here.
+                _ => {}
+            }
+        };
     }
+    select!(0 1 2 3 4);
 }
 
 tiered! {
@@ -149,13 +161,12 @@ tiered! {
 impl Force<Lanes> for Ring {
     fn apply(
         &mut self,
-        q: &[Lanes],
-        _: &[Lanes],
+        phase: &Phase<'_, Lanes>,
         a: &mut [Lanes],
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        apply_tier(self, q, a, first);
+        apply_tier(self, phase.q, a, first);
         Ok(())
     }
 }

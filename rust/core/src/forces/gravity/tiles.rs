@@ -11,10 +11,10 @@
 use super::pair::squared_distance;
 use super::passive::packed_attraction;
 use crate::error::Result;
-use crate::forces::Force;
+use crate::forces::{Force, Phase};
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
+use crate::numerics::lanes::{Bits, Lanes, Register, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::real::Real;
 use crate::parallel::{Ticker, for_chunks};
 use crate::tiered;
@@ -75,150 +75,157 @@ impl Tiles {
 }
 
 /// Bodies of one block row, held together, and the partial sums of the pull on each.
-struct Group<V, const GROUP: usize> {
+struct Group<R, const GROUP: usize> {
     place: [[f64; 3]; GROUP],
     strength: [f64; GROUP],
-    sum: [[V; 3]; GROUP],
+    /// For each body and each register of a block.
+    sum: [[[R; 3]; MOST_REGISTERS]; GROUP],
 }
 
-/// A block of eight bodies, and what they are accelerated by, with the sign changed.
-struct Block<V> {
-    place: [V; 3],
-    strength: V,
-    pull: [V; 3],
+/// The most registers that eight lanes fill on any tier.
+const MOST_REGISTERS: usize = 2;
+
+/// A register of a block of eight bodies, and what these are accelerated by, with the sign changed.
+struct Streamed<R> {
+    place: [R; 3],
+    strength: R,
+    pull: [R; 3],
 }
 
-/// The pairs of a group with a block; on the diagonal, lane `l` has a pair with body `i` if `l > first + i`.
+/// The pairs of a group with register `part` of a block. On the diagonal, lane `l` of the block has a pair with
+/// body `i` if `l > first + i`.
 #[inline(always)]
 fn tile<
-    V: Vector8 + InverseCube,
+    R: Register + InverseCube,
     const GROUP: usize,
     const PLANAR: bool,
     const SOFT: bool,
     const DIAGONAL: bool,
 >(
-    group: &mut Group<V, GROUP>,
-    block: &mut Block<V>,
-    softening2: V,
+    group: &mut Group<R, GROUP>,
+    streamed: &mut Streamed<R>,
+    part: usize,
+    softening2: R,
     first: usize,
 ) {
     let components = if PLANAR { 2 } else { 3 };
+    let mut d = [[R::zero(); 3]; GROUP];
+    let mut r2 = [R::zero(); GROUP];
     for i in 0..GROUP {
-        let mut d = [V::zero(); 3];
         for c in 0..components {
-            d[c] = block.place[c] - V::splat(group.place[i][c]);
+            d[i][c] = streamed.place[c] - R::splat(group.place[i][c]);
         }
-        let mut w = squared_distance::<V, PLANAR, SOFT>(d, softening2).inverse_cube();
+        r2[i] = squared_distance::<R, PLANAR, SOFT>(d[i], softening2);
+    }
+    let mut w = R::inverse_cubes(r2);
+    for i in 0..GROUP {
         if DIAGONAL {
-            w = V::select(Bits((0xfe_u32 << (first + i)) as u8), w, V::zero());
+            let later = (0xfe_u32 << (first + i)) as u8 >> (part * WIDTH / R::COUNT);
+            w[i] = R::select(Bits(later), w[i], R::zero());
         }
-        let on_group = block.strength * w;
-        let on_block = V::splat(group.strength[i]) * w;
+        let on_group = streamed.strength * w[i];
+        let on_streamed = R::splat(group.strength[i]) * w[i];
+        let sum = &mut group.sum[i][part];
         for c in 0..components {
-            group.sum[i][c] = on_group.multiply_add(d[c], group.sum[i][c]);
-            block.pull[c] = on_block.multiply_add(d[c], block.pull[c]);
+            sum[c] = on_group.multiply_add(d[i][c], sum[c]);
+            streamed.pull[c] = on_streamed.multiply_add(d[i][c], streamed.pull[c]);
         }
     }
 }
 
-/// Bodies `part·GROUP …` of row `row` against the blocks from `row` on. The size of the group changes no bit.
+/// Bodies `first…` of row `row`, a group of them, against the blocks from `row` on. The size of the group
+/// changes no bit.
 #[inline(always)]
-fn group<V: Vector8 + InverseCube, const GROUP: usize, const PLANAR: bool, const SOFT: bool>(
+fn group<R: Register + InverseCube, const GROUP: usize, const PLANAR: bool, const SOFT: bool>(
     tiles: &Tiles,
     q: &[Lanes],
     shard_start: usize,
     pull: &mut [Lanes],
     row: usize,
-    part: usize,
+    first: usize,
 ) {
     let rows = tiles.shape.rows;
     let blocks = tiles.active_rows;
     let local = blocks - shard_start;
-    let (x, y) = (&V::view(q)[..blocks], &V::view(q)[rows..rows + blocks]);
-    let z = if PLANAR { x } else { &V::view(q)[2 * rows..2 * rows + blocks] };
-    let strength = &V::view(&tiles.strength)[..blocks];
-    let softening2 = V::splat(tiles.softening2);
+    let (q_x, q_y) = (R::view(&q[..blocks]), R::view(&q[rows..rows + blocks]));
+    let q_z = if PLANAR { q_x } else { R::view(&q[2 * rows..2 * rows + blocks]) };
+    let strength = R::view(&tiles.strength[..blocks]);
+    let softening2 = R::splat(tiles.softening2);
     let numbers = as_numbers(q);
     let strengths = as_numbers(&tiles.strength);
-    let first = row * WIDTH + part * GROUP;
-    let mut held =
-        Group {
-            place: core::array::from_fn(|i| {
-                core::array::from_fn(|c| {
-                    if PLANAR && c == 2 { 0.0 } else { numbers[c * rows * WIDTH + first + i] }
-                })
-            }),
-            strength: core::array::from_fn(|i| strengths[first + i]),
-            sum: [[V::zero(); 3]; GROUP],
-        };
+    let body = row * WIDTH + first;
+    let coordinate = |c: usize, i: usize| {
+        if PLANAR && c == 2 { 0.0 } else { numbers[c * rows * WIDTH + body + i] }
+    };
+    let mut held = Group {
+        place: core::array::from_fn(|i| core::array::from_fn(|c| coordinate(c, i))),
+        strength: core::array::from_fn(|i| strengths[body + i]),
+        sum: [[[R::zero(); 3]; MOST_REGISTERS]; GROUP],
+    };
 
-    let (a_x, rest) = V::view_mut(pull).split_at_mut(local);
-    let (a_y, a_z) = rest.split_at_mut(local);
-    let a_z = if PLANAR { &mut [][..] } else { &mut a_z[..local] };
+    let (p_x, rest) = pull.split_at_mut(local);
+    let (p_y, p_z) = rest.split_at_mut(local);
+    let (p_x, p_y) = (R::view_mut(p_x), R::view_mut(p_y));
+    let p_z = if PLANAR { &mut [][..] } else { R::view_mut(&mut p_z[..local]) };
 
     // A macro and not a closure: a closure would be compiled without the tier's instructions.
     macro_rules! meet {
-        ($block:expr, $diagonal:literal) => {{
-            let (from, to) = ($block, $block - shard_start);
-            let third = if PLANAR { V::zero() } else { a_z[to] };
-            let mut block = Block {
-                place: [x[from], y[from], z[from]],
-                strength: strength[from],
-                pull: [a_x[to], a_y[to], third],
-            };
-            tile::<V, GROUP, PLANAR, SOFT, $diagonal>(&mut held, &mut block, softening2, part * GROUP);
-            [a_x[to], a_y[to]] = [block.pull[0], block.pull[1]];
-            if !PLANAR {
-                a_z[to] = block.pull[2];
+        ($block:expr, $diagonal:literal) => {
+            for part in 0..R::COUNT {
+                let from = $block * R::COUNT + part;
+                let to = from - shard_start * R::COUNT;
+                let mut streamed = Streamed {
+                    place: [q_x[from], q_y[from], q_z[from]],
+                    strength: strength[from],
+                    pull: [p_x[to], p_y[to], if PLANAR { R::zero() } else { p_z[to] }],
+                };
+                tile::<R, GROUP, PLANAR, SOFT, $diagonal>(&mut held, &mut streamed, part, softening2, first);
+                [p_x[to], p_y[to]] = [streamed.pull[0], streamed.pull[1]];
+                if !PLANAR {
+                    p_z[to] = streamed.pull[2];
+                }
             }
-        }};
+        };
     }
     meet!(row, true);
     for block in row + 1..blocks {
         meet!(block, false);
     }
-    let numbers = as_numbers_mut(pull);
     for i in 0..GROUP {
-        let at = (row - shard_start) * WIDTH + part * GROUP + i;
+        let at = (row - shard_start) * WIDTH + first + i;
         for c in 0..tiles.shape.components {
-            numbers[c * local * WIDTH + at] -= held.sum[i][c].horizontal_sum();
+            let mut sum = [Lanes::zero()];
+            for part in 0..R::COUNT {
+                R::view_mut(&mut sum)[part] = held.sum[i][part][c];
+            }
+            as_numbers_mut(pull)[c * local * WIDTH + at] -= sum[0].horizontal_sum();
         }
     }
 }
 
-/// One block row of a shard, `GROUP` bodies at a time.
+/// One block row of a shard: four bodies at a time, as many as the registers of AVX-512 hold.
 #[inline(always)]
-fn groups<V: Vector8 + InverseCube, const GROUP: usize>(
-    tiles: &Tiles,
-    q: &[Lanes],
-    start: usize,
-    pull: &mut [Lanes],
-    row: usize,
-) {
-    for part in 0..WIDTH / GROUP {
-        match (tiles.shape.components == 2, tiles.softening2 > 0.0) {
-            (false, false) => group::<V, GROUP, false, false>(tiles, q, start, pull, row, part),
-            (false, true) => group::<V, GROUP, false, true>(tiles, q, start, pull, row, part),
-            (true, false) => group::<V, GROUP, true, false>(tiles, q, start, pull, row, part),
-            (true, true) => group::<V, GROUP, true, true>(tiles, q, start, pull, row, part),
+fn block_row<V: Vector8>(tiles: &Tiles, q: &[Lanes], shard_start: usize, pull: &mut [Lanes], row: usize)
+where
+    V::Register: InverseCube,
+{
+    const GROUP: usize = 4;
+    for first in (0..WIDTH).step_by(GROUP) {
+        let planar = tiles.shape.components == 2;
+        match (planar, tiles.softening2 > 0.0) {
+            (false, false) => {
+                group::<V::Register, GROUP, false, false>(tiles, q, shard_start, pull, row, first);
+            }
+            (false, true) => {
+                group::<V::Register, GROUP, false, true>(tiles, q, shard_start, pull, row, first);
+            }
+            (true, false) => {
+                group::<V::Register, GROUP, true, false>(tiles, q, shard_start, pull, row, first);
+            }
+            (true, true) => {
+                group::<V::Register, GROUP, true, true>(tiles, q, shard_start, pull, row, first);
+            }
         }
-    }
-}
-
-/// One block row of a shard: four bodies at a time fit the registers of AVX-512; where they fit nowhere,
-/// eight at a time save the most traffic with memory (measured: 0.49 ns against 0.51, 0.69 against 0.73).
-#[inline(always)]
-fn block_row<V: Vector8 + InverseCube>(
-    tiles: &Tiles,
-    q: &[Lanes],
-    shard_start: usize,
-    pull: &mut [Lanes],
-    row: usize,
-) {
-    if V::ONE_REGISTER {
-        groups::<V, 4>(tiles, q, shard_start, pull, row);
-    } else {
-        groups::<V, 8>(tiles, q, shard_start, pull, row);
     }
 }
 
@@ -289,13 +296,12 @@ tiered! {
 impl Force<Lanes> for Tiles {
     fn apply(
         &mut self,
-        q: &[Lanes],
-        _: &[Lanes],
+        phase: &Phase<'_, Lanes>,
         a: &mut [Lanes],
         first: bool,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let this = &*self;
+        let (this, q) = (&*self, phase.q);
         let Shape { rows, components } = this.shape;
         let passive = this.active_rows..rows;
         let passive_chunks = passive.len().div_ceil(PASSIVE_ROWS);

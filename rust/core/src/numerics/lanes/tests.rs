@@ -14,7 +14,7 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 13] {
         a.max(b).min(c),
         V::select(mask, a, -b),
         a.permute(&[7, 0, 3, 3, 1, 2, 6, 5]),
-        V::splat(a.horizontal_sum()),
+        V::splat(a.store().horizontal_sum()),
         a.scaled_by(DoubleDouble::PI).0,
         a.scaled_by(DoubleDouble::PI).1,
         a.multiply_add(b, c),

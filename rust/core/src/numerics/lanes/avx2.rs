@@ -1,0 +1,221 @@
+//! The AVX2 form of eight lanes: two halves of four.
+//!
+//! Every method here is `#[inline(always)]` and only ever reached from a function that `tiered!`
+//! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
+
+use super::{Bits, Lanes, Register, Vector8, WIDTH, scaled_by};
+use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::real::Real;
+use core::arch::x86_64::*;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Four lanes in one 256-bit register; masks use the four low bits.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Avx2Half(__m256d);
+
+// SAFETY (all blocks of this file): see the module header.
+operators!(Avx2Half:
+    |a: Avx2Half, b: Avx2Half| Avx2Half(unsafe { _mm256_add_pd(a.0, b.0) }),
+    |a: Avx2Half, b: Avx2Half| Avx2Half(unsafe { _mm256_sub_pd(a.0, b.0) }),
+    |a: Avx2Half, b: Avx2Half| Avx2Half(unsafe { _mm256_mul_pd(a.0, b.0) }),
+    |a: Avx2Half, b: Avx2Half| Avx2Half(unsafe { _mm256_div_pd(a.0, b.0) }),
+    |a: Avx2Half| Avx2Half(unsafe { _mm256_xor_pd(a.0, _mm256_set1_pd(-0.0)) }));
+
+impl Register for Avx2Half {
+    const COUNT: usize = 2;
+}
+
+impl Real for Avx2Half {
+    type Mask = Bits;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(unsafe { _mm256_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn from_double_double(value: DoubleDouble) -> Self {
+        Self::splat(value.to_f64())
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm256_fmadd_pd(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm256_fnmadd_pd(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(unsafe { _mm256_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(unsafe { _mm256_andnot_pd(_mm256_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(unsafe { _mm256_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(unsafe { _mm256_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Bits {
+        Bits(unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LT_OQ>(self.0, other.0)) } as u8)
+    }
+    #[inline(always)]
+    fn less_equal(self, other: Self) -> Bits {
+        Bits(unsafe { _mm256_movemask_pd(_mm256_cmp_pd::<_CMP_LE_OQ>(self.0, other.0)) } as u8)
+    }
+    #[inline(always)]
+    fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
+        unsafe {
+            let lane = _mm256_setr_epi64x(1, 2, 4, 8);
+            let chosen = _mm256_and_si256(_mm256_set1_epi64x(i64::from(mask.0)), lane);
+            let chosen = _mm256_castsi256_pd(_mm256_cmpeq_epi64(chosen, lane));
+            Self(_mm256_blendv_pd(if_false.0, if_true.0, chosen))
+        }
+    }
+    #[inline(always)]
+    fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
+        scaled_by(self, coefficient)
+    }
+}
+
+impl Binary for Avx2Half {
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        let shifted = self + Self::splat(BIASED_SHIFT);
+        Self(unsafe { _mm256_castsi256_pd(_mm256_slli_epi64::<52>(_mm256_castpd_si256(shifted.0))) })
+    }
+    #[inline(always)]
+    fn inverse_root_guess(self) -> Self {
+        unsafe {
+            let half = _mm256_srli_epi64::<1>(_mm256_castpd_si256(self.0));
+            Self(_mm256_castsi256_pd(_mm256_sub_epi64(_mm256_set1_epi64x(INVERSE_ROOT_LINE), half)))
+        }
+    }
+    #[inline(always)]
+    fn leading_bits(self) -> Self {
+        Self(unsafe { _mm256_and_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(LEADING_BITS))) })
+    }
+}
+
+/// Eight lanes in two 256-bit registers.
+#[derive(Clone, Copy, Debug)]
+#[repr(C, align(64))]
+pub struct Avx2(Avx2Half, Avx2Half);
+
+operators!(Avx2:
+    |a: Avx2, b: Avx2| Avx2(a.0 + b.0, a.1 + b.1),
+    |a: Avx2, b: Avx2| Avx2(a.0 - b.0, a.1 - b.1),
+    |a: Avx2, b: Avx2| Avx2(a.0 * b.0, a.1 * b.1),
+    |a: Avx2, b: Avx2| Avx2(a.0 / b.0, a.1 / b.1),
+    |a: Avx2| Avx2(-a.0, -a.1));
+
+impl Register for Avx2 {
+    const COUNT: usize = 1;
+}
+
+/// The mask of both halves.
+#[inline(always)]
+fn join(low: Bits, high: Bits) -> Bits {
+    Bits(low.0 | high.0 << 4)
+}
+
+impl Real for Avx2 {
+    type Mask = Bits;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(Avx2Half::splat(value), Avx2Half::splat(value))
+    }
+    #[inline(always)]
+    fn from_double_double(value: DoubleDouble) -> Self {
+        Self::splat(value.to_f64())
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        Self(self.0.multiply_add(factor.0, term.0), self.1.multiply_add(factor.1, term.1))
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        Self(self.0.multiply_subtract_from(factor.0, term.0), self.1.multiply_subtract_from(factor.1, term.1))
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(self.0.sqrt(), self.1.sqrt())
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(self.0.abs(), self.1.abs())
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(self.0.max(other.0), self.1.max(other.1))
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(self.0.min(other.0), self.1.min(other.1))
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Bits {
+        join(self.0.less(other.0), self.1.less(other.1))
+    }
+    #[inline(always)]
+    fn less_equal(self, other: Self) -> Bits {
+        join(self.0.less_equal(other.0), self.1.less_equal(other.1))
+    }
+    #[inline(always)]
+    fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
+        Self(
+            Avx2Half::select(mask, if_true.0, if_false.0),
+            Avx2Half::select(Bits(mask.0 >> 4), if_true.1, if_false.1),
+        )
+    }
+    #[inline(always)]
+    fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
+        scaled_by(self, coefficient)
+    }
+}
+
+impl Vector8 for Avx2 {
+    type Register = Avx2Half;
+
+    #[inline(always)]
+    fn load(lanes: Lanes) -> Self {
+        let from = lanes.0.as_ptr();
+        unsafe { Self(Avx2Half(_mm256_load_pd(from)), Avx2Half(_mm256_load_pd(from.add(4)))) }
+    }
+    #[inline(always)]
+    fn store(self) -> Lanes {
+        let mut lanes = Lanes([0.0; WIDTH]);
+        unsafe {
+            _mm256_store_pd(lanes.0.as_mut_ptr(), self.0.0);
+            _mm256_store_pd(lanes.0.as_mut_ptr().add(4), self.1.0);
+        }
+        lanes
+    }
+    #[inline(always)]
+    fn permute(self, index: &[i64; WIDTH]) -> Self {
+        Self::load(self.store().permute(index))
+    }
+}
+
+impl Binary for Avx2 {
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        Self(self.0.power_of_two(), self.1.power_of_two())
+    }
+    #[inline(always)]
+    fn inverse_root_guess(self) -> Self {
+        Self(self.0.inverse_root_guess(), self.1.inverse_root_guess())
+    }
+    #[inline(always)]
+    fn leading_bits(self) -> Self {
+        Self(self.0.leading_bits(), self.1.leading_bits())
+    }
+}

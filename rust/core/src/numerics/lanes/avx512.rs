@@ -1,0 +1,119 @@
+//! The AVX-512 form of eight lanes.
+//!
+//! Every method here is `#[inline(always)]` and only ever reached from a function that `tiered!`
+//! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
+
+use super::{Bits, Lanes, Register, Vector8, WIDTH, scaled_by};
+use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::real::Real;
+use core::arch::x86_64::*;
+use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
+
+/// Eight lanes in one 512-bit register.
+#[derive(Clone, Copy, Debug)]
+#[repr(transparent)]
+pub struct Avx512(__m512d);
+
+// SAFETY (all blocks of this file): see the module header.
+operators!(Avx512:
+    |a: Avx512, b: Avx512| Avx512(unsafe { _mm512_add_pd(a.0, b.0) }),
+    |a: Avx512, b: Avx512| Avx512(unsafe { _mm512_sub_pd(a.0, b.0) }),
+    |a: Avx512, b: Avx512| Avx512(unsafe { _mm512_mul_pd(a.0, b.0) }),
+    |a: Avx512, b: Avx512| Avx512(unsafe { _mm512_div_pd(a.0, b.0) }),
+    |a: Avx512| Avx512(unsafe { _mm512_xor_pd(a.0, _mm512_set1_pd(-0.0)) }));
+
+impl Real for Avx512 {
+    type Mask = Bits;
+
+    #[inline(always)]
+    fn splat(value: f64) -> Self {
+        Self(unsafe { _mm512_set1_pd(value) })
+    }
+    #[inline(always)]
+    fn from_double_double(value: DoubleDouble) -> Self {
+        Self::splat(value.to_f64())
+    }
+    #[inline(always)]
+    fn multiply_add(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm512_fmadd_pd(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
+        Self(unsafe { _mm512_fnmadd_pd(self.0, factor.0, term.0) })
+    }
+    #[inline(always)]
+    fn sqrt(self) -> Self {
+        Self(unsafe { _mm512_sqrt_pd(self.0) })
+    }
+    #[inline(always)]
+    fn abs(self) -> Self {
+        Self(unsafe { _mm512_andnot_pd(_mm512_set1_pd(-0.0), self.0) })
+    }
+    #[inline(always)]
+    fn max(self, other: Self) -> Self {
+        Self(unsafe { _mm512_max_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn min(self, other: Self) -> Self {
+        Self(unsafe { _mm512_min_pd(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less(self, other: Self) -> Bits {
+        Bits(unsafe { _mm512_cmp_pd_mask::<_CMP_LT_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn less_equal(self, other: Self) -> Bits {
+        Bits(unsafe { _mm512_cmp_pd_mask::<_CMP_LE_OQ>(self.0, other.0) })
+    }
+    #[inline(always)]
+    fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
+        Self(unsafe { _mm512_mask_blend_pd(mask.0, if_false.0, if_true.0) })
+    }
+    #[inline(always)]
+    fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
+        scaled_by(self, coefficient)
+    }
+}
+
+impl Register for Avx512 {
+    const COUNT: usize = 1;
+}
+
+impl Vector8 for Avx512 {
+    type Register = Self;
+
+    #[inline(always)]
+    fn load(lanes: Lanes) -> Self {
+        Self(unsafe { _mm512_load_pd(lanes.0.as_ptr()) })
+    }
+    #[inline(always)]
+    fn store(self) -> Lanes {
+        let mut lanes = Lanes([0.0; WIDTH]);
+        unsafe { _mm512_store_pd(lanes.0.as_mut_ptr(), self.0) };
+        lanes
+    }
+    #[inline(always)]
+    fn permute(self, index: &[i64; WIDTH]) -> Self {
+        Self(unsafe { _mm512_permutexvar_pd(_mm512_loadu_si512(index.as_ptr().cast()), self.0) })
+    }
+}
+
+impl Binary for Avx512 {
+    #[inline(always)]
+    fn power_of_two(self) -> Self {
+        let shifted = self + Self::splat(BIASED_SHIFT);
+        Self(unsafe { _mm512_castsi512_pd(_mm512_slli_epi64::<52>(_mm512_castpd_si512(shifted.0))) })
+    }
+    #[inline(always)]
+    fn inverse_root_guess(self) -> Self {
+        unsafe {
+            let half = _mm512_srli_epi64::<1>(_mm512_castpd_si512(self.0));
+            Self(_mm512_castsi512_pd(_mm512_sub_epi64(_mm512_set1_epi64(INVERSE_ROOT_LINE), half)))
+        }
+    }
+    #[inline(always)]
+    fn leading_bits(self) -> Self {
+        Self(unsafe { _mm512_and_pd(self.0, _mm512_castsi512_pd(_mm512_set1_epi64(LEADING_BITS))) })
+    }
+}
