@@ -6,11 +6,12 @@
 //! user gave, with its messages, is `visviva._arrays`; this is the second line.
 
 use crate::errors::raised;
-use numpy::ndarray::{ArrayD, IxDyn};
+use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::npyffi::NPY_ARRAY_ALIGNED;
-use numpy::{Element, IntoPyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use numpy::{Element, IntoPyArray, PyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use visviva_core::Error;
+use visviva_core::scene::room::give_back;
 
 /// The values in row-major order and the shape, which must match `shape` wherever that says a length.
 ///
@@ -54,4 +55,32 @@ pub(crate) fn moved<'py, T: Element>(
         raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}")))
     })?;
     Ok(array.into_pyarray(py))
+}
+
+/// The base of an array of numbers; its room goes to the next run when the array is gone.
+#[pyclass(frozen)]
+struct Room(Vec<f64>);
+
+impl Drop for Room {
+    fn drop(&mut self) {
+        give_back(core::mem::take(&mut self.0));
+    }
+}
+
+/// As [`moved`], of a column of a run.
+///
+/// # Errors
+/// As [`moved`].
+pub(crate) fn moved_column<'py>(
+    py: Python<'py>,
+    values: Vec<f64>,
+    shape: &[usize],
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let length = values.len();
+    let room = Bound::new(py, Room(values))?;
+    let view = ArrayViewD::from_shape(IxDyn(shape), &room.get().0).map_err(|_| {
+        raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}")))
+    })?;
+    // SAFETY: the array keeps the room alive as its base, and nothing but the array reads or writes there.
+    Ok(unsafe { PyArray::borrow_from_array(&view, room.clone().into_any()) })
 }

@@ -2,7 +2,7 @@
 //!
 //! The dictionaries that come and go here are described in `visviva/_core.pyi`.
 
-use crate::arrays::{copied, moved};
+use crate::arrays::{copied, moved, moved_column};
 use crate::errors::raised;
 use crate::gate::compute;
 use numpy::PyReadonlyArrayDyn;
@@ -249,7 +249,7 @@ fn output_dict<'py>(
     let columns = PyDict::new(py);
     let set = |name: &str, mut values: Vec<f64>, shape: &[usize]| {
         values.truncate(shape.iter().product());
-        columns.set_item(name, moved(py, values, shape)?)
+        columns.set_item(name, moved_column(py, values, shape)?)
     };
     if request.records("position") {
         set("position", output.columns.position, &[copies, times, particles, 3])?;

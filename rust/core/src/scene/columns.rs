@@ -1,5 +1,6 @@
 //! What a run records: arrays that trajectories fill side by side, with NaN where one has failed.
 
+use super::room;
 use core::marker::PhantomData;
 
 /// Output arrays of a batch, C order `(copies, times, particles, 3)`; empty where not asked for.
@@ -32,8 +33,7 @@ impl Columns {
         velocity: bool,
         derived: bool,
     ) -> Self {
-        let array =
-            |wanted: bool| Vec::with_capacity(if wanted { copies * times * particles * 3 } else { 0 });
+        let array = |wanted: bool| room::take(if wanted { copies * times * particles * 3 } else { 0 });
         Self {
             times,
             particles,

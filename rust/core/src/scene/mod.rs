@@ -9,6 +9,7 @@ pub mod frame;
 pub mod integrate;
 pub mod plan;
 pub mod request;
+pub mod room;
 pub mod run;
 pub mod unit;
 

@@ -4,6 +4,7 @@ use super::columns::{Columns, Entry, Missing};
 use super::integrate::{self, Ending, Job, Report};
 use super::plan::{Plan, Solution};
 use super::request::Request;
+use super::room::give_back;
 use super::{Scene, closed_form};
 use crate::conservation::{self, Body};
 use crate::error::Result;
@@ -109,13 +110,13 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     };
     let derived = derive(scene, request, &plan, &columns, &outcomes, ticker)?;
     if !request.records("position") {
-        columns.position = Vec::new();
+        give_back(core::mem::take(&mut columns.position));
     }
     if !request.records("velocity") {
-        columns.velocity = Vec::new();
+        give_back(core::mem::take(&mut columns.velocity));
     }
-    columns.position_rest = Vec::new();
-    columns.velocity_rest = Vec::new();
+    give_back(core::mem::take(&mut columns.position_rest));
+    give_back(core::mem::take(&mut columns.velocity_rest));
     Ok(Output { plan, columns, derived, outcomes })
 }
 
