@@ -12,11 +12,11 @@ use visviva_core::conservation::{self, Body};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::simd::tier;
 use visviva_core::parallel::thread_count;
+use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::integrate::Ending;
 use visviva_core::scene::plan::{Plan, Solution};
 use visviva_core::scene::request::{Request, unknown};
 use visviva_core::scene::run::{Outcome, Output, run as run_scene};
-use visviva_core::scene::unit::acceleration as acceleration_of;
 use visviva_core::scene::{ForceSpec, Scene};
 use visviva_core::{Error, registry};
 

@@ -4,12 +4,13 @@
 //! ends, the next takes its lane. What a unit gives depends on nothing but the unit.
 
 use super::columns::Writer;
+use super::layout::Layout;
 use super::plan::Plan;
-use super::unit::{Layout, Prepared, Unit};
+use super::unit::{self, Prepared, Unit};
 use super::{Scene, distance};
 use crate::error::{Error, Result};
 use crate::forces::Dynamics;
-use crate::integrators::adaptive::{Adaptive, Clock, Outcome, Reduce, Reference, Tolerance};
+use crate::integrators::adaptive::{Adaptive, Clock, Outcome, Reference, Tolerance};
 use crate::integrators::fixed::{self, Place};
 use crate::integrators::state::State;
 use crate::integrators::{Embedded, Scheme};
@@ -97,7 +98,7 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     // massless ones beside them.
     units.sort_by_key(|unit| (unit.active, unit.bodies.len()));
     let (over, inside) = job.plan.threads;
-    let lanes = if job.plan.layout == Layout::Batched { WIDTH } else { 1 };
+    let lanes = job.plan.layout.units();
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
     let mut runs: Vec<&[Unit]> = Vec::new();
     for run in units.chunk_by(|a, b| {
@@ -126,18 +127,11 @@ fn prepare(job: &Job<'_>, unit: &Unit) -> Prepared {
     Prepared::new(job.plan, job.scene, unit.clone())
 }
 
-/// An empty state for units like `unit`.
-fn blank(job: &Job<'_>, unit: &Prepared) -> State<Lanes> {
-    let shape = unit.shape(job.plan, job.plan.layout);
-    let zeros = vec![Lanes::zero(); shape.len()];
-    State::new(shape, &zeros, &zeros)
-}
-
 fn report(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize, time: f64) -> Report {
     let (mut position, mut velocity) = (Vec::new(), Vec::new());
     for slot in unit.unit.recorded.clone() {
         let elapsed = time - job.scene.t0;
-        let entry = unit.read(slot, state, job.plan.layout, lane, job.plan.units, elapsed);
+        let entry = unit.read(slot, state, lane, elapsed);
         position.push(entry.position);
         velocity.push(entry.velocity);
     }
@@ -160,7 +154,7 @@ fn fixed_steps(
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
-    let lanes = if job.plan.layout == Layout::Batched { WIDTH } else { 1 };
+    let lanes = job.plan.layout.units();
     let mut reports = Vec::with_capacity(units.len());
     for group in units.chunks(lanes) {
         reports.extend(fixed_group(job, group, threads, ticker)?);
@@ -178,12 +172,12 @@ fn fixed_group(
     let plan = job.plan;
     let prepared: Vec<Prepared> = units.iter().map(|unit| prepare(job, unit)).collect();
     let views: Vec<&Prepared> = prepared.iter().collect();
-    let mut dynamics = Prepared::dynamics(plan, &views, plan.layout, threads);
-    let mut state = blank(job, &prepared[0]);
-    let lanes = if plan.layout == Layout::Batched { WIDTH } else { 1 };
+    let mut dynamics = unit::dynamics(plan, &views, threads);
+    let mut state = prepared[0].blank_state();
+    let lanes = plan.layout.units();
     for lane in 0..lanes {
         // Lanes without a unit run along with a copy of the last.
-        prepared[lane.min(units.len() - 1)].write(&mut state, plan.layout, lane);
+        prepared[lane.min(units.len() - 1)].write(&mut state, lane);
     }
     let dt = plan.dt.unwrap_or(plan.direction);
     let t0 = job.scene.t0;
@@ -200,9 +194,7 @@ fn fixed_group(
         fixed::run(plan.method, h, max_steps, &mut state, &mut dynamics, places, ticker, |index, state| {
             let t = job.times[index];
             for (lane, unit) in prepared.iter().enumerate() {
-                if failed[lane].is_none()
-                    && !unit.record(job.writer, index, state, plan.layout, lane, plan.units, t - t0)
-                {
+                if failed[lane].is_none() && !unit.record(job.writer, index, state, lane, t - t0) {
                     failed[lane] = Some(index);
                 }
             }
@@ -240,20 +232,6 @@ fn fixed_group(
         .collect())
 }
 
-impl Reduce<Lanes> for Layout {
-    fn largest(&self, value: Lanes) -> Lanes {
-        match self {
-            Self::Batched => value,
-            Self::Packed => {
-                let [a, b, c, d, e, f, g, h] = value.0;
-                let larger = |x: f64, y: f64| if x > y { x } else { y };
-                let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
-                Lanes::splat(larger(low, high))
-            }
-        }
-    }
-}
-
 /// A lane (all lanes, if packed) and the unit that is in it.
 struct Slot {
     unit: Prepared,
@@ -276,7 +254,7 @@ struct Slots<'a> {
 
 impl Slots<'_> {
     fn mask(&self, lane: usize) -> Bits {
-        if self.job.plan.layout == Layout::Packed { Bits(0xff) } else { Bits(1 << lane) }
+        self.job.plan.layout.mask(lane)
     }
     fn running(&self) -> Bits {
         let lanes = self.slots.iter().enumerate().filter(|(_, slot)| slot.is_some());
@@ -296,19 +274,19 @@ fn adaptive(
 ) -> Result<Vec<Report>> {
     let plan = job.plan;
     let t0 = job.scene.t0;
-    let lanes = if plan.layout == Layout::Batched { WIDTH } else { 1 };
+    let lanes = plan.layout.units();
     let outputs: Vec<f64> = job.times.iter().map(|&t| scale(t - t0, -plan.units.time)).collect();
     let mut slots = Slots { job, slots: [const { None }; WIDTH], outputs };
     let mut reports: Vec<Option<Report>> = units.iter().map(|_| None).collect();
     let mut waiting = units.iter().enumerate();
 
     let first = prepare(job, &units[0]);
-    let mut state = blank(job, &first);
+    let mut state = first.blank_state();
     let mut scratch = state.clone();
     for lane in 0..lanes {
-        first.write(&mut state, plan.layout, lane);
+        first.write(&mut state, lane);
     }
-    let mut dynamics = Prepared::dynamics(plan, &[&first], plan.layout, threads);
+    let mut dynamics = unit::dynamics(plan, &[&first], threads);
     let mut tolerance =
         Tolerance { rtol: Lanes::splat(job.rtol), atol_q: Lanes::one(), atol_v: Lanes::one() };
     let mut reference = Reference { position: [Lanes::zero(); 3], velocity: [Lanes::zero(); 3] };
@@ -322,7 +300,7 @@ fn adaptive(
             while slots.slots[lane].is_none() {
                 let Some((index, unit)) = waiting.next() else { break };
                 let unit = prepare(job, unit);
-                unit.write(&mut state, plan.layout, lane);
+                unit.write(&mut state, lane);
                 set_lane(job, &unit, lane, slots.mask(lane), &mut tolerance, &mut reference);
                 let mut slot =
                     Slot { unit, index, next_output: 0, steps: 0, rejected: 0, evaluations: 2, progress: 0 };
@@ -343,7 +321,7 @@ fn adaptive(
             if plan.layout == Layout::Batched {
                 // Masses differ from unit to unit, so the forces are set up again with the new lanes.
                 let evaluations = dynamics.evaluations;
-                dynamics = Prepared::dynamics(plan, &views, plan.layout, threads);
+                dynamics = unit::dynamics(plan, &views, threads);
                 dynamics.evaluations = evaluations;
             }
             engine.set_measure(tolerance, reference.clone());
@@ -441,8 +419,7 @@ fn set_lane(
 fn start_outputs(slots: &Slots<'_>, slot: &mut Slot, state: &State<Lanes>, lane: usize) -> bool {
     let job = slots.job;
     while slot.next_output < slots.outputs.len() && slots.outputs[slot.next_output] == 0.0 {
-        let _: bool =
-            slot.unit.record(job.writer, slot.next_output, state, job.plan.layout, lane, job.plan.units, 0.0);
+        let _: bool = slot.unit.record(job.writer, slot.next_output, state, lane, 0.0);
         slot.next_output += 1;
     }
     slot.next_output < slots.outputs.len()
@@ -484,8 +461,8 @@ fn interrupted(
     for (unit, report) in units.iter().zip(&mut reports) {
         if report.is_none() {
             let prepared = prepare(job, unit);
-            let mut state = blank(job, &prepared);
-            prepared.write(&mut state, job.plan.layout, 0);
+            let mut state = prepared.blank_state();
+            prepared.write(&mut state, 0);
             let begun = self::report(job, &prepared, &state, 0, job.scene.t0);
             *report = Some(Report { ending: Ending::Interrupted, ..begun });
         }
@@ -569,15 +546,7 @@ fn record(
             let source = if inside.lane(lane) { &*scratch } else { engine.next() };
             let elapsed = t - job.scene.t0;
             // A step is only accepted with a finite error, so its states are finite.
-            let _: bool = slot.unit.record(
-                job.writer,
-                slot.next_output,
-                source,
-                job.plan.layout,
-                lane,
-                job.plan.units,
-                elapsed,
-            );
+            let _: bool = slot.unit.record(job.writer, slot.next_output, source, lane, elapsed);
             slot.next_output += 1;
         }
     }
@@ -596,7 +565,7 @@ fn charge(slots: &mut Slots<'_>, lanes: Bits, evaluations: u64) {
 fn stuck(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize) -> Ending {
     let bodies = &unit.unit.bodies;
     let entry = |slot: usize| {
-        let entry = unit.read(slot, state, job.plan.layout, lane, job.plan.units, 0.0);
+        let entry = unit.read(slot, state, lane, 0.0);
         entry.position
     };
     let places: Vec<[f64; 3]> = (0..bodies.len()).map(entry).collect();

@@ -1,13 +1,13 @@
 //! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
 
 use super::frame::{Origin, Units};
+use super::layout::Layout;
 use super::request::{Checked, Request};
-use super::unit::{Layout, Unit};
+use super::unit::Unit;
 use super::{ForceSpec, Scene};
 use crate::error::Result;
 use crate::forces::gravity::RING_MAX;
 use crate::integrators::{Method, Scheme};
-use crate::numerics::lanes::WIDTH;
 use core::fmt;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -143,7 +143,7 @@ impl Plan {
             return (1, 1);
         }
         let units = self.unit_list().len();
-        let groups = if self.layout == Layout::Batched { units.div_ceil(WIDTH) } else { units };
+        let groups = units.div_ceil(self.layout.units());
         let pairs = self.pairs_per_evaluation();
         if groups == 1 && pairs >= PAIRS_FOR_THREADS {
             (1, threads)
