@@ -271,9 +271,9 @@ fn output_dict<'py>(
     let (totals, each) = (PyDict::new(py), PyDict::new(py));
     type Count = fn(&Outcome) -> u64;
     let counts: [(&str, Count); 3] = [
-        ("steps", |outcome| outcome.steps),
-        ("rejected", |outcome| outcome.rejected),
-        ("evaluations", |outcome| outcome.evaluations),
+        ("steps", |outcome| outcome.counts.steps),
+        ("rejected", |outcome| outcome.counts.rejected),
+        ("evaluations", |outcome| outcome.counts.evaluations),
     ];
     for (name, count) in counts {
         totals.set_item(name, outcomes.iter().map(count).sum::<u64>())?;

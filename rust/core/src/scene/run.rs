@@ -1,7 +1,7 @@
 //! From a scene and a request to columns: plan, do, derive.
 
 use super::columns::{Columns, Entry, Missing};
-use super::integrate::{self, Ending, Job, Report};
+use super::integrate::{self, Counts, Ending, Job, Report};
 use super::plan::{Plan, Solution};
 use super::request::Request;
 use super::{Scene, closed_form};
@@ -17,12 +17,8 @@ pub struct Outcome {
     pub ending: Ending,
     /// Output times recorded for all its particles.
     pub rows: usize,
-    /// Steps of all units.
-    pub steps: u64,
-    /// Rejected steps of all units.
-    pub rejected: u64,
-    /// Force evaluations of all units.
-    pub evaluations: u64,
+    /// What all units cost.
+    pub counts: Counts,
     /// The time reached.
     pub time: f64,
     /// Final positions.
@@ -186,9 +182,7 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
         .map(|copy| Outcome {
             ending: Ending::Finished,
             rows: request.times.len(),
-            steps: 0,
-            rejected: 0,
-            evaluations: 0,
+            counts: Counts::default(),
             time: request.times[request.times.len() - 1],
             position: scene.positions(copy).to_vec(),
             velocity: scene.velocities(copy).to_vec(),
@@ -201,9 +195,7 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
             outcome.time = report.time;
         }
         outcome.rows = outcome.rows.min(report.rows);
-        outcome.evaluations += report.evaluations;
-        outcome.steps += report.steps;
-        outcome.rejected += report.rejected;
+        outcome.counts += report.counts;
         for (index, slot) in report.unit.recorded.clone().enumerate() {
             let body = report.unit.bodies[slot];
             outcome.position[body] = report.position[index];
@@ -283,9 +275,7 @@ impl Outcome {
         Self {
             ending: Ending::Finished,
             rows: times,
-            steps: 0,
-            rejected: 0,
-            evaluations: 0,
+            counts: Counts::default(),
             time,
             position: entries.iter().map(|entry| entry.position).collect(),
             velocity: entries.iter().map(|entry| entry.velocity).collect(),
