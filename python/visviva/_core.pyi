@@ -1,48 +1,37 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
 from collections.abc import Callable
-from typing import Any
+from typing import Any, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
+class _Scene(TypedDict):
+    """One or more copies of a scene: an axis over the copies leads every array."""
+
+    mass: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    forces: list[dict[str, Any]]
+    t0: float
+
+class _Request(_Scene):
+    """A scene and what is asked of it."""
+
+    times: NDArray[np.float64]
+    end_only: bool
+    method: str
+    dt: float | None
+    rtol: float
+    atol: float | None
+    max_step: float | None
+    max_steps: int | None
+    record: list[str]
+
 def run(
-    *,
-    mass: NDArray[np.float64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    forces: list[dict[str, Any]],
-    t0: float,
-    times: NDArray[np.float64],
-    end_only: bool,
-    method: str,
-    dt: float | None,
-    rtol: float,
-    atol: float | None,
-    max_step: float | None,
-    max_steps: int | None,
-    record: list[str],
-    threads: int | None,
-    progress: Callable[[int, int], object] | None,
-    ensemble: bool,
+    asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
 ) -> dict[str, Any]: ...
-def plan(
-    *,
-    mass: NDArray[np.float64],
-    position: NDArray[np.float64],
-    velocity: NDArray[np.float64],
-    forces: list[dict[str, Any]],
-    t0: float,
-    times: NDArray[np.float64],
-    end_only: bool,
-    method: str,
-    dt: float | None,
-    rtol: float,
-    atol: float | None,
-    max_step: float | None,
-    max_steps: int | None,
-    record: list[str],
-) -> dict[str, Any]: ...
+def plan(asked: _Request) -> dict[str, Any]: ...
 def conserved(
     *,
     mass: NDArray[np.float64],

@@ -74,7 +74,13 @@ class EnsembleScene:
             array.flags.writeable = False
         self.scene = scene
         self.mass, self.position, self.velocity = full["mass"], full["position"], full["velocity"]
-        self._keywords: dict[str, Any] = {**scene._keywords, **full}
+        self._keywords: _core._Scene = {
+            "mass": self.mass,
+            "position": self.position,
+            "velocity": self.velocity,
+            "forces": scene._keywords["forces"],
+            "t0": scene.t0,
+        }
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -149,7 +155,7 @@ class EnsembleScene:
     ) -> Plan:
         """What `run` would do with the same arguments, without doing it."""
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(**request))
+        return Plan._from_core(_core.plan(request))
 
 
 class EnsembleTrajectory:

@@ -26,7 +26,7 @@ _Result = TypeVar("_Result")
 
 
 def keywords(
-    prepared: dict[str, Any],
+    prepared: _core._Scene,
     t: ArrayLike,
     method: str,
     dt: float | None,
@@ -36,8 +36,8 @@ def keywords(
     max_steps: int | None,
     record: Sequence[str],
     events: Sequence[object],
-) -> dict[str, Any]:
-    """Keywords of ``_core.run`` and ``_core.plan`` that both understand."""
+) -> _core._Request:
+    """What ``_core.run`` and ``_core.plan`` both take."""
     if events:
         raise InvalidInput("events", "events are not offered yet; leave events=() and look at the recorded columns")
     # An array or a sequence is output times; anything else must be one number, and `number` says so.
@@ -58,7 +58,7 @@ def keywords(
 
 def execute(
     scene: Any,
-    request: dict[str, Any],
+    request: _core._Request,
     threads: int | None,
     progress: Progress,
     *,
@@ -68,12 +68,12 @@ def execute(
     """Run the request and make its result, or raise the core's error with the result attached."""
     count = None if threads is None else _count("threads", threads)
     if progress is False:
-        result = _core.run(**request, threads=count, progress=None, ensemble=ensemble)
+        result = _core.run(request, threads=count, progress=None, ensemble=ensemble)
     else:
         from visviva._progress import callback
 
         with callback(progress) as report:
-            result = _core.run(**request, threads=count, progress=report, ensemble=ensemble)
+            result = _core.run(request, threads=count, progress=report, ensemble=ensemble)
     made = make(scene, result)
     error = result["error"]
     if error is not None:

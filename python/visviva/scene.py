@@ -60,7 +60,7 @@ class Scene:
     particles: Particles
     forces: tuple[Force, ...]
     t0: float
-    _keywords: dict[str, Any] = field(repr=False)
+    _keywords: _core._Scene = field(repr=False)
 
     def __init__(self, *parts: Particles | Force, t0: float = 0.0) -> None:
         particles = [part for part in parts if isinstance(part, Particles)]
@@ -79,7 +79,7 @@ class Scene:
         object.__setattr__(self, "particles", particles)
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "t0", t0)
-        prepared = {
+        prepared: _core._Scene = {
             "mass": particles.mass[None],
             "position": particles.position[None],
             "velocity": particles.velocity[None],
@@ -207,7 +207,7 @@ class Scene:
         ('leapfrog', 1, 15)
         """
         request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(**request))
+        return Plan._from_core(_core.plan(request))
 
     def ensemble(
         self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None

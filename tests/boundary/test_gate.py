@@ -18,7 +18,7 @@ PLAIN = {"info", "methods", "potentials", "_echo"}
 def pyfunctions() -> dict[str, str]:
     """Source of every function of the binding that Python can call, by name."""
     found = {}
-    for file in sorted(BINDING.glob("*.rs")):
+    for file in sorted(BINDING.rglob("*.rs")):
         for part in file.read_text(encoding="utf-8").split("#[pyfunction]")[1:]:
             # rustfmt closes a function with the first brace that begins a line.
             body = part[: part.index("\n}\n")]
@@ -37,7 +37,7 @@ def test_whatever_computes_goes_through_the_gate(name: str) -> None:
     assert re.search(r"\bcompute\(", pyfunctions()[name])
 
 
-@pytest.mark.parametrize("path", sorted(BINDING.glob("*.rs")), ids=lambda path: path.name)
+@pytest.mark.parametrize("path", sorted(BINDING.rglob("*.rs")), ids=lambda path: path.name)
 def test_only_the_gate_touches_the_gil(path: Path) -> None:
     source = path.read_text(encoding="utf-8")
     if path.name != "gate.rs":
@@ -52,8 +52,9 @@ def parameters(function: object) -> list[tuple[str, object, bool]]:
 
 def test_the_stub_says_what_the_module_has() -> None:
     source = "from __future__ import annotations\n" + STUB.read_text(encoding="utf-8")
-    stub: dict[str, object] = {}
+    stub: dict[str, object] = {"__name__": "stub"}
     exec(compile(source, STUB, "exec"), stub)
-    functions = {name: parameters(value) for name, value in stub.items() if inspect.isfunction(value)}
+    own = {name: value for name, value in stub.items() if inspect.isfunction(value) and value.__module__ == "stub"}
+    functions = {name: parameters(value) for name, value in own.items()}
     public = [name for name in pyfunctions() if name[0] != "_"]
     assert functions == {name: parameters(getattr(_core, name)) for name in public}

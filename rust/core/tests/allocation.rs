@@ -7,9 +7,8 @@ mod support;
 
 use core::cell::Cell;
 use std::alloc::{GlobalAlloc, Layout, System};
-use support::{Problem, Stepper, five_lanes, henon_heiles, three_bodies};
+use support::{Each, Problem, Stepper, five_lanes, henon_heiles, three_bodies};
 use visviva_core::integrators::Scheme;
-use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
 use visviva_core::numerics::element::Element;
 use visviva_core::numerics::lanes::Lanes;
 use visviva_core::numerics::real::Mask;
@@ -44,13 +43,6 @@ fn allocations(work: impl FnOnce()) -> u64 {
     ALLOCATIONS.get() - before
 }
 
-struct Each;
-impl<S: Element> Reduce<S> for Each {
-    fn largest(&self, value: S) -> S {
-        value
-    }
-}
-
 fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let Problem { state, mut dynamics, .. } = problem;
     let control = Control::default();
@@ -77,11 +69,7 @@ fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let mut counts = Vec::new();
     for method in METHODS {
         let Scheme::Embedded(embedded) = &method.scheme else { continue };
-        let rtol = S::splat(1e-9);
-        let tolerance = Tolerance { rtol, atol_q: rtol, atol_v: rtol };
-        let at = Reference { position: [S::zero(); 3], velocity: [S::zero(); 3] };
-        let mut engine = Adaptive::new(embedded, &state, tolerance, at, f64::INFINITY);
-        let mut clock = Clock::new(S::splat(1e3));
+        let (mut engine, mut clock) = support::adaptive(embedded, &state, 1e-9, 1e3);
         let all = S::Mask::splat(true);
         engine.start(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
         let count = allocations(|| {

@@ -63,8 +63,10 @@ const CONSTANTS: Columns<ConicConstants> = &[
     ("turning_angle", |found| found.turning_angle),
 ];
 
-fn vectors(values: &[f64]) -> Vec<Vector3<f64>> {
-    values.chunks_exact(3).map(Vector3::from_column_slice).collect()
+/// `count` vectors of an argument.
+fn vectors(name: &str, array: &Array<'_>, count: usize) -> PyResult<Vec<Vector3<f64>>> {
+    let (values, _) = copied(name, array, [Some(count), Some(3)])?;
+    Ok(values.chunks_exact(3).map(Vector3::from_column_slice).collect())
 }
 
 /// One result per orbit; a refusal says which orbit it is about.
@@ -83,12 +85,18 @@ fn each<T>(count: usize, ticker: &mut Ticker<'_>, mut one: impl FnMut(usize) -> 
         .collect()
 }
 
-fn numbers<T>(dict: &Bound<'_, PyDict>, columns: Columns<T>, found: &[T]) -> PyResult<()> {
-    for (name, column) in columns {
-        let values: Vec<f64> = found.iter().map(column).collect();
-        dict.set_item(name, moved(dict.py(), values, &[found.len()])?)?;
+fn column(py: Python<'_>, values: Vec<f64>) -> PyResult<Column<'_>> {
+    let length = values.len();
+    moved(py, values, &[length])
+}
+
+/// The results by name, a number of each orbit.
+fn table<'py, T>(py: Python<'py>, columns: Columns<T>, found: &[T]) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (name, of) in columns {
+        dict.set_item(name, column(py, found.iter().map(of).collect())?)?;
     }
-    Ok(())
+    Ok(dict)
 }
 
 /// `count` numbers of each of several arguments.
@@ -112,16 +120,15 @@ pub(crate) fn orbit_elements<'py>(
     velocity: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (count, [mu]) = together([("mu", &mu)])?;
-    let position = vectors(&copied("position", &position, [Some(count), Some(3)])?.0);
-    let velocity = vectors(&copied("velocity", &velocity, [Some(count), Some(3)])?.0);
+    let position = vectors("position", &position, count)?;
+    let velocity = vectors("velocity", &velocity, count)?;
     let found = compute(py, 0, None, |ticker| {
         each(count, ticker, |i| Elements::from_state(mu[i], position[i], velocity[i]))
     })?
     .whole(py)?;
-    let dict = PyDict::new(py);
-    numbers(&dict, ELEMENTS, &found)?;
-    for (name, column) in ELEMENT_VECTORS {
-        let values = found.iter().flat_map(|elements| <[f64; 3]>::from(column(elements))).collect();
+    let dict = table(py, ELEMENTS, &found)?;
+    for (name, of) in ELEMENT_VECTORS {
+        let values = found.iter().flat_map(|elements| <[f64; 3]>::from(of(elements))).collect();
         dict.set_item(name, moved(py, values, &[count, 3])?)?;
     }
     Ok(dict)
@@ -168,8 +175,8 @@ pub(crate) fn orbit_propagate<'py>(
     t: Array<'py>,
 ) -> PyResult<(Column<'py>, Column<'py>)> {
     let (count, [mu]) = together([("mu", &mu)])?;
-    let r = vectors(&copied("position", &position, [Some(count), Some(3)])?.0);
-    let v = vectors(&copied("velocity", &velocity, [Some(count), Some(3)])?.0);
+    let r = vectors("position", &position, count)?;
+    let v = vectors("velocity", &velocity, count)?;
     let (times, [length]) = copied("t", &t, [None])?;
     let (position, velocity) = compute(py, 0, None, |ticker| {
         let orbits = each(count, ticker, |i| KeplerOrbit::new(mu[i], r[i], v[i]))?;
@@ -203,7 +210,7 @@ pub(crate) fn orbit_anomaly<'py>(
     let values =
         compute(py, 0, None, |ticker| each(count, ticker, |i| convert(name, anomaly[i], e[i], repulsive)))?
             .whole(py)?;
-    moved(py, values, &[count])
+    column(py, values)
 }
 
 /// 2π √(a³/μ).
@@ -216,7 +223,7 @@ pub(crate) fn orbit_period<'py>(
     let (count, [mu, a]) = together([("mu", &mu), ("semi_major_axis", &semi_major_axis)])?;
     let values =
         compute(py, 0, None, |ticker| each(count, ticker, |i| constants::period(mu[i], a[i])))?.whole(py)?;
-    moved(py, values, &[count])
+    column(py, values)
 }
 
 /// The time of a fall from rest.
@@ -231,7 +238,7 @@ pub(crate) fn orbit_free_fall_time<'py>(
     let values =
         compute(py, 0, None, |ticker| each(count, ticker, |i| free_fall_time(mu[i], start[i], end[i])))?
             .whole(py)?;
-    moved(py, values, &[count])
+    column(py, values)
 }
 
 /// The constants of each conic from a state, by name.
@@ -244,15 +251,13 @@ pub(crate) fn conic_from_state<'py>(
     velocity: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (count, [mass, strength]) = together([("mass", &mass), ("strength", &strength)])?;
-    let r = vectors(&copied("position", &position, [Some(count), Some(3)])?.0);
-    let v = vectors(&copied("velocity", &velocity, [Some(count), Some(3)])?.0);
+    let r = vectors("position", &position, count)?;
+    let v = vectors("velocity", &velocity, count)?;
     let found = compute(py, 0, None, |ticker| {
         each(count, ticker, |i| ConicConstants::from_state(mass[i], strength[i], r[i], v[i]))
     })?
     .whole(py)?;
-    let dict = PyDict::new(py);
-    numbers(&dict, CONSTANTS, &found)?;
-    Ok(dict)
+    table(py, CONSTANTS, &found)
 }
 
 /// The constants of each conic from angular momentum and energy, by name.
@@ -274,7 +279,5 @@ pub(crate) fn conic_from_constants<'py>(
         each(count, ticker, |i| ConicConstants::from_constants(mass[i], strength[i], l[i], energy[i]))
     })?
     .whole(py)?;
-    let dict = PyDict::new(py);
-    numbers(&dict, CONSTANTS, &found)?;
-    Ok(dict)
+    table(py, CONSTANTS, &found)
 }

@@ -1,12 +1,15 @@
 //! What the registry offers: methods and potentials, as Python's tables and classes are made from them.
 
 use crate::arrays::{copied, moved};
+use crate::errors::raised;
 use crate::gate::compute;
-use crate::scene::potential as build;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::Arc;
+use visviva_core::potentials::Potential;
 use visviva_core::registry;
+use visviva_core::scene::request::unknown;
 
 /// What every integration method declares about itself.
 #[pyfunction]
@@ -47,6 +50,18 @@ pub(crate) fn potentials(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         Ok(dict)
     };
     registry::POTENTIALS.iter().map(row).collect()
+}
+
+/// The potential of a registry name.
+///
+/// # Errors
+/// `InvalidInput` for an unknown name or parameters that cannot be.
+pub(crate) fn build(py: Python<'_>, name: &str, parameters: &[f64]) -> PyResult<Arc<dyn Potential>> {
+    let names = registry::POTENTIALS.iter().map(|declaration| declaration.name);
+    registry::potential(name)
+        .ok_or_else(|| unknown("potential", name, names))
+        .and_then(|declaration| declaration.build(parameters))
+        .map_err(|error| raised(py, error))
 }
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;

@@ -3,10 +3,12 @@
 //! [`Scene`] is plain data. [`plan`](plan::plan) is a pure function from (scene, request) to a
 //! [`Plan`](plan::Plan), and the only place where work is skipped; [`run`](run::run) does what it says.
 
+pub mod acceleration;
 pub mod closed_form;
 pub mod columns;
 pub mod frame;
 pub mod integrate;
+pub mod layout;
 pub mod plan;
 pub mod request;
 pub mod room;
@@ -60,7 +62,7 @@ pub struct Scene {
     pub t0: f64,
 }
 
-/// The squared distance of two points, scaled so that it neither overflows nor vanishes for finite ones.
+/// The distance of two points, scaled so that it neither overflows nor vanishes for finite ones.
 pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let d: [f64; 3] = core::array::from_fn(|c| (a[c] - b[c]).abs());
     let largest = d.into_iter().fold(0.0, f64::max);

@@ -1,14 +1,17 @@
 //! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
 
+mod explain;
+
+pub use explain::Row;
+
 use super::frame::{Origin, Units};
+use super::layout::Layout;
 use super::request::{Checked, Request};
-use super::unit::{Layout, Unit};
+use super::unit::Unit;
 use super::{ForceSpec, Scene};
 use crate::error::Result;
 use crate::forces::gravity::RING_MAX;
-use crate::integrators::{Method, Scheme};
-use crate::numerics::lanes::WIDTH;
-use core::fmt;
+use crate::integrators::Method;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
@@ -37,17 +40,6 @@ pub enum Solution {
     },
     /// Step by step.
     Integration,
-}
-
-/// A line of the plan.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Row {
-    /// What it is about.
-    pub what: String,
-    /// What will be done.
-    pub decision: String,
-    /// Why.
-    pub reason: String,
 }
 
 /// What will be done.
@@ -143,7 +135,7 @@ impl Plan {
             return (1, 1);
         }
         let units = self.unit_list().len();
-        let groups = if self.layout == Layout::Batched { units.div_ceil(WIDTH) } else { units };
+        let groups = units.div_ceil(self.layout.units());
         let pairs = self.pairs_per_evaluation();
         if groups == 1 && pairs >= PAIRS_FOR_THREADS {
             (1, threads)
@@ -192,137 +184,6 @@ impl Plan {
     /// Whether a column that is computed from the recorded states is asked for.
     pub fn derived(&self) -> bool {
         self.record.iter().any(|name| name != "position" && name != "velocity")
-    }
-
-    /// The plan, line by line.
-    pub fn rows(&self) -> Vec<Row> {
-        let mut rows = Vec::new();
-        let mut row = |what: &str, decision: String, reason: String| {
-            rows.push(Row { what: what.to_owned(), decision, reason });
-        };
-        let (decision, reason) = self.describe_solution();
-        row("solution", decision, reason);
-        if self.solution == Solution::Integration {
-            let steps = match self.dt {
-                Some(dt) => format!("fixed step {dt}"),
-                None => "steps chosen by the error estimate".to_owned(),
-            };
-            row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
-            row(
-                "force evaluations per step",
-                self.method.stages.to_string(),
-                "the method's stages".to_owned(),
-            );
-            if self.gravity.is_some() {
-                row(
-                    "pairs per evaluation",
-                    self.pairs_per_evaluation().to_string(),
-                    format!("{} massive, {} massless bodies", self.active.len(), self.passive.len()),
-                );
-            }
-            let reason = match (self.layout, self.gravity.is_some()) {
-                (Layout::Packed, _) => "one system at a time",
-                (Layout::Batched, true) => "small systems, each with its own steps",
-                (Layout::Batched, false) => "they do not interact: each has its own steps",
-            };
-            row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
-            let (over, inside) = self.threads;
-            row(
-                "threads",
-                over.max(inside).to_string(),
-                if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned(),
-            );
-        }
-        rows
-    }
-
-    /// What the SIMD lanes are.
-    pub fn lanes(&self) -> &'static str {
-        match (self.solution == Solution::Integration, self.layout, self.gravity.is_some()) {
-            (false, ..) => "none",
-            (_, Layout::Packed, _) => "over bodies",
-            (_, Layout::Batched, true) => "over copies",
-            (_, Layout::Batched, false) => "over particles",
-        }
-    }
-
-    /// The method that runs; a closed form needs none.
-    pub fn method_name(&self) -> &'static str {
-        if self.solution == Solution::Integration { self.method.name } else { "closed form" }
-    }
-
-    /// What will not be done, and why.
-    pub fn skipped(&self) -> Vec<(String, String)> {
-        let mut skipped = Vec::new();
-        let mut skip = |what: &str, why: String| skipped.push((what.to_owned(), why));
-        if self.solution != Solution::Integration {
-            skip("stepping", "the motion has a closed form".to_owned());
-        } else {
-            if self.planar {
-                skip("the z components", "z and v_z are zero and no force acts along z".to_owned());
-            }
-            if matches!(self.gravity, Some((_, softening)) if softening == 0.0) {
-                skip("softening terms", "softening is 0".to_owned());
-            }
-            if !self.passive.is_empty() && self.gravity.is_some() {
-                let massless = self.passive.len() as u64;
-                skip(
-                    "pairs of massless bodies",
-                    format!("{} pairs exert nothing", massless * (massless - 1) / 2),
-                );
-            }
-            if self.gravity.is_none() && self.particles > 1 {
-                skip("pairs", "the particles do not interact".to_owned());
-            }
-            if self.method.adaptive() && self.outputs_between == 0 {
-                skip("dense output", "no time before the end is asked for".to_owned());
-            }
-            skip("event location", "no events are asked for".to_owned());
-        }
-        for column in super::request::COLUMNS {
-            if !self.record.iter().any(|name| name == column) {
-                skip(&format!("the {column} column"), "not asked for".to_owned());
-            }
-        }
-        skipped
-    }
-
-    fn describe_solution(&self) -> (String, String) {
-        let (decision, reason) = match &self.solution {
-            Solution::Free => ("closed form: straight lines", "no force acts"),
-            Solution::Uniform(_) => ("closed form: parabolas", "the only force is a uniform field"),
-            Solution::TwoBody => {
-                ("closed form: Kepler's two-body problem", "two bodies and unsoftened gravity")
-            }
-            Solution::OneMassive(_) => {
-                ("closed form: Kepler orbits", "one massive body, unsoftened gravity, the rest massless")
-            }
-            Solution::FixedCenter { .. } => {
-                ("closed form: Kepler orbits", "the only force is an inverse-distance centre")
-            }
-            Solution::Integration => (
-                "integration",
-                match self.method.scheme {
-                    Scheme::Embedded(_) => "no closed form applies, or a method was named",
-                    _ => "the method was named",
-                },
-            ),
-        };
-        (decision.to_owned(), reason.to_owned())
-    }
-}
-
-impl fmt::Display for Plan {
-    /// A table of what will be done, then a list of what is skipped.
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let rows = self.rows();
-        let width = rows.iter().map(|row| row.what.len()).max().unwrap_or_default();
-        for Row { what, decision, reason } in &rows {
-            writeln!(formatter, "{what:width$}  {decision}  ({reason})")?;
-        }
-        let skipped: Vec<String> =
-            self.skipped().into_iter().map(|(what, why)| format!("  {what}: {why}")).collect();
-        write!(formatter, "skipped\n{}", skipped.join("\n"))
     }
 }
 

@@ -1,15 +1,20 @@
 //! From a scene and a request to columns: plan, do, derive.
 
+mod derived;
+mod patterns;
+
+pub use derived::Derived;
+
 use super::columns::{Columns, Entry, Missing};
-use super::integrate::{self, Ending, Job, Report};
+use super::integrate::{self, Counts, Ending, Job, Report};
 use super::plan::{Plan, Solution};
 use super::request::Request;
 use super::room::give_back;
 use super::{Scene, closed_form};
-use crate::conservation::{self, Body};
 use crate::error::Result;
-use crate::numerics::double_double::DoubleDouble;
-use crate::parallel::{Ticker, for_chunks};
+use crate::parallel::Ticker;
+use derived::derive;
+use patterns::run_by_pattern;
 
 /// What became of a copy of the scene.
 #[derive(Clone, Debug)]
@@ -18,29 +23,14 @@ pub struct Outcome {
     pub ending: Ending,
     /// Output times recorded for all its particles.
     pub rows: usize,
-    /// Steps of all units.
-    pub steps: u64,
-    /// Rejected steps of all units.
-    pub rejected: u64,
-    /// Force evaluations of all units.
-    pub evaluations: u64,
+    /// What all units cost.
+    pub counts: Counts,
     /// The time reached.
     pub time: f64,
     /// Final positions.
     pub position: Vec<[f64; 3]>,
     /// Final velocities.
     pub velocity: Vec<[f64; 3]>,
-}
-
-/// A derived column: its name and its numbers, `copies × times × width`.
-#[derive(Clone, Debug)]
-pub struct Derived {
-    /// Its name.
-    pub name: String,
-    /// Numbers per time.
-    pub width: usize,
-    /// The numbers; NaN where nothing was recorded.
-    pub values: Vec<f64>,
 }
 
 /// Everything a run gives.
@@ -120,76 +110,13 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     Ok(Output { plan, columns, derived, outcomes })
 }
 
-/// Copies with different sets of massless bodies are run apart, so that each has the bits it has alone.
-fn run_by_pattern(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Option<Output>> {
-    let pattern = |copy: usize| -> Vec<bool> { scene.masses(copy).iter().map(|&m| m > 0.0).collect() };
-    let first = pattern(0);
-    if (1..scene.copies).all(|copy| pattern(copy) == first) {
-        return Ok(None);
-    }
-    let mut groups: std::collections::BTreeMap<Vec<bool>, Vec<usize>> = std::collections::BTreeMap::new();
-    for copy in 0..scene.copies {
-        groups.entry(pattern(copy)).or_default().push(copy);
-    }
-    let times = request.times.len();
-    let mut whole: Option<Output> = None;
-    for members in groups.values() {
-        let pick = |values: &[[f64; 3]]| {
-            let of = |&copy: &usize| values[copy * scene.particles..(copy + 1) * scene.particles].to_vec();
-            members.iter().flat_map(of).collect()
-        };
-        let part = Scene {
-            copies: members.len(),
-            mass: members.iter().flat_map(|&copy| scene.masses(copy).to_vec()).collect(),
-            position: pick(&scene.position),
-            velocity: pick(&scene.velocity),
-            ..scene.clone()
-        };
-        let part = run(&part, request, ticker)?;
-        let whole = whole.get_or_insert_with(|| Output {
-            plan: part.plan.clone(),
-            columns: Columns {
-                position: vec![f64::NAN; part.columns.position.len() / members.len() * scene.copies],
-                velocity: vec![f64::NAN; part.columns.velocity.len() / members.len() * scene.copies],
-                times,
-                particles: scene.particles,
-                ..Columns::default()
-            },
-            derived: part
-                .derived
-                .iter()
-                .map(|column| Derived {
-                    values: vec![f64::NAN; column.values.len() / members.len() * scene.copies],
-                    ..column.clone()
-                })
-                .collect(),
-            outcomes: vec![part.outcomes[0].clone(); scene.copies],
-        });
-        for (index, &copy) in members.iter().enumerate() {
-            let scatter = |into: &mut Vec<f64>, from: &Vec<f64>| {
-                let size = from.len() / members.len();
-                into[copy * size..(copy + 1) * size].copy_from_slice(&from[index * size..(index + 1) * size]);
-            };
-            scatter(&mut whole.columns.position, &part.columns.position);
-            scatter(&mut whole.columns.velocity, &part.columns.velocity);
-            for (into, from) in whole.derived.iter_mut().zip(&part.derived) {
-                scatter(&mut into.values, &from.values);
-            }
-            whole.outcomes[copy] = part.outcomes[index].clone();
-        }
-    }
-    Ok(whole)
-}
-
 /// Puts the units' reports together, copy by copy.
 fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> {
     let mut outcomes: Vec<Outcome> = (0..scene.copies)
         .map(|copy| Outcome {
             ending: Ending::Finished,
             rows: request.times.len(),
-            steps: 0,
-            rejected: 0,
-            evaluations: 0,
+            counts: Counts::default(),
             time: request.times[request.times.len() - 1],
             position: scene.positions(copy).to_vec(),
             velocity: scene.velocities(copy).to_vec(),
@@ -202,9 +129,7 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
             outcome.time = report.time;
         }
         outcome.rows = outcome.rows.min(report.rows);
-        outcome.evaluations += report.evaluations;
-        outcome.steps += report.steps;
-        outcome.rejected += report.rejected;
+        outcome.counts += report.counts;
         for (index, slot) in report.unit.recorded.clone().enumerate() {
             let body = report.unit.bodies[slot];
             outcome.position[body] = report.position[index];
@@ -214,79 +139,13 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
     outcomes
 }
 
-/// The derived columns, from the recorded states and what they leave out.
-fn derive(
-    scene: &Scene,
-    request: &Request,
-    plan: &Plan,
-    columns: &Columns,
-    outcomes: &[Outcome],
-    ticker: &mut Ticker<'_>,
-) -> Result<Vec<Derived>> {
-    let names: Vec<&String> =
-        request.record.iter().filter(|name| *name != "position" && *name != "velocity").collect();
-    let times = request.times.len();
-    let widths: Vec<usize> =
-        names.iter().map(|name| if conservation::SCALARS.contains(&name.as_str()) { 1 } else { 3 }).collect();
-    if names.is_empty() {
-        return Ok(Vec::new());
-    }
-    let threads = plan.threads.0.max(plan.threads.1);
-    // What was computed before an interrupt is not lost: an interrupted run is still derived from, and an
-    // interrupt that comes now leaves the rest of a column as NaN.
-    let interrupted = outcomes.iter().any(|outcome| outcome.ending == Ending::Interrupted);
-    let per_copy = for_chunks(threads, scene.copies, ticker, |copy, ticker| {
-        let mut values: Vec<Vec<f64>> = widths.iter().map(|width| vec![f64::NAN; width * times]).collect();
-        for time in 0..outcomes[copy].rows {
-            if ticker.tick().is_err() && !interrupted {
-                break;
-            }
-            let bodies = recorded_bodies(scene, columns, copy, time);
-            for (index, name) in names.iter().enumerate() {
-                let numbers = conservation::column(name, &scene.forces, &bodies, [0.0; 3])?;
-                values[index][time * widths[index]..(time + 1) * widths[index]].copy_from_slice(&numbers);
-            }
-        }
-        Ok(values)
-    })?;
-    let mut derived: Vec<Derived> = names
-        .iter()
-        .zip(&widths)
-        .map(|(name, &width)| Derived { name: (*name).clone(), width, values: Vec::new() })
-        .collect();
-    for values in per_copy {
-        for (column, values) in derived.iter_mut().zip(values) {
-            column.values.extend(values);
-        }
-    }
-    Ok(derived)
-}
-
-fn recorded_bodies(scene: &Scene, columns: &Columns, copy: usize, time: usize) -> Vec<Body> {
-    let at = |particle: usize| ((copy * columns.times + time) * columns.particles + particle) * 3;
-    (0..scene.particles)
-        .map(|particle| {
-            let exact = |values: &[f64], rest: &[f64]| {
-                core::array::from_fn(|c| DoubleDouble::sum(values[at(particle) + c], rest[at(particle) + c]))
-            };
-            Body {
-                mass: scene.masses(copy)[particle],
-                position: exact(&columns.position, &columns.position_rest),
-                velocity: exact(&columns.velocity, &columns.velocity_rest),
-            }
-        })
-        .collect()
-}
-
 impl Outcome {
     /// Of a closed form: it cannot fail.
     pub(super) fn closed_form(times: usize, time: f64, entries: &[Entry]) -> Self {
         Self {
             ending: Ending::Finished,
             rows: times,
-            steps: 0,
-            rejected: 0,
-            evaluations: 0,
+            counts: Counts::default(),
             time,
             position: entries.iter().map(|entry| entry.position).collect(),
             velocity: entries.iter().map(|entry| entry.velocity).collect(),

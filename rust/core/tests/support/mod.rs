@@ -4,10 +4,11 @@
 use visviva_core::Result;
 use visviva_core::forces::gravity::{FewBodies, Ring};
 use visviva_core::forces::{Dynamics, Force, Phase};
+use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
 use visviva_core::integrators::fixed::FixedStep;
 use visviva_core::integrators::runge_kutta::RungeKuttaStep;
 use visviva_core::integrators::state::State;
-use visviva_core::integrators::{Method, Scheme};
+use visviva_core::integrators::{Embedded, Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::{Element, Shape};
 use visviva_core::numerics::lanes::Lanes;
@@ -117,6 +118,29 @@ impl<S: Element> Stepper<S> {
             Self::Tableau(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
         }
     }
+}
+
+/// Each lane is a trajectory of its own.
+pub struct Each;
+
+impl<S: Element> Reduce<S> for Each {
+    fn largest(&self, value: S) -> S {
+        value
+    }
+}
+
+/// A method with step control and its clock, for a run from `state` to `end`; errors are measured from zero,
+/// against `rtol` both relative and absolute.
+pub fn adaptive<S: Element>(
+    method: &Embedded,
+    state: &State<S>,
+    rtol: f64,
+    end: f64,
+) -> (Adaptive<S>, Clock<S>) {
+    let rtol = S::splat(rtol);
+    let tolerance = Tolerance { rtol, atol_q: rtol, atol_v: rtol };
+    let zero = Reference { position: [S::zero(); 3], velocity: [S::zero(); 3] };
+    (Adaptive::new(method, state, tolerance, zero, f64::INFINITY), Clock::new(S::splat(end)))
 }
 
 /// Takes `steps` steps of `h`.

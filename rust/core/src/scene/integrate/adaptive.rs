@@ -1,0 +1,249 @@
+//! Steps that each unit chooses: eight units in the lanes, each at its own pace.
+//!
+//! The one idea: when a unit ends, the next that waits takes its lane, so lanes seldom run dry. Packed,
+//! there is one unit at a time, in all lanes.
+
+mod measure;
+mod outputs;
+mod stuck;
+
+use super::super::layout::Layout;
+use super::super::unit::{self, Prepared, Unit};
+use super::report::{Counts, Ending, Report};
+use super::{Job, Result};
+use crate::forces::Dynamics;
+use crate::integrators::Embedded;
+use crate::integrators::adaptive::{Adaptive, Clock, Outcome};
+use crate::integrators::state::State;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::power_of_two::scale;
+use crate::numerics::real::{Mask, Real};
+use crate::parallel::Ticker;
+use core::iter::Enumerate;
+use core::slice;
+use measure::Measure;
+
+/// Units of progress of a unit: thousandths of its time.
+pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
+
+/// Runs the units; one that is stopped reports how far it came.
+pub(super) fn run(
+    job: &Job<'_>,
+    method: &Embedded,
+    units: &[Unit],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Vec<Report> {
+    let mut run = Run::new(job, method, units, threads);
+    loop {
+        let fresh = run.take_up();
+        let running = run.running();
+        if !running.any() || run.advance(fresh, running, ticker).is_err() {
+            return run.into_reports();
+        }
+    }
+}
+
+/// A unit in its lane (in all lanes, if packed).
+struct Slot {
+    unit: Prepared,
+    /// Its place among the units of the run.
+    index: usize,
+    next_output: usize,
+    counts: Counts,
+    /// How much of it was counted as progress.
+    progress: u64,
+}
+
+/// Units on their way through the lanes.
+struct Run<'a> {
+    job: &'a Job<'a>,
+    units: &'a [Unit],
+    threads: usize,
+    waiting: Enumerate<slice::Iter<'a, Unit>>,
+    slots: [Option<Slot>; WIDTH],
+    reports: Vec<Option<Report>>,
+    /// Output times as elapsed time in the plan's units.
+    outputs: Vec<f64>,
+    /// The first unit stands in for one in idle lanes.
+    first: Prepared,
+    state: State<Lanes>,
+    /// A state between two steps.
+    between: State<Lanes>,
+    dynamics: Dynamics<Lanes>,
+    measure: Measure,
+    clock: Clock<Lanes>,
+    engine: Adaptive<Lanes>,
+    /// Force evaluations of a step that is rejected; of one that is kept, one more.
+    evaluations: u64,
+}
+
+impl<'a> Run<'a> {
+    fn new(job: &'a Job<'a>, method: &Embedded, units: &'a [Unit], threads: usize) -> Self {
+        let plan = job.plan;
+        let elapsed = |&t: &f64| scale(t - job.scene.t0, -plan.units.time);
+        let outputs: Vec<f64> = job.times.iter().map(elapsed).collect();
+        let first = job.prepare(&units[0]);
+        let mut state = first.blank_state();
+        for lane in 0..plan.layout.units() {
+            first.write(&mut state, lane);
+        }
+        let measure = Measure::new(job.rtol);
+        let (tolerance, reference) = measure.parts();
+        let max_step = scale(job.max_step, -plan.units.time);
+        Self {
+            job,
+            units,
+            threads,
+            waiting: units.iter().enumerate(),
+            slots: [const { None }; WIDTH],
+            reports: units.iter().map(|_| None).collect(),
+            clock: Clock::new(Lanes::splat(outputs[outputs.len() - 1])),
+            engine: Adaptive::new(method, &state, tolerance, reference, max_step),
+            dynamics: unit::dynamics(plan, &[&first], threads),
+            between: state.clone(),
+            evaluations: u64::from(method.tableau.b.len() as u32) - 1,
+            outputs,
+            first,
+            state,
+            measure,
+        }
+    }
+
+    /// The end as elapsed time in the plan's units.
+    fn end(&self) -> f64 {
+        self.outputs[self.outputs.len() - 1]
+    }
+
+    /// The lanes with a unit in them.
+    fn running(&self) -> Bits {
+        let lanes = self.slots.iter().enumerate().filter(|(_, slot)| slot.is_some());
+        lanes.fold(Bits(0), |mask, (lane, _)| mask.or(self.job.plan.layout.mask(lane)))
+    }
+
+    /// Gives the free lanes to units that wait; which lanes were given.
+    fn take_up(&mut self) -> Bits {
+        let mut fresh = Bits(0);
+        for lane in 0..self.job.plan.layout.units() {
+            while self.slots[lane].is_none() {
+                let Some((index, unit)) = self.waiting.next() else { break };
+                let unit = self.job.prepare(unit);
+                let mask = self.job.plan.layout.mask(lane);
+                unit.write(&mut self.state, lane);
+                self.measure.set(self.job, &unit, mask);
+                let mut slot = Slot {
+                    unit,
+                    index,
+                    next_output: 0,
+                    // The start of a unit costs two.
+                    counts: Counts { evaluations: 2, ..Counts::default() },
+                    progress: 0,
+                };
+                self.record_start(&mut slot, lane);
+                if slot.next_output < self.outputs.len() {
+                    self.slots[lane] = Some(slot);
+                    fresh = fresh.or(mask);
+                } else {
+                    self.finish(&slot, lane, self.job.scene.t0, Ending::Finished);
+                }
+            }
+        }
+        fresh
+    }
+
+    /// Starts the fresh lanes and takes a step in all that run.
+    ///
+    /// # Errors
+    /// When the caller asks to stop; the step is then not kept.
+    fn advance(&mut self, fresh: Bits, running: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
+        if fresh.any() {
+            self.start(fresh, ticker)?;
+        }
+        let layout = &self.job.plan.layout;
+        let Self { engine, state, clock, dynamics, .. } = self;
+        let outcome = engine.step(running, state, clock, dynamics, layout, ticker)?;
+        self.record(&outcome, ticker)?;
+        self.engine.commit(outcome.accepted, &mut self.state);
+        for lane in 0..layout.units() {
+            self.settle(lane, &outcome, ticker);
+        }
+        ticker.tick()
+    }
+
+    fn start(&mut self, fresh: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
+        let plan = self.job.plan;
+        if plan.layout == Layout::Batched {
+            // Masses differ from unit to unit, so the forces are set up again with the new lanes.
+            let slots = self.slots.iter();
+            let units: Vec<&Prepared> =
+                slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
+            self.dynamics = unit::dynamics(plan, &units, self.threads);
+        }
+        let (tolerance, reference) = self.measure.parts();
+        self.engine.set_measure(tolerance, reference);
+        self.clock.restart(fresh, Lanes::splat(self.end()));
+        let Self { engine, state, clock, dynamics, .. } = self;
+        engine.start(fresh, state, clock, dynamics, &plan.layout, ticker)
+    }
+
+    /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
+    fn settle(&mut self, lane: usize, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) {
+        let end = self.end();
+        let Some(slot) = self.slots[lane].as_mut() else { return };
+        let elapsed = self.clock.elapsed.0[lane];
+        // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
+        // taken when it is kept.
+        slot.counts.evaluations += self.evaluations;
+        if outcome.accepted.lane(lane) {
+            slot.counts.steps += 1;
+            slot.counts.evaluations += 1;
+            let done = (elapsed / end * PROGRESS_PER_UNIT as f64) as u64;
+            ticker.advance(done - slot.progress);
+            slot.progress = done;
+        } else {
+            slot.counts.rejected += 1;
+        }
+        let ending = if outcome.finished.lane(lane) {
+            Ending::Finished
+        } else if outcome.stuck.lane(lane) {
+            stuck::why(self.job, &slot.unit, &self.state, lane)
+        } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
+            Ending::TooManySteps
+        } else {
+            return;
+        };
+        let time = if ending == Ending::Finished { self.job.end() } else { self.time(lane) };
+        if let Some(slot) = self.slots[lane].take() {
+            self.finish(&slot, lane, time, ending);
+        }
+    }
+
+    /// The time of the unit in a lane.
+    fn time(&self, lane: usize) -> f64 {
+        self.job.scene.t0 + scale(self.clock.elapsed.0[lane], self.job.plan.units.time)
+    }
+
+    fn finish(&mut self, slot: &Slot, lane: usize, time: f64, ending: Ending) {
+        let (rows, counts) = (slot.next_output, slot.counts);
+        let report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
+        self.reports[slot.index] = Some(report);
+    }
+
+    /// The reports; a unit that has not ended was interrupted, on its way or before it began.
+    fn into_reports(mut self) -> Vec<Report> {
+        for lane in 0..WIDTH {
+            if let Some(slot) = self.slots[lane].take() {
+                self.finish(&slot, lane, self.time(lane), Ending::Interrupted);
+            }
+        }
+        let not_begun = |unit| {
+            let prepared = self.job.prepare(unit);
+            let mut state = prepared.blank_state();
+            prepared.write(&mut state, 0);
+            let t0 = self.job.scene.t0;
+            self.job.report(&prepared, &state, 0, t0, Ending::Interrupted, 0, Counts::default())
+        };
+        let reports = self.units.iter().zip(self.reports);
+        reports.map(|(unit, report)| report.unwrap_or_else(|| not_begun(unit))).collect()
+    }
+}

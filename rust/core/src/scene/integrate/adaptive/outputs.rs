@@ -1,0 +1,106 @@
+//! Outputs of an adaptive run: those that a step has passed are read off it before it is committed.
+//!
+//! Each lane has its own next output, so the outputs of a step are taken in rounds: one output per lane in
+//! each, at the fraction of the step where that lane has it.
+
+use super::{Run, Slot};
+use crate::error::Result;
+use crate::integrators::adaptive::Outcome;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
+use crate::parallel::Ticker;
+
+/// The next outputs that a step has passed.
+struct Round {
+    /// The lanes that have one.
+    due: Bits,
+    /// Those of them that have it before the end of the step.
+    inside: Bits,
+    /// Where, as a fraction of the step.
+    theta: Lanes,
+}
+
+impl Run<'_> {
+    /// Records the outputs at the start of a unit.
+    pub(super) fn record_start(&self, slot: &mut Slot, lane: usize) {
+        while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
+            let _: bool = slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0);
+            slot.next_output += 1;
+        }
+    }
+
+    /// Records the outputs that the step has passed, before it is committed.
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    pub(super) fn record(&mut self, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
+        let mut ready = false;
+        let mut charged = Bits(0);
+        loop {
+            let round = self.round(outcome);
+            if !round.due.any() {
+                return Ok(());
+            }
+            if round.inside.any() {
+                let Self { engine, state, between, dynamics, .. } = self;
+                if !ready {
+                    engine.prepare_dense(state, outcome.h, dynamics, ticker)?;
+                    ready = true;
+                }
+                engine.interpolate(state, outcome.h, round.theta, between);
+                self.charge(round.inside.and(charged.not()));
+                charged = charged.or(round.inside);
+            }
+            self.write(&round);
+        }
+    }
+
+    /// The next output of each lane that lies inside the step.
+    fn round(&self, outcome: &Outcome<Lanes>) -> Round {
+        let direction = self.job.plan.direction;
+        let mut round = Round { due: Bits(0), inside: Bits(0), theta: Lanes::one() };
+        for lane in 0..WIDTH {
+            let Some(slot) = self.slots[lane].as_ref() else { continue };
+            if !outcome.accepted.lane(lane) || slot.next_output == self.outputs.len() {
+                continue;
+            }
+            let output = self.outputs[slot.next_output];
+            let to = self.clock.elapsed.0[lane];
+            if (output - to) * direction > 0.0 && !outcome.finished.lane(lane) {
+                continue;
+            }
+            round.due = round.due.or(Bits(1 << lane));
+            if (to - output) * direction > 0.0 {
+                let lanes = self.job.plan.layout.mask(lane);
+                let fraction = (output - outcome.from.0[lane]) / outcome.h.0[lane];
+                round.inside = round.inside.or(lanes);
+                round.theta = Lanes::select(lanes, Lanes::splat(fraction), round.theta);
+            }
+        }
+        round
+    }
+
+    fn write(&mut self, round: &Round) {
+        for lane in 0..WIDTH {
+            if !round.due.lane(lane) {
+                continue;
+            }
+            let Some(slot) = self.slots[lane].as_mut() else { continue };
+            let state = if round.inside.lane(lane) { &self.between } else { self.engine.next() };
+            let elapsed = self.job.times[slot.next_output] - self.job.scene.t0;
+            // A step is only accepted with a finite error, so its states are finite.
+            let _: bool = slot.unit.record(self.job.writer, slot.next_output, state, lane, elapsed);
+            slot.next_output += 1;
+        }
+    }
+
+    /// Counts the evaluations of the continuous extension for the units that read it.
+    fn charge(&mut self, lanes: Bits) {
+        let evaluations = self.engine.dense_stages();
+        for (lane, slot) in self.slots.iter_mut().enumerate() {
+            if let Some(slot) = slot {
+                slot.counts.evaluations += if lanes.lane(lane) { evaluations } else { 0 };
+            }
+        }
+    }
+}

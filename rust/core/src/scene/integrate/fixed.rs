@@ -1,0 +1,116 @@
+//! Fixed steps: up to eight units in lockstep, each recorded until it is no longer finite.
+
+use super::super::unit::{self, Prepared, Unit};
+use super::report::{Counts, Ending, Report};
+use super::{Job, Result};
+use crate::error::Error;
+use crate::integrators::fixed::{self, Place};
+use crate::integrators::state::State;
+use crate::numerics::lanes::Lanes;
+use crate::numerics::power_of_two::scale;
+use crate::parallel::Ticker;
+
+/// Runs the units, a state full of them at a time.
+///
+/// # Errors
+/// As [`run`](super::run).
+pub(super) fn run(
+    job: &Job<'_>,
+    units: &[Unit],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Report>> {
+    let mut reports = Vec::with_capacity(units.len());
+    for group in units.chunks(job.plan.layout.units()) {
+        reports.extend(lockstep(job, group, threads, ticker)?);
+    }
+    Ok(reports)
+}
+
+fn lockstep(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+    let (plan, t0) = (job.plan, job.scene.t0);
+    let prepared: Vec<Prepared> = units.iter().map(|unit| job.prepare(unit)).collect();
+    let views: Vec<&Prepared> = prepared.iter().collect();
+    let mut dynamics = unit::dynamics(plan, &views, threads);
+    let mut state = prepared[0].blank_state();
+    for lane in 0..plan.layout.units() {
+        // Lanes without a unit run along with a copy of the last.
+        prepared[lane.min(units.len() - 1)].write(&mut state, lane);
+    }
+    let dt = plan.dt.unwrap_or(plan.direction);
+    let places = job.times.iter().map(|&t| {
+        let place = fixed::place(t - t0, dt, t.abs().max(t0.abs()));
+        Place { past: place.past.map(|past| scale(past, -plan.units.time)), ..place }
+    });
+    let h = scale(dt, -plan.units.time);
+    let mut records = Records { job, failed: vec![None; units.len()], units: prepared, rows: 0, last: None };
+    let (steps, outcome) = fixed::run(
+        plan.method,
+        h,
+        job.max_steps,
+        &mut state,
+        &mut dynamics,
+        places,
+        ticker,
+        |index, state| records.take(index, state),
+    );
+    let short = match outcome {
+        Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
+        Err(Error::Interrupted) => Ending::Interrupted,
+        Err(other) => return Err(other),
+    };
+    let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations };
+    Ok(records.reports(&state, t0 + steps as f64 * dt, &short, counts))
+}
+
+/// What has been recorded of units in lockstep.
+struct Records<'a> {
+    job: &'a Job<'a>,
+    units: Vec<Prepared>,
+    /// The output time at which a unit was no longer finite.
+    failed: Vec<Option<usize>>,
+    /// Output times so far.
+    rows: usize,
+    /// The state at the last output time, which need not be a node.
+    last: Option<State<Lanes>>,
+}
+
+impl Records<'_> {
+    /// Records an output time.
+    ///
+    /// # Errors
+    /// [`Error::Convergence`] when no unit is finite any more.
+    fn take(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
+        let job = self.job;
+        let t = job.times[index];
+        for (lane, unit) in self.units.iter().enumerate() {
+            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, t - job.scene.t0) {
+                self.failed[lane] = Some(index);
+            }
+        }
+        self.rows = index + 1;
+        if self.rows == job.times.len() {
+            self.last = Some(state.clone());
+        }
+        if self.failed.iter().all(Option::is_some) {
+            return Err(Error::Convergence { message: "not finite".to_owned(), time: t });
+        }
+        Ok(())
+    }
+
+    /// The reports of a run that has come to `reached` at `time`; `short` says why, if that is not the end.
+    fn reports(&self, reached: &State<Lanes>, time: f64, short: &Ending, counts: Counts) -> Vec<Report> {
+        let (state, time, otherwise) = match &self.last {
+            Some(last) => (last, self.job.end(), &Ending::Finished),
+            None => (reached, time, short),
+        };
+        let report = |(lane, unit)| {
+            let (rows, ending) = match self.failed[lane] {
+                Some(failed) => (failed, Ending::NotFinite),
+                None => (self.rows, otherwise.clone()),
+            };
+            self.job.report(unit, state, lane, time, ending, rows, counts)
+        };
+        self.units.iter().enumerate().map(report).collect()
+    }
+}

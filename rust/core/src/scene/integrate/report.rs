@@ -1,0 +1,84 @@
+//! What became of a unit.
+
+use super::super::unit::{Prepared, Unit};
+use super::Job;
+use crate::integrators::state::State;
+use crate::numerics::lanes::Lanes;
+use core::ops::AddAssign;
+
+/// How a unit ended.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Ending {
+    /// At the last output time.
+    Finished,
+    /// The step fell to zero between two bodies (indices in the scene).
+    CloseEncounter {
+        /// The bodies; equal for a fixed centre.
+        bodies: (usize, usize),
+        /// Their distance.
+        distance: f64,
+    },
+    /// The state became infinite or undefined.
+    NotFinite,
+    /// The most steps allowed were taken.
+    TooManySteps,
+    /// The caller asked to stop.
+    Interrupted,
+}
+
+/// What an integration cost.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Counts {
+    /// Steps taken.
+    pub steps: u64,
+    /// Steps rejected.
+    pub rejected: u64,
+    /// Force evaluations.
+    pub evaluations: u64,
+}
+
+impl AddAssign for Counts {
+    fn add_assign(&mut self, other: Self) {
+        self.steps += other.steps;
+        self.rejected += other.rejected;
+        self.evaluations += other.evaluations;
+    }
+}
+
+/// What became of a unit.
+#[derive(Clone, Debug)]
+pub struct Report {
+    /// The unit.
+    pub unit: Unit,
+    /// How it ended.
+    pub ending: Ending,
+    /// Output times recorded.
+    pub rows: usize,
+    /// What it cost.
+    pub counts: Counts,
+    /// The time reached.
+    pub time: f64,
+    /// Final positions of the recorded bodies.
+    pub position: Vec<[f64; 3]>,
+    /// Final velocities of the recorded bodies.
+    pub velocity: Vec<[f64; 3]>,
+}
+
+impl Job<'_> {
+    /// The report of the unit in `lane` of a state at `time`.
+    pub(super) fn report(
+        &self,
+        unit: &Prepared,
+        state: &State<Lanes>,
+        lane: usize,
+        time: f64,
+        ending: Ending,
+        rows: usize,
+        counts: Counts,
+    ) -> Report {
+        let elapsed = time - self.scene.t0;
+        let bodies = unit.unit.recorded.clone().map(|slot| unit.read(slot, state, lane, elapsed));
+        let (position, velocity) = bodies.map(|entry| (entry.position, entry.velocity)).unzip();
+        Report { unit: unit.unit.clone(), ending, rows, counts, time, position, velocity }
+    }
+}

@@ -1,0 +1,49 @@
+//! How units lie in the lanes of a state.
+//!
+//! Packed, the lanes are the bodies of one unit; batched, they are eight units. The same integrators run
+//! both: all that differs is how many units a state holds, and whether the lanes share a step.
+
+use crate::integrators::adaptive::Reduce;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::Real;
+
+/// How units lie in lanes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Layout {
+    /// Lanes are bodies of one unit.
+    Packed,
+    /// Lanes are units.
+    Batched,
+}
+
+impl Layout {
+    /// Units that one state holds, each in a lane of its own from the first.
+    pub fn units(self) -> usize {
+        match self {
+            Self::Packed => 1,
+            Self::Batched => WIDTH,
+        }
+    }
+
+    /// The lanes that move with the unit in `lane`: all of them if packed.
+    pub fn mask(self, lane: usize) -> Bits {
+        match self {
+            Self::Packed => Bits(0xff),
+            Self::Batched => Bits(1 << lane),
+        }
+    }
+}
+
+impl Reduce<Lanes> for Layout {
+    fn largest(&self, value: Lanes) -> Lanes {
+        match self {
+            Self::Batched => value,
+            Self::Packed => {
+                let [a, b, c, d, e, f, g, h] = value.0;
+                let larger = |x: f64, y: f64| if x > y { x } else { y };
+                let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
+                Lanes::splat(larger(low, high))
+            }
+        }
+    }
+}

@@ -1,0 +1,141 @@
+//! A unit in the lanes of a state: laid in at the start, read off at the output times.
+//!
+//! Packed, the lanes are its bodies, massive ones first, each kind padded to whole blocks. Batched, it has
+//! one lane, and the rows are its bodies.
+
+use super::super::columns::{Entry, Writer};
+use super::{Layout, Origin, Plan, Prepared, Unit, scale};
+use crate::integrators::state::State;
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, WIDTH, as_numbers};
+use crate::numerics::power_of_two::power_of_two;
+use crate::numerics::real::Real;
+
+/// Padding lanes stand far out, each elsewhere, where nothing they feel or exert is felt.
+const FAR_OUT: f64 = 1.267_650_600_228_229_4e30; // 2^100
+
+/// How the coordinates of a unit lie.
+pub(super) fn shape(unit: &Unit, plan: &Plan) -> Shape {
+    let components = if plan.planar { 2 } else { 3 };
+    let bodies = unit.bodies.len();
+    let rows = match plan.layout {
+        Layout::Batched => bodies,
+        Layout::Packed => unit.active.div_ceil(WIDTH) + (bodies - unit.active).div_ceil(WIDTH),
+    };
+    Shape { rows, components }
+}
+
+impl Prepared {
+    /// Row and lane of a body, of a unit that lies in `unit_lane` if batched.
+    pub(in crate::scene) fn locate(&self, slot: usize, unit_lane: usize) -> (usize, usize) {
+        let active = self.unit.active;
+        match self.layout {
+            Layout::Batched => (slot, unit_lane),
+            Layout::Packed if slot < active => (slot / WIDTH, slot % WIDTH),
+            Layout::Packed => (active.div_ceil(WIDTH) + (slot - active) / WIDTH, (slot - active) % WIDTH),
+        }
+    }
+
+    /// A state for units of this make-up, all zeros.
+    pub fn blank_state(&self) -> State<Lanes> {
+        let zeros = vec![Lanes::zero(); self.shape.len()];
+        State::new(self.shape, &zeros, &zeros)
+    }
+
+    /// Lays the unit into a state (into one lane of it if batched).
+    pub fn write(&self, state: &mut State<Lanes>, unit_lane: usize) {
+        let Shape { rows, components } = self.shape;
+        let ((q, q_error), (v, v_error)) = state.halves_mut();
+        if self.layout == Layout::Packed {
+            for c in 0..components {
+                for row in 0..rows {
+                    q[c * rows + row] =
+                        Lanes(core::array::from_fn(|lane| FAR_OUT * (1 + lane + row * WIDTH) as f64));
+                }
+            }
+        }
+        for slot in 0..self.position.len() {
+            let (row, lane) = self.locate(slot, unit_lane);
+            for c in 0..components {
+                let at = c * rows + row;
+                q[at].0[lane] = self.position[slot][c];
+                v[at].0[lane] = self.velocity[slot][c];
+                q_error[at].0[lane] = 0.0;
+                v_error[at].0[lane] = 0.0;
+            }
+        }
+    }
+
+    /// Reads a body off a state, in the scene's units and about its origin.
+    pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
+        let Shape { rows, components } = self.shape;
+        let (length, speed) = (self.units.length, -self.units.velocity());
+        let (row, lane) = self.locate(slot, unit_lane);
+        let mut entry = Entry::default();
+        for c in 0..components {
+            let at = c * rows + row;
+            let take = |values: &[Lanes], exponent: i32| scale(values[at].0[lane], exponent);
+            let (x, rest) = self.origin.restore(c, take(state.q(), length), elapsed);
+            entry.position[c] = x;
+            entry.position_rest[c] = rest + take(state.q_error(), length);
+            let still = Origin { center: self.origin.drift, drift: [0.0; 3] };
+            let (v, rest) = still.restore(c, take(state.v(), speed), 0.0);
+            entry.velocity[c] = v;
+            entry.velocity_rest[c] = rest + take(state.v_error(), speed);
+        }
+        if components == 2 {
+            entry.position[2] = self.origin.center[2] + self.origin.drift[2] * elapsed;
+            entry.velocity[2] = self.origin.drift[2];
+        }
+        entry
+    }
+
+    /// Records the unit's bodies at an output time; `false` if they are no longer finite.
+    pub fn record(
+        &self,
+        writer: &Writer<'_>,
+        time: usize,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
+    ) -> bool {
+        if writer.keeps_rest() || self.origin != Origin::default() {
+            return self.record_precisely(writer, time, state, unit_lane, elapsed);
+        }
+        // The common case, kept lean: a run of cheap steps with many outputs spends its time here.
+        let Shape { rows, components } = self.shape;
+        let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
+        let (length, speed) = (power_of_two(self.units.length), power_of_two(-self.units.velocity()));
+        let mut check = 0.0;
+        for slot in self.unit.recorded.clone() {
+            let (row, lane) = self.locate(slot, unit_lane);
+            let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
+            for c in 0..components {
+                let at = (c * rows + row) * WIDTH + lane;
+                position[c] = q[at] * length;
+                velocity[c] = v[at] * speed;
+                // Zero times a finite number is zero; times anything else it is not a number.
+                check += 0.0 * position[c] + 0.0 * velocity[c];
+            }
+            writer.write_rounded(self.unit.copy, time, self.unit.bodies[slot], position, velocity);
+        }
+        check == 0.0
+    }
+
+    fn record_precisely(
+        &self,
+        writer: &Writer<'_>,
+        time: usize,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
+    ) -> bool {
+        let mut finite = true;
+        for slot in self.unit.recorded.clone() {
+            let entry = self.read(slot, state, unit_lane, elapsed);
+            finite &= entry.position.iter().chain(&entry.velocity).all(|x| x.is_finite());
+            writer.write(self.unit.copy, time, self.unit.bodies[slot], &entry);
+        }
+        finite
+    }
+}

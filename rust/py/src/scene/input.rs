@@ -1,0 +1,117 @@
+//! What Python asks of a scene: its keywords as the core's plain data.
+
+use crate::arrays::copied;
+use crate::errors::raised;
+use crate::registry;
+use numpy::PyReadonlyArrayDyn;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use visviva_core::Error;
+use visviva_core::parallel::thread_count;
+use visviva_core::scene::request::{Request, unknown};
+use visviva_core::scene::{ForceSpec, Scene};
+
+pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
+
+/// The dictionary that `run` and `plan` take: a scene of one or more copies, and what is asked of it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(crate) struct Asked<'py> {
+    mass: Array<'py>,
+    position: Array<'py>,
+    velocity: Array<'py>,
+    forces: Bound<'py, PyList>,
+    t0: f64,
+    times: Array<'py>,
+    end_only: bool,
+    method: String,
+    dt: Option<f64>,
+    rtol: f64,
+    atol: Option<f64>,
+    max_step: Option<f64>,
+    max_steps: Option<i64>,
+    record: Vec<String>,
+}
+
+impl Asked<'_> {
+    /// The scene and the request, to be run on so many threads.
+    ///
+    /// # Errors
+    /// `InvalidInput` for arrays whose shapes do not agree, an unknown force, a number of threads that cannot be.
+    pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request)> {
+        let py = self.forces.py();
+        let (mass, [copies, particles]) = copied("mass", &self.mass, [None, None])?;
+        let shape = [Some(copies), Some(particles), Some(3)];
+        let position = points(&copied("position", &self.position, shape)?.0);
+        let velocity = points(&copied("velocity", &self.velocity, shape)?.0);
+        let (t0, forces) = (self.t0, forces(&self.forces)?);
+        let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+        let (times, _) = copied("t", &self.times, [None])?;
+        let Self { method, dt, rtol, atol, max_step, max_steps, record, .. } = self;
+        // An end alone means the start and the end.
+        let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
+        let scene = Scene { copies, particles, mass, position, velocity, forces, t0 };
+        Ok((scene, Request { times, method, dt, rtol, atol, max_step, max_steps, record, threads }))
+    }
+}
+
+/// A scene of one copy, whose time does not matter.
+///
+/// # Errors
+/// As [`Asked::prepared`].
+pub(super) fn snapshot(
+    mass: &Array<'_>,
+    position: &Array<'_>,
+    velocity: &Array<'_>,
+    specs: &Bound<'_, PyList>,
+) -> PyResult<Scene> {
+    let (mass, [particles]) = copied("mass", mass, [None])?;
+    let position = points(&copied("position", position, [Some(particles), Some(3)])?.0);
+    let velocity = points(&copied("velocity", velocity, [Some(particles), Some(3)])?.0);
+    Ok(Scene { copies: 1, particles, mass, position, velocity, forces: forces(specs)?, t0: 0.0 })
+}
+
+pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {
+    values.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect()
+}
+
+/// The forces of a scene's description.
+///
+/// # Errors
+/// `InvalidInput` for a kind, a parameter or a potential that is not known.
+pub(super) fn forces(specs: &Bound<'_, PyList>) -> PyResult<Vec<ForceSpec>> {
+    specs.iter().map(|spec| force(spec.cast::<PyDict>()?)).collect()
+}
+
+fn force(spec: &Bound<'_, PyDict>) -> PyResult<ForceSpec> {
+    let kind: String = get(spec, "kind")?;
+    match kind.as_str() {
+        "gravity" => Ok(ForceSpec::Gravity { constant: get(spec, "G")?, softening: get(spec, "softening")? }),
+        "uniform_field" => Ok(ForceSpec::UniformField { g: vector(spec, "g")? }),
+        "central_field" => {
+            let (name, parameters): (String, Vec<f64>) = (get(spec, "potential")?, get(spec, "parameters")?);
+            let potential = registry::build(spec.py(), &name, &parameters)?;
+            Ok(ForceSpec::CentralField { potential, center: vector(spec, "center")? })
+        }
+        other => {
+            let kinds = ["gravity", "uniform_field", "central_field"].into_iter();
+            Err(raised(spec.py(), unknown("forces", other, kinds)))
+        }
+    }
+}
+
+fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
+    dict: &Bound<'py, PyDict>,
+    key: &str,
+) -> PyResult<T> {
+    let value = dict
+        .get_item(key)?
+        .ok_or_else(|| raised(dict.py(), Error::invalid("forces", format!("a force lacks '{key}'"))))?;
+    value.extract().map_err(Into::into)
+}
+
+/// A vector of a force's description, given as an array.
+fn vector(dict: &Bound<'_, PyDict>, key: &str) -> PyResult<[f64; 3]> {
+    let (values, _) = copied(key, &get::<Array<'_>>(dict, key)?, [Some(3)])?;
+    Ok([values[0], values[1], values[2]])
+}

@@ -1,0 +1,156 @@
+//! What a run gave, as the dictionaries that are described in `visviva/_core.pyi`.
+
+use crate::arrays::{moved, moved_column};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use visviva_core::Error;
+use visviva_core::numerics::simd::tier;
+use visviva_core::scene::Scene;
+use visviva_core::scene::integrate::Ending;
+use visviva_core::scene::plan::{Plan, Solution};
+use visviva_core::scene::request::Request;
+use visviva_core::scene::run::{Outcome, Output};
+
+/// What will be done.
+pub(super) fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    let rows = plan.rows();
+    let integration = plan.solution == Solution::Integration;
+    dict.set_item("solution", rows.first().map(|row| row.decision.clone()))?;
+    dict.set_item("method", plan.method_name())?;
+    dict.set_item("evaluations_per_step", if integration { plan.method.stages } else { 0 })?;
+    dict.set_item("pairs_per_evaluation", if integration { plan.pairs_per_evaluation() } else { 0 })?;
+    dict.set_item("active", plan.active.len())?;
+    dict.set_item("passive", plan.passive.len())?;
+    dict.set_item("particles", plan.active.len() + plan.passive.len())?;
+    dict.set_item("threads", plan.threads.0.max(plan.threads.1))?;
+    dict.set_item("lanes", plan.lanes())?;
+    dict.set_item("text", plan.to_string())?;
+    let rows: Vec<_> = rows.into_iter().map(|row| (row.what, row.decision, row.reason)).collect();
+    dict.set_item("rows", rows)?;
+    dict.set_item("skipped", plan.skipped())?;
+    Ok(dict)
+}
+
+/// What was done. A single run that failed keeps the rows it has.
+pub(super) fn output_dict<'py>(
+    py: Python<'py>,
+    scene: &Scene,
+    request: &Request,
+    output: Output,
+    seconds: f64,
+    ensemble: bool,
+) -> PyResult<Bound<'py, PyDict>> {
+    let (copies, particles) = (scene.copies, scene.particles);
+    let outcomes = &output.outcomes;
+    let times = if ensemble { request.times.len() } else { outcomes[0].rows };
+    let columns = PyDict::new(py);
+    let set = |name: &str, mut values: Vec<f64>, shape: &[usize]| {
+        values.truncate(shape.iter().product());
+        columns.set_item(name, moved_column(py, values, shape)?)
+    };
+    if request.records("position") {
+        set("position", output.columns.position, &[copies, times, particles, 3])?;
+    }
+    if request.records("velocity") {
+        set("velocity", output.columns.velocity, &[copies, times, particles, 3])?;
+    }
+    for column in output.derived {
+        let shape = [copies, times, column.width];
+        set(&column.name, column.values, if column.width == 1 { &shape[..2] } else { &shape })?;
+    }
+    let dict = PyDict::new(py);
+    dict.set_item("t", moved(py, request.times[..times].to_vec(), &[times])?)?;
+    dict.set_item("columns", columns)?;
+    dict.set_item("plan", plan_dict(py, &output.plan)?)?;
+    let statuses: Vec<i8> = outcomes.iter().map(|outcome| status(&outcome.ending)).collect();
+    dict.set_item("status", moved(py, statuses, &[copies])?)?;
+
+    let (totals, each) = (PyDict::new(py), PyDict::new(py));
+    type Count = fn(&Outcome) -> u64;
+    let counts: [(&str, Count); 3] = [
+        ("steps", |outcome| outcome.counts.steps),
+        ("rejected", |outcome| outcome.counts.rejected),
+        ("evaluations", |outcome| outcome.counts.evaluations),
+    ];
+    for (name, count) in counts {
+        totals.set_item(name, outcomes.iter().map(count).sum::<u64>())?;
+        each.set_item(name, moved(py, outcomes.iter().map(|o| count(o) as i64).collect(), &[copies])?)?;
+    }
+    totals.set_item("seconds", seconds)?;
+    totals.set_item("threads", output.plan.threads.0.max(output.plan.threads.1))?;
+    totals.set_item("simd", tier().name())?;
+    totals.set_item("method", output.plan.method_name())?;
+    dict.set_item("stats", totals)?;
+    dict.set_item("per_trajectory", each)?;
+
+    let flat = |of: fn(&Outcome) -> &Vec<[f64; 3]>| {
+        let values: Vec<f64> =
+            outcomes.iter().flat_map(|outcome| of(outcome).as_flattened()).copied().collect();
+        moved(py, values, &[copies, particles, 3])
+    };
+    let last = PyDict::new(py);
+    last.set_item(
+        "t",
+        moved(py, outcomes.iter().map(|outcome| outcome.time).collect::<Vec<f64>>(), &[copies])?,
+    )?;
+    last.set_item("position", flat(|outcome| &outcome.position)?)?;
+    last.set_item("velocity", flat(|outcome| &outcome.velocity)?)?;
+    dict.set_item("final", last)?;
+    let error = if ensemble { None } else { failure(&outcomes[0]) };
+    dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
+    Ok(dict)
+}
+
+fn status(ending: &Ending) -> i8 {
+    match ending {
+        Ending::Finished => 0,
+        Ending::CloseEncounter { .. } => 1,
+        Ending::NotFinite => 2,
+        Ending::Interrupted => 3,
+        Ending::TooManySteps => 4,
+    }
+}
+
+/// What an ending means, as the error that a single run raises.
+fn failure(outcome: &Outcome) -> Option<Error> {
+    let time = outcome.time;
+    match &outcome.ending {
+        Ending::Finished => None,
+        Ending::CloseEncounter { bodies, distance } => {
+            Some(Error::CloseEncounter { time, bodies: *bodies, distance: *distance })
+        }
+        Ending::NotFinite => Some(Error::Convergence {
+            message: "the state became infinite or undefined; a smaller step, a softening or an adaptive \
+                      method may pass"
+                .to_owned(),
+            time,
+        }),
+        Ending::TooManySteps => {
+            Some(Error::Convergence { message: "max_steps were taken before the end".to_owned(), time })
+        }
+        Ending::Interrupted => Some(Error::Interrupted),
+    }
+}
+
+/// An error of a single run, for Python to raise with what was computed.
+pub(super) fn error_dict<'py>(py: Python<'py>, error: &Error) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    dict.set_item("message", error.to_string())?;
+    match error {
+        Error::CloseEncounter { time, bodies, distance } => {
+            dict.set_item("kind", "close_encounter")?;
+            dict.set_item("time", time)?;
+            dict.set_item("bodies", bodies)?;
+            dict.set_item("distance", distance)?;
+        }
+        Error::Interrupted => dict.set_item("kind", "interrupted")?,
+        Error::Convergence { message, time } => {
+            dict.set_item("kind", "convergence")?;
+            dict.set_item("message", message)?;
+            dict.set_item("time", time)?;
+        }
+        Error::InvalidInput { .. } | Error::Internal(_) => dict.set_item("kind", "internal")?,
+    }
+    Ok(dict)
+}
