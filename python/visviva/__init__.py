@@ -38,6 +38,7 @@ _HOME = {
     "Status": "trajectory",
     "Trajectory": "trajectory",
     "UniformField": "forces",
+    "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
 }
@@ -63,6 +64,7 @@ __all__ = [
     "Status",
     "Trajectory",
     "UniformField",
+    "UnknownKeyword",
     "datasets",
     "errors",
     "forces",
@@ -85,6 +87,7 @@ if TYPE_CHECKING:
         InternalError,
         Interrupted,
         InvalidInput,
+        UnknownKeyword,
     )
     from visviva.forces import CentralField, Gravity, UniformField
     from visviva.integrators import Method, methods

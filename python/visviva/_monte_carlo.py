@@ -10,6 +10,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva._progress import callback
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
@@ -36,6 +37,7 @@ class CrossSection(NamedTuple):
     """One standard deviation of the count, as an area likewise."""
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class Tally:
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
@@ -110,6 +112,7 @@ class Tally:
         )
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class MonteCarlo(Mapping[str, Tally]):
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
@@ -176,6 +179,7 @@ class MonteCarlo(Mapping[str, Tally]):
         )
 
 
+@known_keywords
 def monte_carlo(
     potential: Potential,
     *,

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.invariants import conserved, internal_motion, of_scene, reference_point
 
@@ -26,6 +27,7 @@ __all__ = ["Conservation", "Drift"]
 _EPSILON = float(np.finfo(float).eps)
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Drift:
     """How far one quantity moved from its initial value.
@@ -53,6 +55,7 @@ class Drift:
     conserved: bool
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Conservation:
     """Drift of each invariant of a trajectory; prints as a table.

@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
 from visviva.plan import Plan
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
 
 
+@known_keywords
 class EnsembleScene:
     """B copies of a scene. Made by `Scene.ensemble`.
 
@@ -152,6 +154,7 @@ class EnsembleScene:
         return Plan._from_core(_core.plan(**request))
 
 
+@known_keywords
 class EnsembleTrajectory:
     """The motions of the copies. Made by `EnsembleScene.run` and `load`.
 

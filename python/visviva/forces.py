@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -58,6 +59,7 @@ class Force:
         return cls(**{name: value for name, value in description.items() if name != "kind"})
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class Gravity(Force):
     """Newton's law between every two bodies: V = −Σ G mᵢ mⱼ / √(r² + softening²).
@@ -112,6 +114,7 @@ class Gravity(Force):
         return {"kind": self.kind, "G": self.G, "softening": self.softening}
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class UniformField(Force):
     """The same acceleration g everywhere: V = −Σ mᵢ g·rᵢ.
@@ -163,6 +166,7 @@ class UniformField(Force):
         return {"kind": self.kind, "g": np.array(self.g)}
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class CentralField(Force):
     """A potential V(r) around a fixed point, felt by every body: F = −dV/dr r̂.

@@ -14,6 +14,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -26,6 +27,7 @@ __all__ = ["Invariants"]
 _COLUMNS = ["kinetic_energy", "potential_energy", "energy", "momentum", "angular_momentum", "center_of_mass", "virial"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Invariants:
     """The conserved quantities of a state.

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import visviva
+from visviva._keywords import known_keywords
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
@@ -33,6 +34,7 @@ VERSION = 1
 _GROUPS = ("columns", "final", "per_trajectory")
 
 
+@known_keywords
 def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> None:
     """Write a trajectory or an ensemble; the file appears whole or not at all.
 
@@ -69,6 +71,7 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
         partial.unlink(missing_ok=True)
 
 
+@known_keywords
 def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     """Read a file that `Trajectory.save` or `EnsembleTrajectory.save` wrote, of this or an earlier version.
 

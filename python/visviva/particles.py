@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Particles"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Particles:
     """Point particles.

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 class Potential:
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
 
@@ -110,7 +112,7 @@ def _make(entry: dict[str, Any]) -> type[Potential]:
         slots=True,
     )
     made.__module__ = __name__
-    return cast("type[Potential]", made)
+    return cast("type[Potential]", known_keywords(made))
 
 
 def _document(entry: dict[str, Any]) -> str:
@@ -129,6 +131,7 @@ __all__ = ["Potential", "potential_by_name"]
 __all__ += list(_CLASSES)
 
 
+@known_keywords
 def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     """The potential of a registry name, as files hold it.
 
@@ -139,5 +142,6 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     Coulomb(k=-1.0)
     """
     if name not in _BY_NAME:
-        raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}")
+        hint = did_you_mean(str(name), _BY_NAME)
+        raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
     return _BY_NAME[name](*parameters)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.datasets.outer_solar_system import outer_solar_system as outer_solar_system_data
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
@@ -38,6 +39,7 @@ __all__ = [
 ]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
     """Where bodies are at a time.
@@ -55,6 +57,7 @@ class Reference:
     position: NDArray[np.float64]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """A scene, how far to run it, and what must come out.
@@ -109,6 +112,7 @@ class Problem:
         raise InvalidInput("final", f"{self.name} has references at t = {times}, got a state at t = {state.t0!r}")
 
 
+@known_keywords
 def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner") -> Problem:
     """The Sun and five outer planets over 200 000 days, or Applegate's version over 3 650 000.
 
@@ -139,6 +143,7 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     )
 
 
+@known_keywords
 def figure_eight(periods: int = 1) -> Problem:
     """Three equal bodies that chase each other along one figure eight.
 
@@ -175,6 +180,7 @@ def figure_eight(periods: int = 1) -> Problem:
     )
 
 
+@known_keywords
 def pythagorean() -> Problem:
     """Burrau's problem: masses 3, 4, 5 at rest at the corners of a 3–4–5 triangle.
 
@@ -202,6 +208,7 @@ def pythagorean() -> Problem:
     )
 
 
+@known_keywords
 def pleiades() -> Problem:
     """Seven stars in a plane with masses 1 … 7 and several close encounters.
 
@@ -230,6 +237,7 @@ def pleiades() -> Problem:
     )
 
 
+@known_keywords
 def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem:
     """Two bodies with semi-major axis 1, total mass 1 and period 2π, starting at pericentre.
 
@@ -275,6 +283,7 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
     )
 
 
+@known_keywords
 def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2.0, turn: float = 1.0) -> Problem:
     """Three bodies that turn as a rigid equilateral triangle, ω² = (m₁ + m₂ + m₃) / side³.
 

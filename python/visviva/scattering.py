@@ -13,6 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva._monte_carlo import CrossSection, MonteCarlo, Tally, monte_carlo
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
@@ -40,6 +41,7 @@ __all__ = [
 _FRAMES = ("cm", "lab", "recoil")
 
 
+@known_keywords
 def lab_angle(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     """Laboratory angle of the projectile after an elastic collision.
 
@@ -69,6 +71,7 @@ def lab_angle(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     return _evaluate("lab_angle", "cm_angle", cm_angle, np.pi, mass_ratio=mass_ratio)
 
 
+@known_keywords
 def recoil_angle(cm_angle: ArrayLike) -> NDArray[np.float64]:
     """Laboratory angle of the target after the collision, (π − ψ)/2.
 
@@ -96,6 +99,7 @@ def recoil_angle(cm_angle: ArrayLike) -> NDArray[np.float64]:
     return _evaluate("recoil_angle", "cm_angle", cm_angle, np.pi)
 
 
+@known_keywords
 def energy_transfer(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     """Fraction of the beam energy that the target takes, 4 m₁m₂/(m₁+m₂)² · sin²(ψ/2).
 
@@ -125,6 +129,7 @@ def energy_transfer(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.flo
     return _evaluate("energy_transfer", "cm_angle", cm_angle, np.pi, mass_ratio=mass_ratio)
 
 
+@known_keywords
 def cm_angle(lab_angle: ArrayLike, *, mass_ratio: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre-of-mass angles that lead to a laboratory angle of the projectile.
 
@@ -159,6 +164,7 @@ def cm_angle(lab_angle: ArrayLike, *, mass_ratio: float) -> tuple[NDArray[np.flo
     )
 
 
+@known_keywords
 def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: ArrayLike) -> NDArray[np.float64]:
     """Deflection by a Coulomb centre, 2 atan(k / 2Eb).
 
@@ -191,6 +197,7 @@ def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: A
     return _evaluate("rutherford_deflection", "impact_parameter", impact_parameter, np.inf, half_distance=half)
 
 
+@known_keywords
 def rutherford_closest_approach(
     potential: Potential, *, energy: float, impact_parameter: ArrayLike
 ) -> NDArray[np.float64]:
@@ -225,6 +232,7 @@ def rutherford_closest_approach(
     return _evaluate("rutherford_closest_approach", "impact_parameter", impact_parameter, np.inf, half_distance=half)
 
 
+@known_keywords
 def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -> NDArray[np.float64]:
     """Impact parameter of a scattering angle, |k|/2E · cot(ψ/2).
 
@@ -257,6 +265,7 @@ def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: A
     return _evaluate("rutherford_impact_parameter", "angle", angle, np.pi, half_distance=half)
 
 
+@known_keywords
 def rutherford_cross_section(
     potential: Potential,
     *,

@@ -13,6 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
 __all__ = ["Scene"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Scene:
     """Particles and the forces on them, at a time.

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.plan import Plan
 
@@ -35,6 +36,7 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Stats:
     """What a run cost: steps taken and rejected, force evaluations, seconds, threads, SIMD tier, method."""
@@ -52,6 +54,7 @@ class Stats:
         return cls(**{name: stats[name] for name in cls.__slots__})
 
 
+@known_keywords
 class Trajectory:
     """The motion of a scene at the output times. Made by `Scene.run` and `load`.
 

@@ -115,11 +115,6 @@ def test_parts_refuse_by_name(make: object, argument: str) -> None:
     assert caught.value.argument == argument
 
 
-def test_unknown_keywords_are_refused() -> None:
-    with pytest.raises(TypeError, match="tolerance"):
-        vv.Scene(pair(), vv.Gravity(1.0)).run(t=1.0, tolerance=1e-9)  # type: ignore[call-arg]
-
-
 def test_events_are_refused_by_name() -> None:
     with pytest.raises(vv.InvalidInput) as caught:
         vv.Scene(pair(), vv.Gravity(1.0)).run(t=1.0, events=[object()])

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva import _core
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, shaped
 
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 def eccentric_from_mean(mean: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.float64]:
     """Solve Kepler's equation M = E − e sin E for E.
 
@@ -45,6 +47,7 @@ def eccentric_from_mean(mean: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.
     return _anomaly("eccentric_from_mean", "mean", mean, eccentricity)
 
 
+@known_keywords
 def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive: bool = False) -> NDArray[np.float64]:
     """Solve Kepler's equation of the hyperbola, M = e sinh H − H, for H.
 
@@ -78,6 +81,7 @@ def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive:
     return _anomaly("hyperbolic_from_mean", "mean", mean, eccentricity, repulsive)
 
 
+@known_keywords
 def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
     """Solve Barker's equation M = D + D³/3 for D = tan(ν/2).
 
@@ -107,6 +111,7 @@ def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
     return _anomaly("parabolic_from_mean", "mean", mean, 0.0)
 
 
+@known_keywords
 def mean_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.float64]:
     """Give the mean anomaly M of the eccentric anomaly E on an ellipse.
 
@@ -138,6 +143,7 @@ def mean_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     return _anomaly("mean_from_eccentric", "eccentric", eccentric, eccentricity)
 
 
+@known_keywords
 def mean_from_hyperbolic(
     hyperbolic: ArrayLike, eccentricity: ArrayLike, *, repulsive: bool = False
 ) -> NDArray[np.float64]:
@@ -173,6 +179,7 @@ def mean_from_hyperbolic(
     return _anomaly("mean_from_hyperbolic", "hyperbolic", hyperbolic, eccentricity, repulsive)
 
 
+@known_keywords
 def mean_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     """Give the mean anomaly M of the parabolic anomaly D on a parabola.
 
@@ -202,6 +209,7 @@ def mean_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     return _anomaly("mean_from_parabolic", "parabolic", parabolic, 0.0)
 
 
+@known_keywords
 def true_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.float64]:
     """Give the true anomaly ν of the eccentric anomaly E on an ellipse.
 
@@ -233,6 +241,7 @@ def true_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     return _anomaly("true_from_eccentric", "eccentric", eccentric, eccentricity)
 
 
+@known_keywords
 def true_from_hyperbolic(
     hyperbolic: ArrayLike, eccentricity: ArrayLike, *, repulsive: bool = False
 ) -> NDArray[np.float64]:
@@ -268,6 +277,7 @@ def true_from_hyperbolic(
     return _anomaly("true_from_hyperbolic", "hyperbolic", hyperbolic, eccentricity, repulsive)
 
 
+@known_keywords
 def true_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     """Give the true anomaly ν of the parabolic anomaly D on a parabola.
 
@@ -297,6 +307,7 @@ def true_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     return _anomaly("true_from_parabolic", "parabolic", parabolic, 0.0)
 
 
+@known_keywords
 def eccentric_from_true(true_anomaly: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.float64]:
     """Give the eccentric anomaly E of the true anomaly ν on an ellipse.
 
@@ -328,6 +339,7 @@ def eccentric_from_true(true_anomaly: ArrayLike, eccentricity: ArrayLike) -> NDA
     return _anomaly("eccentric_from_true", "true_anomaly", true_anomaly, eccentricity)
 
 
+@known_keywords
 def hyperbolic_from_true(
     true_anomaly: ArrayLike, eccentricity: ArrayLike, *, repulsive: bool = False
 ) -> NDArray[np.float64]:
@@ -363,6 +375,7 @@ def hyperbolic_from_true(
     return _anomaly("hyperbolic_from_true", "true_anomaly", true_anomaly, eccentricity, repulsive)
 
 
+@known_keywords
 def parabolic_from_true(true_anomaly: ArrayLike) -> NDArray[np.float64]:
     """Give the parabolic anomaly D of the true anomaly ν on a parabola.
 

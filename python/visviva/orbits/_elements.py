@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -14,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
 class Elements:
     """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
@@ -110,6 +112,7 @@ class Elements:
         )
 
 
+@known_keywords
 def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Elements:
     """Find the orbital elements of states.
 
@@ -144,6 +147,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     return Elements(mu=shaped(mu_, shape), **fields(columns, shape))
 
 
+@known_keywords
 def state(
     mu: ArrayLike,
     *,
@@ -198,6 +202,7 @@ def state(
     return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
 
 
+@known_keywords
 def propagate(
     mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, t: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
