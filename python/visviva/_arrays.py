@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from visviva.errors import InvalidInput
 
-__all__ = ["Shape", "Sizes", "float_array", "number"]
+__all__ = ["Shape", "Sizes", "float_array", "mass_array", "number"]
 
 Shape: TypeAlias = tuple[int | str | None, ...]
 """Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
@@ -77,10 +77,39 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
     result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
     finite = np.isfinite(result)
     if not finite.all():
-        where = tuple(int(i) for i in np.argwhere(~finite)[0])
-        label = name + (f"[{', '.join(map(str, where))}]" if where else "")
-        raise InvalidInput(name, f"expected finite numbers, but {label} is {result[where]}; remove or replace it")
+        raise InvalidInput(name, f"expected finite numbers, but {_first(name, result, ~finite)}; remove or replace it")
     return result
+
+
+def mass_array(value: object, shape: Shape, sizes: Sizes | None = None) -> NDArray[np.float64]:
+    """Check an array of masses: a `float_array` of which no element is negative.
+
+    Raises
+    ------
+    InvalidInput
+        As `float_array`, and for the first negative mass.
+
+    Examples
+    --------
+    >>> from visviva._arrays import mass_array
+    >>> mass_array([1.0, -2.0], ("N",))
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: mass: expected masses of at least 0, but mass[1] is -2.0; 0 marks a test particle
+    """
+    array = float_array("mass", value, shape, sizes)
+    negative = array < 0.0
+    if negative.any():
+        which = _first("mass", array, negative)
+        raise InvalidInput("mass", f"expected masses of at least 0, but {which}; 0 marks a test particle")
+    return array
+
+
+def _first(name: str, array: NDArray[np.float64], wrong: NDArray[np.bool_]) -> str:
+    """Name the first wrong element and its value."""
+    where = tuple(int(i) for i in np.argwhere(wrong)[0])
+    label = name + (f"[{', '.join(map(str, where))}]" if where else "")
+    return f"{label} is {array[where]}"
 
 
 def number(name: str, value: object) -> float:

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array
+from visviva._arrays import float_array, mass_array
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
@@ -56,9 +56,11 @@ class EnsembleScene:
         own = {"mass": scene.particles.mass, "position": scene.particles.position, "velocity": scene.particles.velocity}
         given = {
             name: float_array(name, value, (None, *own[name].shape))
-            for name, value in (("position", position), ("velocity", velocity), ("mass", mass))
+            for name, value in (("position", position), ("velocity", velocity))
             if value is not None
         }
+        if mass is not None:
+            given["mass"] = mass_array(mass, (None, *own["mass"].shape))
         if not given:
             raise InvalidInput("position", "give position, velocity or mass with a leading axis over the copies")
         lengths = {name: array.shape[0] for name, array in given.items()}

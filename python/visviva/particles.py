@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva._arrays import float_array
+from visviva._arrays import float_array, mass_array
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._arrays import Shape, Sizes
+    from visviva._arrays import Sizes
 
 __all__ = ["Particles"]
 
@@ -39,8 +39,7 @@ class Particles:
     Raises
     ------
     visviva.InvalidInput
-        For a wrong shape, complex or object arrays, NaN or infinity; for a negative mass when the
-        scene is planned or run.
+        For a wrong shape, complex or object arrays, NaN or infinity, or a negative mass.
 
     Examples
     --------
@@ -55,11 +54,11 @@ class Particles:
 
     def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
         sizes: Sizes = {}
-        object.__setattr__(self, "mass", _frozen("mass", mass, ("N",), sizes))
-        object.__setattr__(self, "position", _frozen("position", position, ("N", 3), sizes))
+        object.__setattr__(self, "mass", _frozen(mass_array(mass, ("N",), sizes), mass))
+        object.__setattr__(self, "position", _frozen(float_array("position", position, ("N", 3), sizes), position))
         if velocity is None:
             velocity = np.zeros(self.position.shape)
-        object.__setattr__(self, "velocity", _frozen("velocity", velocity, ("N", 3), sizes))
+        object.__setattr__(self, "velocity", _frozen(float_array("velocity", velocity, ("N", 3), sizes), velocity))
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -139,9 +138,8 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
 
 
-def _frozen(name: str, value: ArrayLike, shape: Shape, sizes: Sizes) -> NDArray[np.float64]:
-    array = float_array(name, value, shape, sizes)
-    if array.flags.writeable or array is value:
+def _frozen(array: NDArray[np.float64], given: object) -> NDArray[np.float64]:
+    if array.flags.writeable or array is given:
         # Read-only views of somebody's writeable array are copied too: they have a base.
         array = array.copy()
         array.flags.writeable = False

@@ -47,6 +47,7 @@ def test_velocity_defaults_to_rest() -> None:
         ({"mass": [[1.0, 2.0]]}, "mass"),
         ({"mass": 1.0}, "mass"),
         ({"mass": [1.0, np.nan]}, "mass"),
+        ({"mass": [1.0, -1.0]}, "mass"),
         ({"mass": [1.0 + 0j, 2.0]}, "mass"),
         ({"position": [[0, 0, 0]]}, "position"),
         ({"position": [[0, 0], [1, 0]]}, "position"),
