@@ -13,6 +13,7 @@ The names below are imported when they are first used, so that ``import visviva`
 than NumPy itself.
 """
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -107,7 +108,8 @@ def __getattr__(name: str) -> Any:
     elif name in _HOME:
         value = getattr(import_module(f"visviva.{_HOME[name]}"), name)
     else:
-        raise AttributeError(f"module 'visviva' has no attribute {name!r}")
+        # With these two, Python's own message suggests the nearest name.
+        raise AttributeError(f"module 'visviva' has no attribute {name!r}", name=name, obj=sys.modules[__name__])
     globals()[name] = value
     return value
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from visviva.errors import InvalidInput
 
-__all__ = ["Shape", "Sizes", "float_array", "mass_array", "number"]
+__all__ = ["Shape", "Sizes", "float_array", "mass_array", "number", "positive", "whole_number"]
 
 Shape: TypeAlias = tuple[int | str | None, ...]
 """Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
@@ -149,6 +149,47 @@ def number(name: str, value: object) -> float:
     if array.shape != ():
         raise InvalidInput(name, f"expected one real number, got an array of shape {array.shape}")
     return float(float_array(name, array, ()))
+
+
+def positive(name: str, value: object, what: str = "number") -> float:
+    """Check a scalar argument that must be above 0; see `number`.
+
+    Examples
+    --------
+    >>> from visviva._arrays import positive
+    >>> positive("length", 0)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: length: expected a positive number, got 0.0
+    """
+    checked = number(name, value)
+    if not checked > 0.0:
+        raise InvalidInput(name, f"expected a positive {what}, got {checked!r}")
+    return checked
+
+
+def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**63 - 1) -> int:
+    """Check a scalar argument that counts something: an integer of Python or NumPy within [low, high].
+
+    Raises
+    ------
+    InvalidInput
+        For anything else, True and False and floats without a fraction among it.
+
+    Examples
+    --------
+    >>> from visviva._arrays import whole_number
+    >>> whole_number("n_events", 1e6, low=1)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: n_events: expected a whole number, got 1000000.0; pass int(1000000.0)
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        advice = f"; pass int({value})" if isinstance(value, float) and value.is_integer() else ""
+        raise InvalidInput(name, f"expected a whole number, got {value!r}{advice}")
+    if not low <= value <= high:
+        raise InvalidInput(name, f"expected a whole number from {low} to {high}, got {value}")
+    return int(value)
 
 
 def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:

@@ -6,6 +6,7 @@ everything else — saving, loading, change of frame, the notes of the conservat
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
@@ -25,7 +26,7 @@ __all__ = ["CentralField", "Force", "Gravity", "UniformField"]
 _Vector = tuple[float, float, float]
 
 
-class Force:
+class Force(ABC):
     """What every force says about itself."""
 
     __slots__ = ()
@@ -35,24 +36,25 @@ class Force:
     # About the moving centre of mass.
     conserves_spin: ClassVar[bool]
 
+    @abstractmethod
     def conserves_angular_momentum(self, about: NDArray[np.float64]) -> bool:
         """Whether it leaves the angular momentum about the point ``about`` (3,) constant."""
-        raise NotImplementedError
 
+    @abstractmethod
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Force:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rotated(self, rotation: NDArray[np.float64]) -> Force:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rescaled(self, *, length: float, mass: float, time: float) -> Force:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _to_core(self) -> dict[str, Any]:
-        raise NotImplementedError
+        """The dictionary by which the core and a file know the force."""
 
     @classmethod
     def _from_core(cls, description: dict[str, Any]) -> Self:
@@ -74,7 +76,7 @@ class Gravity(Force):
     Raises
     ------
     visviva.InvalidInput
-        If either is not a finite real number.
+        If either is not a finite real number, or the softening is negative.
 
     Examples
     --------
@@ -92,7 +94,10 @@ class Gravity(Force):
 
     def __init__(self, G: float, softening: float = 0.0) -> None:
         object.__setattr__(self, "G", number("G", G))
-        object.__setattr__(self, "softening", number("softening", softening))
+        length = number("softening", softening)
+        if length < 0.0:
+            raise InvalidInput("softening", f"expected a length of at least 0, got {length!r}")
+        object.__setattr__(self, "softening", length)
 
     def conserves_angular_momentum(self, about: NDArray[np.float64]) -> bool:
         """Always: the forces of a pair are opposite and along the line between the two."""

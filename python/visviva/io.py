@@ -7,6 +7,7 @@ A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, `
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import zipfile
@@ -41,7 +42,7 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
     Parameters
     ----------
     path : path-like
-        Written exactly as given; no ending is added.
+        Written exactly as given; no ending is added. The folder must exist.
     run : Trajectory or EnsembleTrajectory
     """
     result = run._result
@@ -62,6 +63,8 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
     arrays |= {f"{group}/{name}": array for group in _GROUPS for name, array in result[group].items()}
     text = json.dumps(header, default=_plain).encode()
     target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder to save the run in", str(target.parent))
     partial = target.with_name(f"{target.name}.{os.getpid()}.part")
     try:
         with partial.open("wb") as file:
@@ -99,18 +102,17 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     >>> vv.load(path).final.t0
     1.0
     """
+    name = os.fspath(path)
     try:
         # Opened here because NumPy leaves the file open when it finds it damaged.
-        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
+        with open(name, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         header = json.loads(arrays.pop("header").tobytes())
         found, version = header["format"], int(header["version"])
     except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise InvalidInput(
-            "path", f"{os.fspath(path)!r} is not a saved visviva run, or is damaged ({error})"
-        ) from error
+        raise InvalidInput("path", f"expected a run that visviva saved, but {name!r} is none, or is damaged") from error
     if found != FORMAT:
-        raise InvalidInput("path", f"{os.fspath(path)!r} holds {found!r}, not a {FORMAT!r}")
+        raise InvalidInput("path", f"expected a {FORMAT!r}, but {name!r} holds a {found!r}")
     if version > VERSION:
         raise InvalidInput(
             "path", f"the file has format version {version}, this visviva reads up to {VERSION}; use a newer visviva"

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva._arrays import float_array, mass_array
+from visviva._arrays import float_array, mass_array, positive
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -112,6 +112,11 @@ class Particles:
         length, mass, time : float
             How many new units make one old unit. Powers of two change no bit of any mantissa.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            If a scale is not positive.
+
         Examples
         --------
         >>> import visviva as vv
@@ -119,6 +124,8 @@ class Particles:
         >>> kilometres.rescaled(length=1000.0).position
         array([[2000.,    0.,    0.]])
         """
+        for name, scale in (("length", length), ("mass", mass), ("time", time)):
+            positive(name, scale, "number of new units per old one")
         return Particles(self.mass * mass, self.position * length, self.velocity * (length / time))
 
 

@@ -11,7 +11,7 @@ from dataclasses import make_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, number, positive
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 
@@ -37,10 +37,8 @@ class Potential:
 
     def __post_init__(self) -> None:
         for field in self._fields:
-            value = number(field, getattr(self, field))
-            if field in self._positive and not value > 0.0:
-                raise InvalidInput(field, f"expected a positive number, got {value!r}")
-            object.__setattr__(self, field, value)
+            check = positive if field in self._positive else number
+            object.__setattr__(self, field, check(field, getattr(self, field)))
 
     @property
     def parameters(self) -> tuple[float, ...]:
@@ -141,7 +139,11 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     >>> vv.potentials.potential_by_name("coulomb", [-1.0])
     Coulomb(k=-1.0)
     """
-    if name not in _BY_NAME:
+    if not isinstance(name, str) or name not in _BY_NAME:
         hint = did_you_mean(str(name), _BY_NAME)
         raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
-    return _BY_NAME[name](*parameters)
+    made = _BY_NAME[name]
+    if len(parameters) != len(made._fields):
+        expected = f"{len(made._fields)} ({', '.join(made._fields)})"
+        raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
+    return made(*parameters)

@@ -13,19 +13,20 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from visviva._arrays import float_array, number, positive, whole_number
 from visviva._keywords import known_keywords
 from visviva.datasets.outer_solar_system import outer_solar_system as outer_solar_system_data
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
 from visviva.particles import Particles
 from visviva.scene import Scene
+from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.trajectory import Trajectory
 
 __all__ = [
     "Problem",
@@ -103,6 +104,8 @@ class Problem:
         >>> problem.error(problem.scene.run(t=problem.t_end)) < 1e-13
         True
         """
+        if not isinstance(final, Scene | Trajectory):
+            raise InvalidInput("final", f"expected a Scene or a Trajectory, got {type(final).__name__}")
         state = final if isinstance(final, Scene) else final.final
         for reference in self.references:
             if reference.t == state.t0:
@@ -167,7 +170,7 @@ def figure_eight(periods: int = 1) -> Problem:
     vx, vy = 0.46620368406953935340327136685, 0.43236573091747685005292775403
     position = [[x, y, 0.0], [-x, -y, 0.0], [0.0, 0.0, 0.0]]
     velocity = [[vx, vy, 0.0], [vx, vy, 0.0], [-2 * vx, -2 * vy, 0.0]]
-    t_end = 6.3259140097821385504246998036 * _positive("periods", periods)
+    t_end = 6.3259140097821385504246998036 * whole_number("periods", periods, low=1)
     return Problem(
         "figure_eight",
         "three equal bodies on one closed curve",
@@ -261,15 +264,15 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
     >>> vv.problems.kepler(e=0.5).scene.particles.position[:, 0]
     array([-0.25,  0.25])
     """
-    if not 0.0 <= e < 1.0:
+    if not 0.0 <= number("e", e) < 1.0:
         raise InvalidInput("e", f"expected an eccentricity of an ellipse, 0 ≤ e < 1, got {e!r}")
-    if not 0.0 <= mass_ratio < np.inf:
-        raise InvalidInput("mass_ratio", f"expected a finite number that is not negative, got {mass_ratio!r}")
+    if not number("mass_ratio", mass_ratio) >= 0.0:
+        raise InvalidInput("mass_ratio", f"expected a number that is not negative, got {mass_ratio!r}")
     first, second = 1.0 / (1.0 + mass_ratio), mass_ratio / (1.0 + mass_ratio)
     distance, speed = 1.0 - e, sqrt((1.0 + e) / (1.0 - e))
     position = [[-second * distance, 0.0, 0.0], [first * distance, 0.0, 0.0]]
     velocity = [[0.0, -second * speed, 0.0], [0.0, first * speed, 0.0]]
-    t_end = 2.0 * pi * _positive("periods", periods)
+    t_end = 2.0 * pi * whole_number("periods", periods, low=1)
     return Problem(
         "kepler",
         f"two bodies, e = {e:g}",
@@ -307,9 +310,11 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     >>> round(problem.t_end, 6)
     7.255197
     """
-    if len(masses) != 3:
-        raise InvalidInput("masses", f"expected three masses, got {len(masses)}")
-    total = float(sum(masses))
+    a, b, d = three = float_array("masses", masses, (3,))
+    side, turn = positive("side", side, "length"), number("turn", turn)
+    total = float(a + b + d)
+    if not (min(three) >= 0.0 and total > 0.0):
+        raise InvalidInput("masses", f"expected masses of at least 0 and one above, got {three.tolist()}")
     rate = sqrt(total / (side * side * side))
     corners = side / sqrt(3.0) * np.array([[cos(a), sin(a), 0.0] for a in (0.0, 2 * pi / 3, 4 * pi / 3)])
     position = corners - Particles(masses, corners).center_of_mass()[0]
@@ -318,7 +323,6 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     c, s = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
     turned = position @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     # Routh's linear growth rate of the instability, in units of the rotation rate; zero when stable.
-    a, b, d = masses
     routh = 27.0 * (a * b + b * d + d * a) / total**2
     growth = sqrt(max(0.0, sqrt(routh) - 1.0)) / 2.0
     return Problem(
@@ -341,12 +345,6 @@ def _rows(position: ArrayLike) -> NDArray[np.float64]:
     rows = np.array(position, dtype=float)
     rows.flags.writeable = False
     return rows
-
-
-def _positive(name: str, value: int) -> int:
-    if value != int(value) or value < 1:
-        raise InvalidInput(name, f"expected a positive whole number, got {value!r}")
-    return int(value)
 
 
 _OUTER_SOLAR_SYSTEM = {

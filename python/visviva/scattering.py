@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number
-from visviva._keywords import known_keywords
+from visviva._arrays import float_array, positive
+from visviva._keywords import did_you_mean, known_keywords
 from visviva._monte_carlo import CrossSection, MonteCarlo, Tally, monte_carlo
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
@@ -308,7 +308,8 @@ def rutherford_cross_section(
     array([2.02990831])
     """
     if frame not in _FRAMES:
-        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}")
+        hint = did_you_mean(str(frame), _FRAMES)
+        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}{hint}")
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
     half = _half_distance(potential, energy)
@@ -320,10 +321,7 @@ def rutherford_cross_section(
 def _half_distance(potential: object, energy: object) -> float:
     if not isinstance(potential, Coulomb):
         raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
-    value = number("energy", energy)
-    if not value > 0.0:
-        raise InvalidInput("energy", f"expected a positive number, got {value!r}")
-    return potential.k / (2.0 * value)
+    return potential.k / (2.0 * positive("energy", energy))
 
 
 def _evaluate(
@@ -341,8 +339,6 @@ def _evaluate(
     if wrong.any():
         bound = {np.pi: "[0, π]", np.pi / 2.0: "[0, π/2]"}.get(limit, "[0, ∞)")
         raise InvalidInput(name, f"expected numbers in {bound}, got {array[wrong][0]}")
-    ratio = number("mass_ratio", mass_ratio)
-    if not ratio > 0.0:
-        raise InvalidInput("mass_ratio", f"expected a positive number, got {ratio!r}")
+    ratio = positive("mass_ratio", mass_ratio)
     result = _core.scattering_function(function, half_distance, ratio, array.ravel()).reshape(array.shape)
     return result[()]

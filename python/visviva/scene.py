@@ -69,12 +69,13 @@ class Scene:
         forces = tuple(part for part in parts if isinstance(part, Force))
         for part in parts:
             if not isinstance(part, Particles | Force):
+                came = f"the class {part.__name__}" if isinstance(part, type) else f"a {type(part).__name__}"
                 raise InvalidInput(
-                    "parts",
-                    f"expected Particles and forces (Gravity, UniformField, CentralField), got {type(part).__name__}",
+                    "parts", f"expected Particles and forces (Gravity, UniformField, CentralField), got {came}"
                 )
         if len(particles) != 1:
-            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; join their arrays")
+            advice = "join their arrays" if particles else "the forces need bodies to act on"
+            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; {advice}")
         self._set(particles[0], forces, number("t0", t0))
 
     def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
@@ -131,7 +132,7 @@ class Scene:
             One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
             runs.
         dt : float, optional
-            The step of a fixed-step method, with the sign of the direction of time.
+            The step of a fixed-step method; backwards in time its sign may be either.
         rtol : float, optional
             Relative tolerance of an adaptive method, at least 2.3e-14.
         atol : float, optional
@@ -371,11 +372,9 @@ class Scene:
         >>> f"{days.rescaled(time=1 / 365.25).forces[0].G:.3f}"
         '39.477'
         """
-        for name, scale in (("length", length), ("mass", mass), ("time", time)):
-            if not number(name, scale) > 0.0:
-                raise InvalidInput(name, f"expected a positive number of new units per old one, got {scale!r}")
+        particles = self.particles.rescaled(length=length, mass=mass, time=time)
         forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
-        return Scene(self.particles.rescaled(length=length, mass=mass, time=time), *forces, t0=self.t0 * time)
+        return Scene(particles, *forces, t0=self.t0 * time)
 
     def reversed(self) -> Scene:
         """The scene with every velocity turned round: run on, it retraces its path.

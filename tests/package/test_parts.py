@@ -87,6 +87,15 @@ def test_everything_pickles_compares_and_hashes(force: vv.forces.Force) -> None:
     assert scene != vv.Scene(pair(mass=[1.0, 3.0]), force, t0=2.0)
 
 
+def test_a_force_must_answer_every_question() -> None:
+    class Silent(vv.forces.Force):
+        pass
+
+    with pytest.raises(TypeError, match=r"abstract.*_to_core.*conserves.*rescaled.*rotated.*shifted"):
+        Silent()  # type: ignore[abstract]
+    assert {type(force) for force in FORCES} == set(vv.forces._FORCES.values())
+
+
 @pytest.mark.parametrize("force", FORCES, ids=repr)
 def test_repr_evaluates(force: vv.forces.Force) -> None:
     names = vars(vv.potentials) | vars(vv.forces)
