@@ -54,8 +54,8 @@ mean 'distance'?
         return _checked(target, target.__qualname__, _names(target))
     for attribute, value in list(vars(target).items()):
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
-            owner = target.__name__ if attribute == "__init__" else f"{target.__name__}.{attribute}"
-            setattr(target, attribute, _checked(value, owner, _names(value)[1:]))
+            called = target.__name__ if attribute == "__init__" else attribute
+            setattr(target, attribute, _checked(value, called, _names(value)[1:]))
     return target
 
 

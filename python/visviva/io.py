@@ -28,6 +28,8 @@ from visviva.trajectory import Trajectory
 if TYPE_CHECKING:
     from os import PathLike
 
+    from visviva.recorded import Recorded
+
 __all__ = ["load", "save"]
 
 FORMAT = "visviva run"
@@ -36,7 +38,7 @@ _GROUPS = ("columns", "final", "per_trajectory")
 
 
 @known_keywords
-def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> None:
+def save(path: str | PathLike[str], run: Recorded) -> None:
     """Write a trajectory or an ensemble; the file appears whole or not at all.
 
     Parameters
@@ -46,14 +48,13 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
     run : Trajectory or EnsembleTrajectory
     """
     result = run._result
-    scene = run.scene if isinstance(run, Trajectory) else run.ensemble.scene
-    start = scene._keywords if isinstance(run, Trajectory) else run.ensemble._keywords
+    start = run._start._keywords
     header = {
         "format": FORMAT,
         "version": VERSION,
         "written_by": visviva.__version__,
-        "ensemble": isinstance(run, EnsembleTrajectory),
-        "t0": scene.t0,
+        "ensemble": run._start._is_ensemble,
+        "t0": start["t0"],
         "forces": start["forces"],
         "stats": result["stats"],
         "plan": result["plan"],

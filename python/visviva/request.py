@@ -58,13 +58,12 @@ def keywords(
 
 
 def execute(
-    scene: Any,
     request: dict[str, Any],
     threads: int | None,
     progress: Progress,
     *,
     ensemble: bool,
-    make: Callable[[Any, dict[str, Any]], _Result],
+    make: Callable[[dict[str, Any]], _Result],
 ) -> _Result:
     """Run the request and make its result, or raise the core's error with the result attached."""
     count = None if threads is None else whole_number("threads", threads)
@@ -75,7 +74,7 @@ def execute(
 
         with callback(progress) as report:
             result = _core.run(**request, threads=count, progress=report, ensemble=ensemble)
-    made = make(scene, result)
+    made = make(result)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)
