@@ -12,6 +12,7 @@ import numpy as np
 
 from visviva._arrays import float_array, mass_array
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
 from visviva.recorded import Recorded
@@ -100,7 +101,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         return (self[index] for index in range(len(self)))
 
     def __repr__(self) -> str:
-        return f"EnsembleScene({len(self)} copies of {self.scene!r})"
+        return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.scene, self.position, self.velocity, self.mass)
@@ -164,7 +165,8 @@ class EnsembleTrajectory(Recorded):
 
     def __repr__(self) -> str:
         failed = int(np.count_nonzero(self.status))
-        return f"EnsembleTrajectory({len(self)} copies, {len(self.t)} times, {failed} failed)"
+        copies = count(len(self), "copy", "copies")
+        return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
 
     @property
     def _start(self) -> EnsembleScene:

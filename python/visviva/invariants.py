@@ -15,6 +15,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -63,6 +64,9 @@ class Invariants:
     center_of_mass_kinetic_energy: float
     internal_kinetic_energy: float
     virial: float
+
+    def __str__(self) -> str:
+        return table(self)
 
 
 def conserved(

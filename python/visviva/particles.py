@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva._arrays import float_array, mass_array, positive
 from visviva._keywords import known_keywords
+from visviva._text import count
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -65,8 +66,8 @@ class Particles:
 
     def __repr__(self) -> str:
         massless = int(np.count_nonzero(self.mass == 0.0))
-        noun = "body" if len(self) == 1 else "bodies"
-        return f"Particles({len(self)} {noun}{f', {massless} of them massless' if massless else ''})"
+        note = f", {massless} of them massless" if massless else ""
+        return f"Particles({count(len(self), 'body', 'bodies')}{note})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Particles):

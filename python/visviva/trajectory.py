@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.recorded import Recorded
 
@@ -71,7 +72,8 @@ class Trajectory(Recorded):
 
     def __repr__(self) -> str:
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
-        return f"Trajectory({len(self.t)} times, {len(self.scene.particles)} bodies, {span}, {self.status.name})"
+        bodies = count(len(self.scene.particles), "body", "bodies")
+        return f"Trajectory({count(len(self.t), 'time')}, {bodies}, {span}, {self.status.name})"
 
     def __len__(self) -> int:
         return len(self.t)
@@ -165,7 +167,9 @@ class Trajectory(Recorded):
         return of_trajectory(self, about)
 
     def plot(self) -> Figure:
-        """Orbits in the x–y plane beside the relative change of the energy, as a matplotlib Figure.
+        """Orbits beside the relative change of the energy, as a matplotlib Figure.
+
+        The orbits are seen in the coordinate plane in which they extend most, x–y if in doubt.
 
         Raises
         ------

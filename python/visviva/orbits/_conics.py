@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -59,6 +60,9 @@ class Conic:
     period: NDArray[np.float64]
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
+
+    def __str__(self) -> str:
+        return table(self)
 
 
 @known_keywords

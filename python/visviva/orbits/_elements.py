@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -87,6 +88,9 @@ class Elements:
     period: NDArray[np.float64]
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
+
+    def __str__(self) -> str:
+        return table(self)
 
     def state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the position and velocity that these elements describe.
