@@ -16,6 +16,12 @@ def test_nouns_agree_with_their_numbers() -> None:
     assert repr(single.run(t=1.0)) == "EnsembleTrajectory(1 copy, 2 times, 0 failed)"
 
 
+def test_a_conservation_table_says_whom_it_does_not_judge() -> None:
+    scene = vv.problems.kepler(e=0.5, mass_ratio=0.0).scene
+    assert str(scene.run(t=1.0).conservation()).endswith("1 massless body not judged: no share in any row")
+    assert "massless" not in str(vv.problems.kepler(e=0.5).scene.run(t=1.0).conservation())
+
+
 def test_elements_print_as_a_table() -> None:
     lines = str(vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])).splitlines()
     assert [line.split()[0] for line in lines] == list(vv.orbits.Elements.__slots__)
