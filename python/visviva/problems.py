@@ -15,6 +15,13 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._keywords import known_keywords
+from visviva._reference_states import (
+    OUTER_SOLAR_SYSTEM,
+    OUTER_SOLAR_SYSTEM_CONDITIONING,
+    PLEIADES,
+    PLEIADES_CONDITIONING,
+    PYTHAGOREAN,
+)
 from visviva.datasets.outer_solar_system import outer_solar_system as outer_solar_system_data
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
@@ -134,14 +141,14 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     scene = Scene(Particles(data.mass, data.position, data.velocity), Gravity(data.G))
     if variant == "applegate":
         scene = scene.center_of_mass_frame()
-    t_end, positions = _OUTER_SOLAR_SYSTEM[variant]
+    t_end, positions = OUTER_SOLAR_SYSTEM[variant]
     return Problem(
         "outer_solar_system",
         "Sun, Jupiter, Saturn, Uranus, Neptune, Pluto; AU, day, solar mass",
         scene,
         t_end,
         (_reference(t_end, positions),),
-        _OUTER_SOLAR_SYSTEM_CONDITIONING[variant],
+        OUTER_SOLAR_SYSTEM_CONDITIONING[variant],
         data.source,
     )
 
@@ -205,7 +212,7 @@ def pythagorean() -> Problem:
         "masses 3, 4, 5 released at the corners of a 3-4-5 triangle",
         Scene(Particles([3.0, 4.0, 5.0], [[1, 3, 0], [-2, -1, 0], [1, -1, 0]]), Gravity(1.0)),
         30.0,
-        tuple(Reference(t, (0,), _rows([[x, y, 0.0]])) for t, x, y in _PYTHAGOREAN),
+        tuple(Reference(t, (0,), _rows([[x, y, 0.0]])) for t, x, y in PYTHAGOREAN),
         ((30.0, 5.0), (40.0, 5e2), (46.0, 5e4), (59.0, 2e6), (63.0, 3e7), (70.0, 1.5e8)),
         "Szebehely & Peters, Astron. J. 72 (1967) 876",
     )
@@ -234,8 +241,8 @@ def pleiades() -> Problem:
         "seven stars in a plane",
         scene,
         3.0,
-        (_reference(3.0, np.array([*_PLEIADES, zero]).T),),
-        _PLEIADES_CONDITIONING,
+        (_reference(3.0, np.array([*PLEIADES, zero]).T),),
+        PLEIADES_CONDITIONING,
         "Hairer, Norsett & Wanner, Solving ODE I (1993), II.10",
     )
 
@@ -345,63 +352,3 @@ def _rows(position: ArrayLike) -> NDArray[np.float64]:
     rows = np.array(position, dtype=float)
     rows.flags.writeable = False
     return rows
-
-
-_OUTER_SOLAR_SYSTEM = {
-    "hairer_lubich_wanner": (
-        200_000.0,
-        (
-            (1.235842542354608727, -0.489943821144274976, -0.246105361814321310),
-            (2.611079570112863360, -5.079525496787986964, -2.244720677853057245),
-            (-7.669136247391309259, -4.052052245487825795, -1.331115669711381470),
-            (-5.824743949847743332, 15.33717375357252336, 6.782463409917608488),
-            (20.66398024751502176, 20.58295604245986475, 7.894795414748202090),
-            (36.56695069882260438, -13.76768440125962526, -15.04346922182326349),
-        ),
-    ),
-    "applegate": (
-        3_650_000.0,
-        (
-            (4.886025563510547920e-3, -1.074290254822880125e-3, -3.319928994920374092e-5),
-            (-4.873938365329001185, -2.549010106097438921, -0.01788292879227708220),
-            (-6.843400054012561635, 6.437453904942041360, 0.1529831104112962148),
-            (16.07286771494843521, 11.74732431451195055, 0.3742948716935612080),
-            (19.68047737244841617, 22.33046645706109838, -0.1889527097240594515),
-            (10.73491298653526903, -31.76405831809241971, 0.08929212591000118129),
-        ),
-    ),
-}
-_OUTER_SOLAR_SYSTEM_CONDITIONING = {
-    "hairer_lubich_wanner": ((200_000.0, 4e3),),
-    "applegate": ((3_650_000.0, 9e4),),
-}
-
-# Body 0 at four times.
-_PYTHAGOREAN = (
-    (10.0, 0.778480410138085493, 0.141392300290086168),
-    (30.0, 0.856340498897316071, 2.28709366369624994),
-    (63.0, 2.83943397249150025, 8.11285442469595138),
-    (70.0, 6.93346359901188729, 20.2618043059517141),
-)
-
-_PLEIADES = (
-    (
-        0.3706139143970512901,
-        3.237284092057233093,
-        -3.222559032418323347,
-        0.6597091455775308359,
-        0.3425581707156579790,
-        1.562172101400631016,
-        -0.7003092922212495385,
-    ),
-    (
-        -3.943437585517392055,
-        -3.271380973972549928,
-        5.225081843456544192,
-        -2.590612434977469511,
-        1.198213693392274638,
-        -0.2429682344935823409,
-        1.091449240428979748,
-    ),
-)
-_PLEIADES_CONDITIONING = ((3.0, 4e2),)
