@@ -13,6 +13,7 @@ The names below are imported when they are first used, so that ``import visviva`
 than NumPy itself.
 """
 
+import sys
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -38,6 +39,7 @@ _HOME = {
     "Status": "trajectory",
     "Trajectory": "trajectory",
     "UniformField": "forces",
+    "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
 }
@@ -63,6 +65,7 @@ __all__ = [
     "Status",
     "Trajectory",
     "UniformField",
+    "UnknownKeyword",
     "datasets",
     "errors",
     "forces",
@@ -85,6 +88,7 @@ if TYPE_CHECKING:
         InternalError,
         Interrupted,
         InvalidInput,
+        UnknownKeyword,
     )
     from visviva.forces import CentralField, Gravity, UniformField
     from visviva.integrators import Method, methods
@@ -104,7 +108,8 @@ def __getattr__(name: str) -> Any:
     elif name in _HOME:
         value = getattr(import_module(f"visviva.{_HOME[name]}"), name)
     else:
-        raise AttributeError(f"module 'visviva' has no attribute {name!r}")
+        # With these two, Python's own message suggests the nearest name.
+        raise AttributeError(f"module 'visviva' has no attribute {name!r}", name=name, obj=sys.modules[__name__])
     globals()[name] = value
     return value
 

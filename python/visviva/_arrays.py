@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 
 from visviva.errors import InvalidInput
 
-__all__ = ["Shape", "Sizes", "float_array", "number"]
+__all__ = ["Shape", "Sizes", "float_array", "mass_array", "number", "positive", "whole_number"]
 
 Shape: TypeAlias = tuple[int | str | None, ...]
 """Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
@@ -77,10 +77,39 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
     result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
     finite = np.isfinite(result)
     if not finite.all():
-        where = tuple(int(i) for i in np.argwhere(~finite)[0])
-        label = name + (f"[{', '.join(map(str, where))}]" if where else "")
-        raise InvalidInput(name, f"expected finite numbers, but {label} is {result[where]}; remove or replace it")
+        raise InvalidInput(name, f"expected finite numbers, but {_first(name, result, ~finite)}; remove or replace it")
     return result
+
+
+def mass_array(value: object, shape: Shape, sizes: Sizes | None = None) -> NDArray[np.float64]:
+    """Check an array of masses: a `float_array` of which no element is negative.
+
+    Raises
+    ------
+    InvalidInput
+        As `float_array`, and for the first negative mass.
+
+    Examples
+    --------
+    >>> from visviva._arrays import mass_array
+    >>> mass_array([1.0, -2.0], ("N",))
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: mass: expected masses of at least 0, but mass[1] is -2.0; 0 marks a test particle
+    """
+    array = float_array("mass", value, shape, sizes)
+    negative = array < 0.0
+    if negative.any():
+        which = _first("mass", array, negative)
+        raise InvalidInput("mass", f"expected masses of at least 0, but {which}; 0 marks a test particle")
+    return array
+
+
+def _first(name: str, array: NDArray[np.float64], wrong: NDArray[np.bool_]) -> str:
+    """Name the first wrong element and its value."""
+    where = tuple(int(i) for i in np.argwhere(wrong)[0])
+    label = name + (f"[{', '.join(map(str, where))}]" if where else "")
+    return f"{label} is {array[where]}"
 
 
 def number(name: str, value: object) -> float:
@@ -120,6 +149,47 @@ def number(name: str, value: object) -> float:
     if array.shape != ():
         raise InvalidInput(name, f"expected one real number, got an array of shape {array.shape}")
     return float(float_array(name, array, ()))
+
+
+def positive(name: str, value: object, what: str = "number") -> float:
+    """Check a scalar argument that must be above 0; see `number`.
+
+    Examples
+    --------
+    >>> from visviva._arrays import positive
+    >>> positive("length", 0)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: length: expected a positive number, got 0.0
+    """
+    checked = number(name, value)
+    if not checked > 0.0:
+        raise InvalidInput(name, f"expected a positive {what}, got {checked!r}")
+    return checked
+
+
+def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**63 - 1) -> int:
+    """Check a scalar argument that counts something: an integer of Python or NumPy within [low, high].
+
+    Raises
+    ------
+    InvalidInput
+        For anything else, True and False and floats without a fraction among it.
+
+    Examples
+    --------
+    >>> from visviva._arrays import whole_number
+    >>> whole_number("n_events", 1e6, low=1)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: n_events: expected a whole number, got 1000000.0; pass int(1000000.0)
+    """
+    if isinstance(value, bool) or not isinstance(value, int | np.integer):
+        advice = f"; pass int({value})" if isinstance(value, float) and value.is_integer() else ""
+        raise InvalidInput(name, f"expected a whole number, got {value!r}{advice}")
+    if not low <= value <= high:
+        raise InvalidInput(name, f"expected a whole number from {low} to {high}, got {value}")
+    return int(value)
 
 
 def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:

@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, number, whole_number
+from visviva._keywords import known_keywords
 from visviva._progress import callback
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
@@ -36,6 +37,7 @@ class CrossSection(NamedTuple):
     """One standard deviation of the count, as an area likewise."""
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class Tally:
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
@@ -110,6 +112,7 @@ class Tally:
         )
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class MonteCarlo(Mapping[str, Tally]):
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
@@ -176,6 +179,7 @@ class MonteCarlo(Mapping[str, Tally]):
         )
 
 
+@known_keywords
 def monte_carlo(
     potential: Potential,
     *,
@@ -252,16 +256,16 @@ def monte_carlo(
     if not isinstance(potential, Coulomb):
         raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
     pair = float_array("masses", masses, (2,))
-    first = _whole("first_event", first_event, 0, 2**63 - 1)
-    count = _whole("n_events", n_events, 1, 2**63 - first)
-    key = _whole("seed", seed, 0, 2**64 - 1)
+    first = whole_number("first_event", first_event, 0, 2**63 - 1)
+    count = whole_number("n_events", n_events, 1, 2**63 - first)
+    key = whole_number("seed", seed, 0, 2**64 - 1)
     request: dict[str, Any] = {
         "k": potential.k,
         "beam_energy": number("beam_energy", beam_energy),
         "masses": (float(pair[0]), float(pair[1])),
         "b_max": number("b_max", b_max),
-        "tallies": _tallies(tally, _whole("bins", bins, 1, 2**16)),
-        "threads": None if threads is None else _whole("threads", threads, 1, 1024),
+        "tallies": _tallies(tally, whole_number("bins", bins, 1, 2**16)),
+        "threads": None if threads is None else whole_number("threads", threads, 1, 1024),
     }
     with callback(progress) as report:
         columns = _core.monte_carlo(**request, n_events=count, seed=key, first_event=first, progress=report)
@@ -293,13 +297,6 @@ def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float
     if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
         raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
     return pairs
-
-
-def _whole(name: str, value: object, low: int, high: int) -> int:
-    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
-    if not whole or not low <= int(value) <= high:  # type: ignore[call-overload]
-        raise InvalidInput(name, f"expected a whole number from {low} to {high}, got {value!r}")
-    return int(value)  # type: ignore[call-overload, no-any-return]
 
 
 def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:

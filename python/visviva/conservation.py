@@ -13,6 +13,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.invariants import conserved, internal_motion, of_scene, reference_point
 
@@ -26,6 +28,7 @@ __all__ = ["Conservation", "Drift"]
 _EPSILON = float(np.finfo(float).eps)
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Drift:
     """How far one quantity moved from its initial value.
@@ -53,6 +56,7 @@ class Drift:
     conserved: bool
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Conservation:
     """Drift of each invariant of a trajectory; prints as a table.
@@ -67,6 +71,8 @@ class Conservation:
         in a bound system. NaN if positions or velocities were not recorded.
     about : str
         The reference point of the angular momentum.
+    massless : int
+        Bodies that carry nothing of all this: their motion is not judged by it.
     """
 
     energy: Drift
@@ -75,6 +81,7 @@ class Conservation:
     center_of_mass: Drift
     virial: float
     about: str
+    massless: int
 
     @property
     def rows(self) -> tuple[Drift, ...]:
@@ -89,6 +96,8 @@ class Conservation:
             note = "" if row.conserved else "  not conserved by these forces"
             lines.append(f"{name:<34}{values}{row.scale:>14.6g}{note}")
         lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<34}{self.virial:>10.1e}")
+        if self.massless:
+            lines.append(f"{count(self.massless, 'massless body', 'massless bodies')} not judged: no share in any row")
         return "\n".join(lines)
 
 
@@ -132,6 +141,7 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
         center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
         virial=_virial(trajectory, closed),
         about="centre of mass" if point is None else "origin" if about_origin else "given point",
+        massless=int(np.count_nonzero(mass == 0.0)),
     )
 
 

@@ -104,6 +104,9 @@ def _compare_with_law(tally: vv.scattering.Tally, ratio: float, events: int) -> 
 
 
 def _compare_with_1913(measured: vv.datasets.GeigerMarsden, simulated: NDArray[np.float64]) -> None:
+    if not simulated.all():
+        print("\ntoo few events for a comparison with 1913: no particle reached some of the angles")
+        return
     print(f"\n{'angle':>7}{'gold, 1913':>14}{'simulated':>14}{'ratio':>8}    (one common scale)")
     scale = np.exp(np.mean(np.log(measured.gold / simulated)))
     for angle, count, value in zip(measured.angle, measured.gold, simulated * scale, strict=True):
@@ -121,7 +124,7 @@ def _picture(
         scale = np.exp(np.mean(np.log(counts * np.sin(angles / 2.0) ** 4)))
         axes.plot(np.degrees(angles), counts, marker, markerfacecolor="none", label=f"{metal}, Geiger & Marsden 1913")
         axes.plot(np.degrees(fine), scale / np.sin(fine / 2.0) ** 4, linewidth=0.8, color="0.4")
-        if metal == "gold":
+        if metal == "gold" and simulated.all():
             axes.plot(
                 np.degrees(angles), simulated * np.exp(np.mean(np.log(counts / simulated))), "+", label="simulated"
             )

@@ -11,26 +11,27 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array
+from visviva._arrays import float_array, mass_array
+from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import Particles
-from visviva.plan import Plan
-from visviva.request import execute, keywords
-from visviva.trajectory import Stats, Trajectory
+from visviva.recorded import Recorded
+from visviva.runnable import Runnable
+from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
-    from os import PathLike
+    from collections.abc import Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._progress import Progress
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
 
 
-class EnsembleScene:
+@known_keywords
+class EnsembleScene(Runnable["EnsembleTrajectory"]):
     """B copies of a scene. Made by `Scene.ensemble`.
 
     Attributes
@@ -39,9 +40,19 @@ class EnsembleScene:
         The forces, the time, and whatever the copies share.
     mass : ndarray, shape (B, N)
     position, velocity : ndarray, shape (B, N, 3)
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None])
+    >>> len(copies), copies.position.shape, copies[1] == scene
+    (2, (2, 2, 3), False)
     """
 
     __slots__ = ("_keywords", "mass", "position", "scene", "velocity")
+
+    _is_ensemble = True
 
     def __init__(
         self,
@@ -54,9 +65,11 @@ class EnsembleScene:
         own = {"mass": scene.particles.mass, "position": scene.particles.position, "velocity": scene.particles.velocity}
         given = {
             name: float_array(name, value, (None, *own[name].shape))
-            for name, value in (("position", position), ("velocity", velocity), ("mass", mass))
+            for name, value in (("position", position), ("velocity", velocity))
             if value is not None
         }
+        if mass is not None:
+            given["mass"] = mass_array(mass, (None, *own["mass"].shape))
         if not given:
             raise InvalidInput("position", "give position, velocity or mass with a leading axis over the copies")
         lengths = {name: array.shape[0] for name, array in given.items()}
@@ -95,70 +108,17 @@ class EnsembleScene:
         return (self[index] for index in range(len(self)))
 
     def __repr__(self) -> str:
-        return f"EnsembleScene({len(self)} copies of {self.scene!r})"
+        return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.scene, self.position, self.velocity, self.mass)
 
-    def run(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> EnsembleTrajectory:
-        """Run every copy; arguments as `Scene.run`.
-
-        Returns
-        -------
-        EnsembleTrajectory
-
-        Raises
-        ------
-        visviva.InvalidInput
-            Something asked for makes no sense; nothing has run. A copy that fails on the way raises
-            nothing: see `EnsembleTrajectory.status`.
-        visviva.Interrupted
-            Ctrl-C; ``.trajectory`` holds what was done.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> scene = vv.problems.kepler(e=0.5).scene
-        >>> out = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]).run(t=1.0)
-        >>> out.position.shape, out[1].position.shape
-        ((2, 2, 2, 3), (2, 2, 3))
-        """
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return execute(self, request, threads, progress, ensemble=True, make=EnsembleTrajectory)
-
-    def plan(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-    ) -> Plan:
-        """What `run` would do with the same arguments, without doing it."""
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(request))
+    def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
+        return EnsembleTrajectory(self, result)
 
 
-class EnsembleTrajectory:
+@known_keywords
+class EnsembleTrajectory(Recorded):
     """The motions of the copies. Made by `EnsembleScene.run` and `load`.
 
     Attributes
@@ -174,15 +134,21 @@ class EnsembleTrajectory:
         Totals over the copies; `per_trajectory` has them one by one.
 
     Indexing gives the `Trajectory` of one copy.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> out = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]).run(t=1.0)
+    >>> out.position.shape, out[1].position.shape
+    ((2, 2, 2, 3), (2, 2, 3))
     """
 
-    __slots__ = ("_columns", "_result", "ensemble", "t")
+    __slots__ = ("ensemble",)
 
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
+        super().__init__(result)
         self.ensemble = ensemble
-        self.t: NDArray[np.float64] = result["t"]
-        self._result = result
-        self._columns: dict[str, NDArray[np.float64]] = dict(result["columns"])
 
     def __len__(self) -> int:
         return len(self.ensemble)
@@ -206,48 +172,17 @@ class EnsembleTrajectory:
 
     def __repr__(self) -> str:
         failed = int(np.count_nonzero(self.status))
-        return f"EnsembleTrajectory({len(self)} copies, {len(self.t)} times, {failed} failed)"
-
-    def _column(self, name: str) -> NDArray[np.float64]:
-        if name not in self._columns:
-            # A copy's own property computes it, or says what to record.
-            self._columns[name] = np.stack([getattr(trajectory, name) for trajectory in self])
-        return self._columns[name]
+        copies = count(len(self), "copy", "copies")
+        return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
 
     @property
-    def position(self) -> NDArray[np.float64]:
-        """Positions, shape (B, T, N, 3)."""
-        return self._column("position")
+    def _start(self) -> EnsembleScene:
+        return self.ensemble
 
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (B, T, N, 3)."""
-        return self._column("velocity")
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Total energies, shape (B, T)."""
-        return self._column("energy")
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Total momenta, shape (B, T, 3)."""
-        return self._column("momentum")
-
-    @property
-    def angular_momentum(self) -> NDArray[np.float64]:
-        """Total angular momenta about the origin, shape (B, T, 3)."""
-        return self._column("angular_momentum")
-
-    @property
-    def center_of_mass(self) -> NDArray[np.float64]:
-        """Centres of mass, shape (B, T, 3)."""
-        return self._column("center_of_mass")
-
-    @property
-    def recorded(self) -> tuple[str, ...]:
-        """Names of the recorded columns."""
-        return tuple(self._result["columns"])
+    def _found(self, name: str) -> NDArray[np.float64]:
+        recorded: NDArray[np.float64] | None = self._result["columns"].get(name)
+        # A copy's own property computes it, or says what to record.
+        return np.stack([getattr(trajectory, name) for trajectory in self]) if recorded is None else recorded
 
     @property
     def status(self) -> NDArray[np.int8]:
@@ -256,19 +191,9 @@ class EnsembleTrajectory:
         return status
 
     @property
-    def stats(self) -> Stats:
-        """What the run cost in total."""
-        return Stats._from_core(self._result["stats"])
-
-    @property
     def per_trajectory(self) -> dict[str, NDArray[Any]]:
         """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,)."""
         return dict(self._result["per_trajectory"])
-
-    @property
-    def plan(self) -> Plan:
-        """What ran, what was skipped, and why."""
-        return Plan._from_core(self._result["plan"])
 
     @property
     def final(self) -> EnsembleScene:
@@ -285,12 +210,6 @@ class EnsembleTrajectory:
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
-
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write everything to one ``.npz`` file that this and every later version loads."""
-        from visviva.io import save
-
-        save(path, self)
 
 
 def _rebuild(

@@ -6,7 +6,15 @@ as attributes, and pickles with them. The core raises these same classes.
 
 from typing import Any
 
-__all__ = ["CloseEncounter", "ConvergenceError", "Error", "InternalError", "Interrupted", "InvalidInput"]
+__all__ = [
+    "CloseEncounter",
+    "ConvergenceError",
+    "Error",
+    "InternalError",
+    "Interrupted",
+    "InvalidInput",
+    "UnknownKeyword",
+]
 
 
 class Error(Exception):
@@ -40,6 +48,27 @@ class InvalidInput(Error, ValueError):
 
     def __str__(self) -> str:
         return f"{self.argument}: {self.message}"
+
+
+class UnknownKeyword(InvalidInput, TypeError):
+    """A keyword that the function does not take; also the `TypeError` that Python itself would raise.
+
+    Parameters
+    ----------
+    argument : str
+        The keyword that came.
+    message : str
+        What the function takes, and the nearest name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> try:
+    ...     vv.Gravity(g=1.0)
+    ... except vv.InvalidInput as error:
+    ...     print(error)
+    g: expected a keyword of Gravity (G, softening), got 'g'; did you mean 'G'?
+    """
 
 
 class ConvergenceError(Error, RuntimeError):

@@ -6,12 +6,14 @@ everything else — saving, loading, change of frame, the notes of the conservat
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -24,7 +26,7 @@ __all__ = ["CentralField", "Force", "Gravity", "UniformField"]
 _Vector = tuple[float, float, float]
 
 
-class Force:
+class Force(ABC):
     """What every force says about itself."""
 
     __slots__ = ()
@@ -34,30 +36,32 @@ class Force:
     # About the moving centre of mass.
     conserves_spin: ClassVar[bool]
 
+    @abstractmethod
     def conserves_angular_momentum(self, about: NDArray[np.float64]) -> bool:
         """Whether it leaves the angular momentum about the point ``about`` (3,) constant."""
-        raise NotImplementedError
 
+    @abstractmethod
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Force:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rotated(self, rotation: NDArray[np.float64]) -> Force:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3)."""
-        raise NotImplementedError
 
+    @abstractmethod
     def rescaled(self, *, length: float, mass: float, time: float) -> Force:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit."""
-        raise NotImplementedError
 
+    @abstractmethod
     def _to_core(self) -> dict[str, Any]:
-        raise NotImplementedError
+        """The dictionary by which the core and a file know the force."""
 
     @classmethod
     def _from_core(cls, description: dict[str, Any]) -> Self:
         return cls(**{name: value for name, value in description.items() if name != "kind"})
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class Gravity(Force):
     """Newton's law between every two bodies: V = −Σ G mᵢ mⱼ / √(r² + softening²).
@@ -72,7 +76,7 @@ class Gravity(Force):
     Raises
     ------
     visviva.InvalidInput
-        If either is not a finite real number.
+        If either is not a finite real number, or the softening is negative.
 
     Examples
     --------
@@ -90,7 +94,10 @@ class Gravity(Force):
 
     def __init__(self, G: float, softening: float = 0.0) -> None:
         object.__setattr__(self, "G", number("G", G))
-        object.__setattr__(self, "softening", number("softening", softening))
+        length = number("softening", softening)
+        if length < 0.0:
+            raise InvalidInput("softening", f"expected a length of at least 0, got {length!r}")
+        object.__setattr__(self, "softening", length)
 
     def conserves_angular_momentum(self, about: NDArray[np.float64]) -> bool:
         """Always: the forces of a pair are opposite and along the line between the two."""
@@ -112,6 +119,7 @@ class Gravity(Force):
         return {"kind": self.kind, "G": self.G, "softening": self.softening}
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class UniformField(Force):
     """The same acceleration g everywhere: V = −Σ mᵢ g·rᵢ.
@@ -163,6 +171,7 @@ class UniformField(Force):
         return {"kind": self.kind, "g": np.array(self.g)}
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False)
 class CentralField(Force):
     """A potential V(r) around a fixed point, felt by every body: F = −dV/dr r̂.

@@ -5,10 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from visviva import _core
+from visviva._keywords import known_keywords
 
 __all__ = ["Method", "methods"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Method:
     """An integration method and what it declares about itself.
@@ -43,6 +45,7 @@ class Method:
     reference: str
 
 
+@known_keywords
 def methods() -> list[Method]:
     """Every integration method.
 

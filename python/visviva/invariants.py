@@ -14,6 +14,8 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -26,6 +28,7 @@ __all__ = ["Invariants"]
 _COLUMNS = ["kinetic_energy", "potential_energy", "energy", "momentum", "angular_momentum", "center_of_mass", "virial"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Invariants:
     """The conserved quantities of a state.
@@ -61,6 +64,9 @@ class Invariants:
     center_of_mass_kinetic_energy: float
     internal_kinetic_energy: float
     virial: float
+
+    def __str__(self) -> str:
+        return table(self)
 
 
 def conserved(

@@ -7,6 +7,7 @@ A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, `
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import zipfile
@@ -16,6 +17,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import visviva
+from visviva._keywords import known_keywords
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
@@ -26,6 +28,8 @@ from visviva.trajectory import Trajectory
 if TYPE_CHECKING:
     from os import PathLike
 
+    from visviva.recorded import Recorded
+
 __all__ = ["load", "save"]
 
 FORMAT = "visviva run"
@@ -33,24 +37,24 @@ VERSION = 1
 _GROUPS = ("columns", "final", "per_trajectory")
 
 
-def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> None:
+@known_keywords
+def save(path: str | PathLike[str], run: Recorded) -> None:
     """Write a trajectory or an ensemble; the file appears whole or not at all.
 
     Parameters
     ----------
     path : path-like
-        Written exactly as given; no ending is added.
+        Written exactly as given; no ending is added. The folder must exist.
     run : Trajectory or EnsembleTrajectory
     """
     result = run._result
-    scene = run.scene if isinstance(run, Trajectory) else run.ensemble.scene
-    start = scene._keywords if isinstance(run, Trajectory) else run.ensemble._keywords
+    start = run._start._keywords
     header = {
         "format": FORMAT,
         "version": VERSION,
         "written_by": visviva.__version__,
-        "ensemble": isinstance(run, EnsembleTrajectory),
-        "t0": scene.t0,
+        "ensemble": run._start._is_ensemble,
+        "t0": start["t0"],
         "forces": start["forces"],
         "stats": result["stats"],
         "plan": result["plan"],
@@ -60,6 +64,8 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
     arrays |= {f"{group}/{name}": array for group in _GROUPS for name, array in result[group].items()}
     text = json.dumps(header, default=_plain).encode()
     target = Path(path)
+    if not target.parent.is_dir():
+        raise FileNotFoundError(errno.ENOENT, "no such folder to save the run in", str(target.parent))
     partial = target.with_name(f"{target.name}.{os.getpid()}.part")
     try:
         with partial.open("wb") as file:
@@ -69,6 +75,7 @@ def save(path: str | PathLike[str], run: Trajectory | EnsembleTrajectory) -> Non
         partial.unlink(missing_ok=True)
 
 
+@known_keywords
 def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     """Read a file that `Trajectory.save` or `EnsembleTrajectory.save` wrote, of this or an earlier version.
 
@@ -96,18 +103,17 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     >>> vv.load(path).final.t0
     1.0
     """
+    name = os.fspath(path)
     try:
         # Opened here because NumPy leaves the file open when it finds it damaged.
-        with open(path, "rb") as stream, np.load(stream, allow_pickle=False) as file:
+        with open(name, "rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
         header = json.loads(arrays.pop("header").tobytes())
         found, version = header["format"], int(header["version"])
     except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise InvalidInput(
-            "path", f"{os.fspath(path)!r} is not a saved visviva run, or is damaged ({error})"
-        ) from error
+        raise InvalidInput("path", f"expected a run that visviva saved, but {name!r} is none, or is damaged") from error
     if found != FORMAT:
-        raise InvalidInput("path", f"{os.fspath(path)!r} holds {found!r}, not a {FORMAT!r}")
+        raise InvalidInput("path", f"expected a {FORMAT!r}, but {name!r} holds a {found!r}")
     if version > VERSION:
         raise InvalidInput(
             "path", f"the file has format version {version}, this visviva reads up to {VERSION}; use a newer visviva"

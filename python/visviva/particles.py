@@ -7,16 +7,19 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva._arrays import float_array
+from visviva._arrays import float_array, mass_array, positive
+from visviva._keywords import known_keywords
+from visviva._text import count
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._arrays import Shape, Sizes
+    from visviva._arrays import Sizes
 
 __all__ = ["Particles"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Particles:
     """Point particles.
@@ -37,8 +40,7 @@ class Particles:
     Raises
     ------
     visviva.InvalidInput
-        For a wrong shape, complex or object arrays, NaN or infinity; for a negative mass when the
-        scene is planned or run.
+        For a wrong shape, complex or object arrays, NaN or infinity, or a negative mass.
 
     Examples
     --------
@@ -53,19 +55,19 @@ class Particles:
 
     def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
         sizes: Sizes = {}
-        object.__setattr__(self, "mass", _frozen("mass", mass, ("N",), sizes))
-        object.__setattr__(self, "position", _frozen("position", position, ("N", 3), sizes))
+        object.__setattr__(self, "mass", _frozen(mass_array(mass, ("N",), sizes), mass))
+        object.__setattr__(self, "position", _frozen(float_array("position", position, ("N", 3), sizes), position))
         if velocity is None:
             velocity = np.zeros(self.position.shape)
-        object.__setattr__(self, "velocity", _frozen("velocity", velocity, ("N", 3), sizes))
+        object.__setattr__(self, "velocity", _frozen(float_array("velocity", velocity, ("N", 3), sizes), velocity))
 
     def __len__(self) -> int:
         return len(self.mass)
 
     def __repr__(self) -> str:
         massless = int(np.count_nonzero(self.mass == 0.0))
-        noun = "body" if len(self) == 1 else "bodies"
-        return f"Particles({len(self)} {noun}{f', {massless} of them massless' if massless else ''})"
+        note = f", {massless} of them massless" if massless else ""
+        return f"Particles({count(len(self), 'body', 'bodies')}{note})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Particles):
@@ -111,6 +113,11 @@ class Particles:
         length, mass, time : float
             How many new units make one old unit. Powers of two change no bit of any mantissa.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            If a scale is not positive.
+
         Examples
         --------
         >>> import visviva as vv
@@ -118,6 +125,8 @@ class Particles:
         >>> kilometres.rescaled(length=1000.0).position
         array([[2000.,    0.,    0.]])
         """
+        for name, scale in (("length", length), ("mass", mass), ("time", time)):
+            positive(name, scale, "number of new units per old one")
         return Particles(self.mass * mass, self.position * length, self.velocity * (length / time))
 
 
@@ -137,9 +146,8 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
 
 
-def _frozen(name: str, value: ArrayLike, shape: Shape, sizes: Sizes) -> NDArray[np.float64]:
-    array = float_array(name, value, shape, sizes)
-    if array.flags.writeable or array is value:
+def _frozen(array: NDArray[np.float64], given: object) -> NDArray[np.float64]:
+    if array.flags.writeable or array is given:
         # Read-only views of somebody's writeable array are copied too: they have a base.
         array = array.copy()
         array.flags.writeable = False

@@ -5,9 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
+from visviva._keywords import known_keywords
+
 __all__ = ["Plan"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Plan:
     """What will run, what is skipped and why, and the cost of a step.

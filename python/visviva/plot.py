@@ -39,7 +39,7 @@ def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axe
 
 
 def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) -> Figure:
-    """Orbits in the x–y plane and, if it is known, the relative change of the energy."""
+    """Orbits in the plane of their largest extent and, if it is known, the relative change of the energy."""
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0))
     _orbits(axes[0], trajectory, names)
@@ -51,12 +51,15 @@ def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) 
 def _orbits(axes: Axes, trajectory: Trajectory, names: Sequence[str] | None) -> None:
     stride = max(1, len(trajectory) // _POINTS)
     position = trajectory.position[::stride]
+    # The two largest extents; of equal ones the earlier axis.
+    extent = np.ptp(trajectory.position.reshape(-1, 3), axis=0)
+    across, up = sorted(np.argsort(-extent, kind="stable")[:2].tolist())
     for body in range(position.shape[1]):
         label = names[body] if names else None
-        (line,) = axes.plot(position[:, body, 0], position[:, body, 1], linewidth=0.8, label=label)
-        axes.plot(*trajectory.position[-1, body, :2], "o", markersize=4, color=line.get_color())
+        (line,) = axes.plot(position[:, body, across], position[:, body, up], linewidth=0.8, label=label)
+        axes.plot(*trajectory.position[-1, body, [across, up]], "o", markersize=4, color=line.get_color())
     axes.set_aspect("equal", adjustable="datalim")
-    axes.set(xlabel="x", ylabel="y", title="orbits")
+    axes.set(xlabel="xyz"[across], ylabel="xyz"[up], title="orbits")
     if names:
         axes.legend(fontsize="small", loc="upper right")
 

@@ -11,7 +11,8 @@ from dataclasses import make_dataclass
 from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, number, positive
+from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 class Potential:
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
 
@@ -35,10 +37,8 @@ class Potential:
 
     def __post_init__(self) -> None:
         for field in self._fields:
-            value = number(field, getattr(self, field))
-            if field in self._positive and not value > 0.0:
-                raise InvalidInput(field, f"expected a positive number, got {value!r}")
-            object.__setattr__(self, field, value)
+            check = positive if field in self._positive else number
+            object.__setattr__(self, field, check(field, getattr(self, field)))
 
     @property
     def parameters(self) -> tuple[float, ...]:
@@ -110,7 +110,7 @@ def _make(entry: dict[str, Any]) -> type[Potential]:
         slots=True,
     )
     made.__module__ = __name__
-    return cast("type[Potential]", made)
+    return cast("type[Potential]", known_keywords(made))
 
 
 def _document(entry: dict[str, Any]) -> str:
@@ -129,6 +129,7 @@ __all__ = ["Potential", "potential_by_name"]
 __all__ += list(_CLASSES)
 
 
+@known_keywords
 def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     """The potential of a registry name, as files hold it.
 
@@ -138,6 +139,11 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     >>> vv.potentials.potential_by_name("coulomb", [-1.0])
     Coulomb(k=-1.0)
     """
-    if name not in _BY_NAME:
-        raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}")
-    return _BY_NAME[name](*parameters)
+    if not isinstance(name, str) or name not in _BY_NAME:
+        hint = did_you_mean(str(name), _BY_NAME)
+        raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
+    made = _BY_NAME[name]
+    if len(parameters) != len(made._fields):
+        expected = f"{len(made._fields)} ({', '.join(made._fields)})"
+        raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
+    return made(*parameters)

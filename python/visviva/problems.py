@@ -13,18 +13,27 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from visviva._arrays import float_array, number, positive, whole_number
+from visviva._keywords import known_keywords
+from visviva._reference_states import (
+    OUTER_SOLAR_SYSTEM,
+    OUTER_SOLAR_SYSTEM_CONDITIONING,
+    PLEIADES,
+    PLEIADES_CONDITIONING,
+    PYTHAGOREAN,
+)
 from visviva.datasets.outer_solar_system import outer_solar_system as outer_solar_system_data
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
 from visviva.particles import Particles
 from visviva.scene import Scene
+from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.trajectory import Trajectory
 
 __all__ = [
     "Problem",
@@ -38,6 +47,7 @@ __all__ = [
 ]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Reference:
     """Where bodies are at a time.
@@ -55,6 +65,7 @@ class Reference:
     position: NDArray[np.float64]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem:
     """A scene, how far to run it, and what must come out.
@@ -100,6 +111,8 @@ class Problem:
         >>> problem.error(problem.scene.run(t=problem.t_end)) < 1e-13
         True
         """
+        if not isinstance(final, Scene | Trajectory):
+            raise InvalidInput("final", f"expected a Scene or a Trajectory, got {type(final).__name__}")
         state = final if isinstance(final, Scene) else final.final
         for reference in self.references:
             if reference.t == state.t0:
@@ -109,6 +122,7 @@ class Problem:
         raise InvalidInput("final", f"{self.name} has references at t = {times}, got a state at t = {state.t0!r}")
 
 
+@known_keywords
 def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner") -> Problem:
     """The Sun and five outer planets over 200 000 days, or Applegate's version over 3 650 000.
 
@@ -127,18 +141,19 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     scene = Scene(Particles(data.mass, data.position, data.velocity), Gravity(data.G))
     if variant == "applegate":
         scene = scene.center_of_mass_frame()
-    t_end, positions = _OUTER_SOLAR_SYSTEM[variant]
+    t_end, positions = OUTER_SOLAR_SYSTEM[variant]
     return Problem(
         "outer_solar_system",
         "Sun, Jupiter, Saturn, Uranus, Neptune, Pluto; AU, day, solar mass",
         scene,
         t_end,
         (_reference(t_end, positions),),
-        _OUTER_SOLAR_SYSTEM_CONDITIONING[variant],
+        OUTER_SOLAR_SYSTEM_CONDITIONING[variant],
         data.source,
     )
 
 
+@known_keywords
 def figure_eight(periods: int = 1) -> Problem:
     """Three equal bodies that chase each other along one figure eight.
 
@@ -162,7 +177,7 @@ def figure_eight(periods: int = 1) -> Problem:
     vx, vy = 0.46620368406953935340327136685, 0.43236573091747685005292775403
     position = [[x, y, 0.0], [-x, -y, 0.0], [0.0, 0.0, 0.0]]
     velocity = [[vx, vy, 0.0], [vx, vy, 0.0], [-2 * vx, -2 * vy, 0.0]]
-    t_end = 6.3259140097821385504246998036 * _positive("periods", periods)
+    t_end = 6.3259140097821385504246998036 * whole_number("periods", periods, low=1)
     return Problem(
         "figure_eight",
         "three equal bodies on one closed curve",
@@ -175,6 +190,7 @@ def figure_eight(periods: int = 1) -> Problem:
     )
 
 
+@known_keywords
 def pythagorean() -> Problem:
     """Burrau's problem: masses 3, 4, 5 at rest at the corners of a 3–4–5 triangle.
 
@@ -196,12 +212,13 @@ def pythagorean() -> Problem:
         "masses 3, 4, 5 released at the corners of a 3-4-5 triangle",
         Scene(Particles([3.0, 4.0, 5.0], [[1, 3, 0], [-2, -1, 0], [1, -1, 0]]), Gravity(1.0)),
         30.0,
-        tuple(Reference(t, (0,), _rows([[x, y, 0.0]])) for t, x, y in _PYTHAGOREAN),
+        tuple(Reference(t, (0,), _rows([[x, y, 0.0]])) for t, x, y in PYTHAGOREAN),
         ((30.0, 5.0), (40.0, 5e2), (46.0, 5e4), (59.0, 2e6), (63.0, 3e7), (70.0, 1.5e8)),
         "Szebehely & Peters, Astron. J. 72 (1967) 876",
     )
 
 
+@known_keywords
 def pleiades() -> Problem:
     """Seven stars in a plane with masses 1 … 7 and several close encounters.
 
@@ -224,12 +241,13 @@ def pleiades() -> Problem:
         "seven stars in a plane",
         scene,
         3.0,
-        (_reference(3.0, np.array([*_PLEIADES, zero]).T),),
-        _PLEIADES_CONDITIONING,
+        (_reference(3.0, np.array([*PLEIADES, zero]).T),),
+        PLEIADES_CONDITIONING,
         "Hairer, Norsett & Wanner, Solving ODE I (1993), II.10",
     )
 
 
+@known_keywords
 def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem:
     """Two bodies with semi-major axis 1, total mass 1 and period 2π, starting at pericentre.
 
@@ -253,15 +271,15 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
     >>> vv.problems.kepler(e=0.5).scene.particles.position[:, 0]
     array([-0.25,  0.25])
     """
-    if not 0.0 <= e < 1.0:
+    if not 0.0 <= number("e", e) < 1.0:
         raise InvalidInput("e", f"expected an eccentricity of an ellipse, 0 ≤ e < 1, got {e!r}")
-    if not 0.0 <= mass_ratio < np.inf:
-        raise InvalidInput("mass_ratio", f"expected a finite number that is not negative, got {mass_ratio!r}")
+    if not number("mass_ratio", mass_ratio) >= 0.0:
+        raise InvalidInput("mass_ratio", f"expected a number that is not negative, got {mass_ratio!r}")
     first, second = 1.0 / (1.0 + mass_ratio), mass_ratio / (1.0 + mass_ratio)
     distance, speed = 1.0 - e, sqrt((1.0 + e) / (1.0 - e))
     position = [[-second * distance, 0.0, 0.0], [first * distance, 0.0, 0.0]]
     velocity = [[0.0, -second * speed, 0.0], [0.0, first * speed, 0.0]]
-    t_end = 2.0 * pi * _positive("periods", periods)
+    t_end = 2.0 * pi * whole_number("periods", periods, low=1)
     return Problem(
         "kepler",
         f"two bodies, e = {e:g}",
@@ -275,6 +293,7 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
     )
 
 
+@known_keywords
 def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2.0, turn: float = 1.0) -> Problem:
     """Three bodies that turn as a rigid equilateral triangle, ω² = (m₁ + m₂ + m₃) / side³.
 
@@ -298,9 +317,11 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     >>> round(problem.t_end, 6)
     7.255197
     """
-    if len(masses) != 3:
-        raise InvalidInput("masses", f"expected three masses, got {len(masses)}")
-    total = float(sum(masses))
+    a, b, d = three = float_array("masses", masses, (3,))
+    side, turn = positive("side", side, "length"), number("turn", turn)
+    total = float(a + b + d)
+    if not (min(three) >= 0.0 and total > 0.0):
+        raise InvalidInput("masses", f"expected masses of at least 0 and one above, got {three.tolist()}")
     rate = sqrt(total / (side * side * side))
     corners = side / sqrt(3.0) * np.array([[cos(a), sin(a), 0.0] for a in (0.0, 2 * pi / 3, 4 * pi / 3)])
     position = corners - Particles(masses, corners).center_of_mass()[0]
@@ -309,7 +330,6 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     c, s = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
     turned = position @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
     # Routh's linear growth rate of the instability, in units of the rotation rate; zero when stable.
-    a, b, d = masses
     routh = 27.0 * (a * b + b * d + d * a) / total**2
     growth = sqrt(max(0.0, sqrt(routh) - 1.0)) / 2.0
     return Problem(
@@ -332,69 +352,3 @@ def _rows(position: ArrayLike) -> NDArray[np.float64]:
     rows = np.array(position, dtype=float)
     rows.flags.writeable = False
     return rows
-
-
-def _positive(name: str, value: int) -> int:
-    if value != int(value) or value < 1:
-        raise InvalidInput(name, f"expected a positive whole number, got {value!r}")
-    return int(value)
-
-
-_OUTER_SOLAR_SYSTEM = {
-    "hairer_lubich_wanner": (
-        200_000.0,
-        (
-            (1.235842542354608727, -0.489943821144274976, -0.246105361814321310),
-            (2.611079570112863360, -5.079525496787986964, -2.244720677853057245),
-            (-7.669136247391309259, -4.052052245487825795, -1.331115669711381470),
-            (-5.824743949847743332, 15.33717375357252336, 6.782463409917608488),
-            (20.66398024751502176, 20.58295604245986475, 7.894795414748202090),
-            (36.56695069882260438, -13.76768440125962526, -15.04346922182326349),
-        ),
-    ),
-    "applegate": (
-        3_650_000.0,
-        (
-            (4.886025563510547920e-3, -1.074290254822880125e-3, -3.319928994920374092e-5),
-            (-4.873938365329001185, -2.549010106097438921, -0.01788292879227708220),
-            (-6.843400054012561635, 6.437453904942041360, 0.1529831104112962148),
-            (16.07286771494843521, 11.74732431451195055, 0.3742948716935612080),
-            (19.68047737244841617, 22.33046645706109838, -0.1889527097240594515),
-            (10.73491298653526903, -31.76405831809241971, 0.08929212591000118129),
-        ),
-    ),
-}
-_OUTER_SOLAR_SYSTEM_CONDITIONING = {
-    "hairer_lubich_wanner": ((200_000.0, 4e3),),
-    "applegate": ((3_650_000.0, 9e4),),
-}
-
-# Body 0 at four times.
-_PYTHAGOREAN = (
-    (10.0, 0.778480410138085493, 0.141392300290086168),
-    (30.0, 0.856340498897316071, 2.28709366369624994),
-    (63.0, 2.83943397249150025, 8.11285442469595138),
-    (70.0, 6.93346359901188729, 20.2618043059517141),
-)
-
-_PLEIADES = (
-    (
-        0.3706139143970512901,
-        3.237284092057233093,
-        -3.222559032418323347,
-        0.6597091455775308359,
-        0.3425581707156579790,
-        1.562172101400631016,
-        -0.7003092922212495385,
-    ),
-    (
-        -3.943437585517392055,
-        -3.271380973972549928,
-        5.225081843456544192,
-        -2.590612434977469511,
-        1.198213693392274638,
-        -0.2429682344935823409,
-        1.091449240428979748,
-    ),
-)
-_PLEIADES_CONDITIONING = ((3.0, 4e2),)

@@ -6,12 +6,13 @@ by the core (signs, ranges, names, order of times) is left to the core.
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 
 if TYPE_CHECKING:
@@ -51,22 +52,21 @@ def keywords(
         "rtol": number("rtol", rtol),
         "atol": None if atol is None else number("atol", atol),
         "max_step": None if max_step is None else number("max_step", max_step),
-        "max_steps": None if max_steps is None else _count("max_steps", max_steps),
-        "record": [record] if isinstance(record, str) else [_word("record", name) for name in record],
+        "max_steps": None if max_steps is None else whole_number("max_steps", max_steps),
+        "record": _words("record", record),
     }
 
 
 def execute(
-    scene: Any,
     request: _core._Request,
     threads: int | None,
     progress: Progress,
     *,
     ensemble: bool,
-    make: Callable[[Any, dict[str, Any]], _Result],
+    make: Callable[[dict[str, Any]], _Result],
 ) -> _Result:
     """Run the request and make its result, or raise the core's error with the result attached."""
-    count = None if threads is None else _count("threads", threads)
+    count = None if threads is None else whole_number("threads", threads)
     if progress is False:
         result = _core.run(request, threads=count, progress=None, ensemble=ensemble)
     else:
@@ -74,7 +74,7 @@ def execute(
 
         with callback(progress) as report:
             result = _core.run(request, threads=count, progress=report, ensemble=ensemble)
-    made = make(scene, result)
+    made = make(result)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)
@@ -98,9 +98,9 @@ def _word(name: str, value: object) -> str:
     return value
 
 
-def _count(name: str, value: object) -> int:
-    if isinstance(value, bool) or not isinstance(value, int | np.integer):
-        raise InvalidInput(name, f"expected a whole number, got {value!r}")
-    if not -(2**63) <= value < 2**63:
-        raise InvalidInput(name, "expected a whole number of at most 64 bits, got a larger one")
-    return int(value)
+def _words(name: str, value: object) -> list[str]:
+    if isinstance(value, str):
+        return [value]
+    if not isinstance(value, Iterable):
+        raise InvalidInput(name, f"expected a name or several names, got {value!r}")
+    return [_word(name, word) for word in value]

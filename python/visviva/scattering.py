@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, positive
+from visviva._keywords import did_you_mean, known_keywords
 from visviva._monte_carlo import CrossSection, MonteCarlo, Tally, monte_carlo
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
@@ -40,6 +41,7 @@ __all__ = [
 _FRAMES = ("cm", "lab", "recoil")
 
 
+@known_keywords
 def lab_angle(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     """Laboratory angle of the projectile after an elastic collision.
 
@@ -69,6 +71,7 @@ def lab_angle(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     return _evaluate("lab_angle", "cm_angle", cm_angle, np.pi, mass_ratio=mass_ratio)
 
 
+@known_keywords
 def recoil_angle(cm_angle: ArrayLike) -> NDArray[np.float64]:
     """Laboratory angle of the target after the collision, (π − ψ)/2.
 
@@ -96,6 +99,7 @@ def recoil_angle(cm_angle: ArrayLike) -> NDArray[np.float64]:
     return _evaluate("recoil_angle", "cm_angle", cm_angle, np.pi)
 
 
+@known_keywords
 def energy_transfer(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.float64]:
     """Fraction of the beam energy that the target takes, 4 m₁m₂/(m₁+m₂)² · sin²(ψ/2).
 
@@ -125,6 +129,7 @@ def energy_transfer(cm_angle: ArrayLike, *, mass_ratio: float) -> NDArray[np.flo
     return _evaluate("energy_transfer", "cm_angle", cm_angle, np.pi, mass_ratio=mass_ratio)
 
 
+@known_keywords
 def cm_angle(lab_angle: ArrayLike, *, mass_ratio: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre-of-mass angles that lead to a laboratory angle of the projectile.
 
@@ -159,6 +164,7 @@ def cm_angle(lab_angle: ArrayLike, *, mass_ratio: float) -> tuple[NDArray[np.flo
     )
 
 
+@known_keywords
 def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: ArrayLike) -> NDArray[np.float64]:
     """Deflection by a Coulomb centre, 2 atan(k / 2Eb).
 
@@ -191,6 +197,7 @@ def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: A
     return _evaluate("rutherford_deflection", "impact_parameter", impact_parameter, np.inf, half_distance=half)
 
 
+@known_keywords
 def rutherford_closest_approach(
     potential: Potential, *, energy: float, impact_parameter: ArrayLike
 ) -> NDArray[np.float64]:
@@ -225,6 +232,7 @@ def rutherford_closest_approach(
     return _evaluate("rutherford_closest_approach", "impact_parameter", impact_parameter, np.inf, half_distance=half)
 
 
+@known_keywords
 def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -> NDArray[np.float64]:
     """Impact parameter of a scattering angle, |k|/2E · cot(ψ/2).
 
@@ -257,6 +265,7 @@ def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: A
     return _evaluate("rutherford_impact_parameter", "angle", angle, np.pi, half_distance=half)
 
 
+@known_keywords
 def rutherford_cross_section(
     potential: Potential,
     *,
@@ -299,7 +308,8 @@ def rutherford_cross_section(
     array([2.02990831])
     """
     if frame not in _FRAMES:
-        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}")
+        hint = did_you_mean(str(frame), _FRAMES)
+        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}{hint}")
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
     half = _half_distance(potential, energy)
@@ -311,10 +321,7 @@ def rutherford_cross_section(
 def _half_distance(potential: object, energy: object) -> float:
     if not isinstance(potential, Coulomb):
         raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
-    value = number("energy", energy)
-    if not value > 0.0:
-        raise InvalidInput("energy", f"expected a positive number, got {value!r}")
-    return potential.k / (2.0 * value)
+    return potential.k / (2.0 * positive("energy", energy))
 
 
 def _evaluate(
@@ -332,8 +339,6 @@ def _evaluate(
     if wrong.any():
         bound = {np.pi: "[0, π]", np.pi / 2.0: "[0, π/2]"}.get(limit, "[0, ∞)")
         raise InvalidInput(name, f"expected numbers in {bound}, got {array[wrong][0]}")
-    ratio = number("mass_ratio", mass_ratio)
-    if not ratio > 0.0:
-        raise InvalidInput("mass_ratio", f"expected a positive number, got {ratio!r}")
+    ratio = positive("mass_ratio", mass_ratio)
     result = _core.scattering_function(function, half_distance, ratio, array.ravel()).reshape(array.shape)
     return result[()]

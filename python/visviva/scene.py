@@ -13,27 +13,25 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
-from visviva.plan import Plan
-from visviva.request import execute, keywords
+from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._progress import Progress
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
 
 __all__ = ["Scene"]
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class Scene:
+class Scene(Runnable[Trajectory]):
     """Particles and the forces on them, at a time.
 
     Parameters
@@ -67,12 +65,13 @@ class Scene:
         forces = tuple(part for part in parts if isinstance(part, Force))
         for part in parts:
             if not isinstance(part, Particles | Force):
+                came = f"the class {part.__name__}" if isinstance(part, type) else f"a {type(part).__name__}"
                 raise InvalidInput(
-                    "parts",
-                    f"expected Particles and forces (Gravity, UniformField, CentralField), got {type(part).__name__}",
+                    "parts", f"expected Particles and forces (Gravity, UniformField, CentralField), got {came}"
                 )
         if len(particles) != 1:
-            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; join their arrays")
+            advice = "join their arrays" if particles else "the forces need bodies to act on"
+            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; {advice}")
         self._set(particles[0], forces, number("t0", t0))
 
     def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
@@ -103,111 +102,8 @@ class Scene:
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.particles, self.forces, self.t0)
 
-    def run(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> Trajectory:
-        """Run the scene.
-
-        Parameters
-        ----------
-        t : float or array_like, shape (T,)
-            The end time, or the output times in the order of the motion, forwards or backwards. An
-            end time alone records the start and the end.
-        method : str, optional
-            One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
-            runs.
-        dt : float, optional
-            The step of a fixed-step method, with the sign of the direction of time.
-        rtol : float, optional
-            Relative tolerance of an adaptive method, at least 2.3e-14.
-        atol : float, optional
-            Absolute tolerance; by default `rtol` times the size of each kind of quantity at the start.
-        max_step : float, optional
-            The longest step an adaptive method may take.
-        max_steps : int, optional
-            The run ends with an error beyond this number of steps.
-        record : sequence of str, optional
-            Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
-            ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.
-        events : sequence, optional
-            Must be empty: events are not offered yet.
-        threads : int, optional
-            Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
-        progress : bool or callable, optional
-            True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
-
-        Returns
-        -------
-        Trajectory
-
-        Raises
-        ------
-        visviva.InvalidInput
-            Something asked for makes no sense; nothing has run.
-        visviva.CloseEncounter
-            Two bodies came so close that the step fell to zero; ``.trajectory`` holds what was done.
-        visviva.ConvergenceError
-            The step control gave up, or `max_steps` was reached; ``.trajectory`` likewise.
-        visviva.Interrupted
-            Ctrl-C; ``.trajectory`` likewise.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> scene = vv.problems.figure_eight().scene
-        >>> out = scene.run(t=[0.0, 1.0, 2.0], method="kahan_li8", dt=0.01)
-        >>> out.position.shape, out.stats.steps
-        ((3, 3, 3), 200)
-        """
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return execute(self, request, threads, progress, ensemble=False, make=Trajectory)
-
-    def plan(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-    ) -> Plan:
-        """What `run` would do with the same arguments, without doing it.
-
-        Returns
-        -------
-        Plan
-            Print it.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            As `run`.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> plan = vv.problems.outer_solar_system().scene.plan(t=1e6, method="leapfrog", dt=10.0)
-        >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
-        ('leapfrog', 1, 15)
-        """
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(request))
+    def _finished(self, result: dict[str, Any]) -> Trajectory:
+        return Trajectory(self, result)
 
     def ensemble(
         self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None
@@ -369,11 +265,9 @@ class Scene:
         >>> f"{days.rescaled(time=1 / 365.25).forces[0].G:.3f}"
         '39.477'
         """
-        for name, scale in (("length", length), ("mass", mass), ("time", time)):
-            if not number(name, scale) > 0.0:
-                raise InvalidInput(name, f"expected a positive number of new units per old one, got {scale!r}")
+        particles = self.particles.rescaled(length=length, mass=mass, time=time)
         forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
-        return Scene(self.particles.rescaled(length=length, mass=mass, time=time), *forces, t0=self.t0 * time)
+        return Scene(particles, *forces, t0=self.t0 * time)
 
     def reversed(self) -> Scene:
         """The scene with every velocity turned round: run on, it retraces its path.

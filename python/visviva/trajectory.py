@@ -2,25 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.plan import Plan
+from visviva.recorded import Recorded
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.conservation import Conservation
     from visviva.scene import Scene
 
-__all__ = ["Stats", "Status", "Trajectory"]
+__all__ = ["Status", "Trajectory"]
 
 _DERIVED = ("energy", "momentum", "angular_momentum", "center_of_mass")
 
@@ -35,24 +34,8 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
 
 
-@dataclass(frozen=True, slots=True)
-class Stats:
-    """What a run cost: steps taken and rejected, force evaluations, seconds, threads, SIMD tier, method."""
-
-    steps: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    threads: int
-    simd: str
-    method: str
-
-    @classmethod
-    def _from_core(cls, stats: dict[str, Any]) -> Stats:
-        return cls(**{name: stats[name] for name in cls.__slots__})
-
-
-class Trajectory:
+@known_keywords
+class Trajectory(Recorded):
     """The motion of a scene at the output times. Made by `Scene.run` and `load`.
 
     Attributes
@@ -81,33 +64,32 @@ class Trajectory:
     (array([0., 1.]), (2, 2, 3), 'OK')
     """
 
-    __slots__ = ("_columns", "_result", "scene", "t")
+    __slots__ = ("scene",)
 
     def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
+        super().__init__(result)
         self.scene = scene
-        self.t: NDArray[np.float64] = result["t"]
-        self._result = result
-        self._columns: dict[str, NDArray[np.float64]] = {}
 
     def __repr__(self) -> str:
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
-        return f"Trajectory({len(self.t)} times, {len(self.scene.particles)} bodies, {span}, {self.status.name})"
+        bodies = count(len(self.scene.particles), "body", "bodies")
+        return f"Trajectory({count(len(self.t), 'time')}, {bodies}, {span}, {self.status.name})"
 
     def __len__(self) -> int:
         return len(self.t)
 
-    def _column(self, name: str) -> NDArray[np.float64]:
-        found = self._columns.get(name)
-        if found is None:
-            recorded = self._result["columns"].get(name)
-            if recorded is not None:
-                found = recorded[0]
-            elif name in _DERIVED:
-                found = self._derive(name)
-            else:
-                raise InvalidInput("record", f"{name} was not recorded; run again with {name!r} in record")
-            self._columns[name] = found
-        return found
+    @property
+    def _start(self) -> Scene:
+        return self.scene
+
+    def _found(self, name: str) -> NDArray[np.float64]:
+        recorded = self._result["columns"].get(name)
+        if recorded is not None:
+            first: NDArray[np.float64] = recorded[0]
+            return first
+        if name in _DERIVED:
+            return self._derive(name)
+        raise InvalidInput("record", f"{name} was not recorded; run again with {name!r} in record")
 
     def _derive(self, name: str, about: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         from visviva.invariants import conserved
@@ -124,54 +106,9 @@ class Trajectory:
         return conserved(self.scene, self.position, velocity, np.zeros(3) if about is None else about, [name])[name]
 
     @property
-    def position(self) -> NDArray[np.float64]:
-        """Positions, shape (T, N, 3)."""
-        return self._column("position")
-
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (T, N, 3)."""
-        return self._column("velocity")
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Total energy, shape (T,)."""
-        return self._column("energy")
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Total momentum, shape (T, 3)."""
-        return self._column("momentum")
-
-    @property
-    def angular_momentum(self) -> NDArray[np.float64]:
-        """Total angular momentum about the origin, shape (T, 3)."""
-        return self._column("angular_momentum")
-
-    @property
-    def center_of_mass(self) -> NDArray[np.float64]:
-        """Centre of mass, shape (T, 3)."""
-        return self._column("center_of_mass")
-
-    @property
-    def recorded(self) -> tuple[str, ...]:
-        """Names of the recorded columns."""
-        return tuple(self._result["columns"])
-
-    @property
     def status(self) -> Status:
         """How the run ended."""
         return Status(int(self._result["status"][0]))
-
-    @property
-    def stats(self) -> Stats:
-        """What the run cost."""
-        return Stats._from_core(self._result["stats"])
-
-    @property
-    def plan(self) -> Plan:
-        """What ran, what was skipped, and why."""
-        return Plan._from_core(self._result["plan"])
 
     @property
     def final(self) -> Scene:
@@ -229,24 +166,10 @@ class Trajectory:
 
         return of_trajectory(self, about)
 
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write everything to one ``.npz`` file that this and every later version loads.
-
-        Examples
-        --------
-        >>> import pathlib, tempfile, visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=1.0)
-        >>> path = pathlib.Path(tempfile.mkdtemp()) / "run.npz"
-        >>> out.save(path)
-        >>> bool((vv.load(path).position == out.position).all())
-        True
-        """
-        from visviva.io import save
-
-        save(path, self)
-
     def plot(self) -> Figure:
-        """Orbits in the x–y plane beside the relative change of the energy, as a matplotlib Figure.
+        """Orbits beside the relative change of the energy, as a matplotlib Figure.
+
+        The orbits are seen in the coordinate plane in which they extend most, x–y if in doubt.
 
         Raises
         ------

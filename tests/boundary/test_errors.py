@@ -10,6 +10,7 @@ from visviva import _core, errors
 EXAMPLES = [
     (errors.Error("something"), Exception, {}),
     (errors.InvalidInput("dt", "expected a positive number"), ValueError, {"argument": "dt"}),
+    (errors.UnknownKeyword("dtt", "expected a keyword of run"), TypeError, {"argument": "dtt"}),
     (errors.ConvergenceError("gave up", 2.5), RuntimeError, {"message": "gave up", "time": 2.5, "trajectory": None}),
     (
         errors.CloseEncounter(1.5, (3, 4), 1e-9),

@@ -35,6 +35,13 @@ def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFi
     assert isinstance(vv.load(tmp_path / "outer_solar_system.npz"), vv.Trajectory)
 
 
+def test_demo_with_too_few_events_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["demo", "--output", str(tmp_path), "--days", "2000", "--events", "10"]) == 0
+    shown = capsys.readouterr().out
+    assert "too few events for a comparison with 1913" in shown
+    assert "nan" not in shown.split("Rutherford")[1]
+
+
 def test_a_refusal_is_one_line_and_a_code(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["demo", "--output", str(tmp_path), "--threads", "0"]) == 1
     error = capsys.readouterr().err.strip()

@@ -11,6 +11,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._keywords import known_keywords
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -32,6 +34,7 @@ _TABLE = (
 )
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class RutherfordComparison:
     """Counts against Rutherford's law, one scale fitted to each metal.
@@ -60,6 +63,7 @@ class RutherfordComparison:
         return "\n".join(rows)
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False)
 class GeigerMarsden:
     """Scintillations counted behind a foil, by angle.
@@ -105,6 +109,7 @@ class GeigerMarsden:
         return RutherfordComparison(metal, self.angle, scale, products / scale)
 
 
+@known_keywords
 def geiger_marsden_1913() -> GeigerMarsden:
     """Give table II of Geiger and Marsden's paper of 1913: silver and gold, 15° to 150°.
 

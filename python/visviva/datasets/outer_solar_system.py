@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ _APPLEGATE = (
 )
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class OuterSolarSystem:
     """Bodies of the outer Solar System; lengths in astronomical units, times in days, masses of the Sun.
@@ -89,6 +91,7 @@ class OuterSolarSystem:
     source: str
 
 
+@known_keywords
 def outer_solar_system(
     variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner",
 ) -> OuterSolarSystem:

@@ -9,22 +9,16 @@ reference direction and z the pole. Source: Goldstein, Poole & Safko, *Classical
 Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
 """
 
-from visviva.orbits._anomalies import (
-    eccentric_from_mean,
-    eccentric_from_true,
-    hyperbolic_from_mean,
-    hyperbolic_from_true,
-    mean_from_eccentric,
-    mean_from_hyperbolic,
-    mean_from_parabolic,
-    parabolic_from_mean,
-    parabolic_from_true,
-    true_from_eccentric,
-    true_from_hyperbolic,
-    true_from_parabolic,
-)
 from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period
 from visviva.orbits._elements import Elements, elements, propagate, state
+from visviva.orbits._ellipse import eccentric_from_mean, eccentric_from_true, mean_from_eccentric, true_from_eccentric
+from visviva.orbits._hyperbola import (
+    hyperbolic_from_mean,
+    hyperbolic_from_true,
+    mean_from_hyperbolic,
+    true_from_hyperbolic,
+)
+from visviva.orbits._parabola import mean_from_parabolic, parabolic_from_mean, parabolic_from_true, true_from_parabolic
 
 __all__ = [
     "Conic",

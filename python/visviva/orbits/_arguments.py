@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva import _core
 from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 
@@ -44,3 +45,13 @@ def shaped(values: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.fl
 def fields(columns: dict[str, NDArray[np.float64]], shape: tuple[int, ...]) -> dict[str, NDArray[np.float64]]:
     """Give each named column its axes."""
     return {name: shaped(values, shape) for name, values in columns.items()}
+
+
+def anomaly(
+    name: str, argument: str, given: ArrayLike, eccentricity: ArrayLike, repulsive: object = False
+) -> NDArray[np.float64]:
+    """Evaluate one of the core's conversions, ``name``, on its broadcast arguments."""
+    if not isinstance(repulsive, (bool, np.bool_)):
+        raise InvalidInput("repulsive", f"expected True or False, got {repulsive!r}")
+    shape, flat, _ = broadcast({argument: given, "eccentricity": eccentricity}, {})
+    return shaped(_core.orbit_anomaly(name, flat[0], flat[1], bool(repulsive)), shape)

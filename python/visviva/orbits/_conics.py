@@ -6,6 +6,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from visviva import _core
+from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
 class Conic:
     """What is constant on a conic, for a body of mass m in V(r) = −γ/r; see :func:`conic`.
@@ -58,7 +61,11 @@ class Conic:
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
 
+    def __str__(self) -> str:
+        return table(self)
 
+
+@known_keywords
 def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Conic:
     """Find the constants of the conic through a state, for a body of mass m in V(r) = −γ/r.
 
@@ -93,6 +100,7 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     return _conic(shape, flat, _core.conic_from_state(*flat, *vectors))
 
 
+@known_keywords
 def conic_from_constants(
     mass: ArrayLike, strength: ArrayLike, *, angular_momentum: ArrayLike, energy: ArrayLike
 ) -> Conic:
@@ -131,6 +139,7 @@ def conic_from_constants(
     return _conic(shape, flat, _core.conic_from_constants(*flat))
 
 
+@known_keywords
 def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
     """Find the period 2π√(a³/μ) of ellipses.
 
@@ -161,6 +170,7 @@ def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
     return shaped(_core.orbit_period(*flat), shape)
 
 
+@known_keywords
 def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDArray[np.float64]:
     """Find the time to fall from rest at one distance from the centre to another.
 

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._keywords import known_keywords
+from visviva._text import table
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
 class Elements:
     """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
@@ -86,6 +89,9 @@ class Elements:
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
 
+    def __str__(self) -> str:
+        return table(self)
+
     def state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the position and velocity that these elements describe.
 
@@ -110,6 +116,7 @@ class Elements:
         )
 
 
+@known_keywords
 def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Elements:
     """Find the orbital elements of states.
 
@@ -144,6 +151,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     return Elements(mu=shaped(mu_, shape), **fields(columns, shape))
 
 
+@known_keywords
 def state(
     mu: ArrayLike,
     *,
@@ -198,6 +206,7 @@ def state(
     return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
 
 
+@known_keywords
 def propagate(
     mu: ArrayLike, position: ArrayLike, velocity: ArrayLike, t: ArrayLike
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:

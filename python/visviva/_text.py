@@ -1,0 +1,48 @@
+"""How results read when they are printed."""
+
+from __future__ import annotations
+
+from dataclasses import fields
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
+
+__all__ = ["count", "table"]
+
+
+def count(number: int, one: str, many: str | None = None) -> str:
+    """A number and its noun.
+
+    Examples
+    --------
+    >>> from visviva._text import count
+    >>> count(1, "body", "bodies"), count(3, "time")
+    ('1 body', '3 times')
+    """
+    return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def table(record: DataclassInstance) -> str:
+    """A line for each field, with the digits that a reader compares; ``repr`` has them all.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> print(vv.problems.kepler(e=0.0).scene.invariants())  # doctest: +ELLIPSIS
+    total_mass                     1
+    center_of_mass                 [0 0 0]
+    ...
+    """
+    rows = [(field.name, getattr(record, field.name)) for field in fields(record)]
+    width = max(len(name) for name, _ in rows) + 2
+    return "\n".join(f"{name:<{width}}{_value(value, width)}" for name, value in rows)
+
+
+def _value(value: Any, indent: int) -> str:
+    array = np.asarray(value, dtype=float) + 0.0  # no -0
+    # The numbers of a stack of orbits stand below each other.
+    text = np.array2string(array, formatter={"float_kind": lambda x: f"{x:.9g}"}, max_line_width=120 - indent)
+    return text.replace("\n", "\n" + " " * indent)

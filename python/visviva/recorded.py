@@ -1,0 +1,126 @@
+"""What a run recorded and what it cost, alike for a trajectory and for an ensemble of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from visviva._keywords import known_keywords
+from visviva.plan import Plan
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from visviva.runnable import Runnable
+
+
+__all__ = ["Recorded", "Stats"]
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Stats:
+    """What a run cost: steps taken and rejected, force evaluations, seconds, threads, SIMD tier, method."""
+
+    steps: int
+    rejected: int
+    evaluations: int
+    seconds: float
+    threads: int
+    simd: str
+    method: str
+
+    @classmethod
+    def _from_core(cls, stats: dict[str, Any]) -> Stats:
+        return cls(**{name: stats[name] for name in cls.__slots__})
+
+
+@known_keywords
+class Recorded(ABC):
+    """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
+
+    __slots__ = ("_columns", "_result", "t")
+
+    def __init__(self, result: dict[str, Any]) -> None:
+        self.t: NDArray[np.float64] = result["t"]
+        self._result = result
+        self._columns: dict[str, NDArray[np.float64]] = {}
+
+    @property
+    @abstractmethod
+    def _start(self) -> Runnable[Any]:
+        """What was run."""
+
+    @abstractmethod
+    def _found(self, name: str) -> NDArray[np.float64]:
+        """The column, recorded or computed; InvalidInput says what to record if it is neither."""
+
+    def _column(self, name: str) -> NDArray[np.float64]:
+        if name not in self._columns:
+            self._columns[name] = self._found(name)
+        return self._columns[name]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Positions, shape (T, N, 3), or (B, T, N, 3) of an ensemble."""
+        return self._column("position")
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (T, N, 3), or (B, T, N, 3)."""
+        return self._column("velocity")
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """Total energy, shape (T,), or (B, T)."""
+        return self._column("energy")
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Total momentum, shape (T, 3), or (B, T, 3)."""
+        return self._column("momentum")
+
+    @property
+    def angular_momentum(self) -> NDArray[np.float64]:
+        """Total angular momentum about the origin, shape (T, 3), or (B, T, 3)."""
+        return self._column("angular_momentum")
+
+    @property
+    def center_of_mass(self) -> NDArray[np.float64]:
+        """Centre of mass, shape (T, 3), or (B, T, 3)."""
+        return self._column("center_of_mass")
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Names of the recorded columns."""
+        return tuple(self._result["columns"])
+
+    @property
+    def stats(self) -> Stats:
+        """What the run cost; of an ensemble, in total."""
+        return Stats._from_core(self._result["stats"])
+
+    @property
+    def plan(self) -> Plan:
+        """What ran, what was skipped, and why."""
+        return Plan._from_core(self._result["plan"])
+
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write everything to one ``.npz`` file that this and every later version loads.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=1.0)
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "run.npz"
+        >>> out.save(path)
+        >>> bool((vv.load(path).position == out.position).all())
+        True
+        """
+        from visviva.io import save
+
+        save(path, self)

@@ -1,0 +1,147 @@
+"""What can be run: the one signature of ``run`` and ``plan``, for a scene and for an ensemble of them."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+
+from visviva import _core
+from visviva._keywords import known_keywords
+from visviva.plan import Plan
+from visviva.request import execute, keywords
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import ArrayLike
+
+    from visviva._progress import Progress
+
+__all__ = ["Runnable"]
+
+_Result = TypeVar("_Result")
+
+
+@known_keywords
+class Runnable(ABC, Generic[_Result]):
+    """Base of `Scene` and `EnsembleScene`; ``_Result`` is what their runs give."""
+
+    __slots__ = ()
+
+    _is_ensemble: ClassVar[bool] = False
+    _keywords: _core._Scene  # what the core is told of what there is
+
+    @abstractmethod
+    def _finished(self, result: dict[str, Any]) -> _Result:
+        """What the user gets for the core's answer."""
+
+    def run(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "auto",
+        dt: float | None = None,
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        max_step: float | None = None,
+        max_steps: int | None = None,
+        record: Sequence[str] = ("position", "velocity"),
+        events: Sequence[object] = (),
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> _Result:
+        """Run the scene, or every copy of an ensemble.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end time, or the output times in the order of the motion, forwards or backwards. An
+            end time alone records the start and the end.
+        method : str, optional
+            One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
+            runs.
+        dt : float, optional
+            The step of a fixed-step method; backwards in time its sign may be either.
+        rtol : float, optional
+            Relative tolerance of an adaptive method, at least 2.3e-14.
+        atol : float, optional
+            Absolute tolerance; by default `rtol` times the size of each kind of quantity at the start.
+        max_step : float, optional
+            The longest step an adaptive method may take.
+        max_steps : int, optional
+            The run ends with an error beyond this number of steps.
+        record : sequence of str, optional
+            Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
+            ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.
+        events : sequence, optional
+            Must be empty: events are not offered yet.
+        threads : int, optional
+            Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
+        progress : bool or callable, optional
+            True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
+
+        Returns
+        -------
+        Trajectory or EnsembleTrajectory
+            The latter from an ensemble.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            Something asked for makes no sense; nothing has run.
+        visviva.CloseEncounter
+            Of a scene: two bodies came so close that the step fell to zero; ``.trajectory`` holds what was done.
+        visviva.ConvergenceError
+            Of a scene: the step control gave up, or `max_steps` was reached; ``.trajectory`` likewise. A copy of
+            an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
+        visviva.Interrupted
+            Ctrl-C; ``.trajectory`` likewise.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.figure_eight().scene
+        >>> out = scene.run(t=[0.0, 1.0, 2.0], method="kahan_li8", dt=0.01)
+        >>> out.position.shape, out.stats.steps
+        ((3, 3, 3), 200)
+        >>> starts = scene.particles.position * np.array([1.0, 0.9])[:, None, None]
+        >>> scene.ensemble(position=starts).run(t=1.0).position.shape
+        (2, 2, 3, 3)
+        """
+        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
+        return execute(request, threads, progress, ensemble=self._is_ensemble, make=self._finished)
+
+    def plan(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "auto",
+        dt: float | None = None,
+        rtol: float = 1e-9,
+        atol: float | None = None,
+        max_step: float | None = None,
+        max_steps: int | None = None,
+        record: Sequence[str] = ("position", "velocity"),
+        events: Sequence[object] = (),
+    ) -> Plan:
+        """What `run` would do with the same arguments, without doing it.
+
+        Returns
+        -------
+        Plan
+            Print it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `run`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> plan = vv.problems.outer_solar_system().scene.plan(t=1e6, method="leapfrog", dt=10.0)
+        >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
+        ('leapfrog', 1, 15)
+        """
+        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
+        return Plan._from_core(_core.plan(request))

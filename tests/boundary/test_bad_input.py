@@ -1,0 +1,132 @@
+"""The table of bad input: what was written, the argument that is refused, and what the message says.
+
+Each line is typed as a user would type it. The laws over random input are in `tests/laws/test_refusals.py`; unknown
+keywords in `test_keywords.py`.
+"""
+
+import re
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+COULOMB = vv.potentials.Coulomb(1.0)
+BEAM = {"beam_energy": 1.0, "masses": (1, 4), "b_max": 1.0, "n_events": 10, "seed": 1}
+APART = [[0, 0, 0], [1, 0, 0]]
+NAMES = {
+    "np": np,
+    "vv": vv,
+    "P": vv.Particles,
+    "apart": APART,
+    "coulomb": COULOMB,
+    "scene": vv.Scene(vv.Particles([1, 1], APART), vv.Gravity(1.0)),
+    "center": vv.Scene(vv.Particles([1], [[1, 0, 0]]), vv.CentralField(vv.potentials.Coulomb(-1.0))),
+    "mc": lambda potential=COULOMB, **given: vv.scattering.monte_carlo(potential, **(BEAM | given)),
+}
+
+TABLE = r"""
+P([1, 1], [[0, 0], [1, 0]])                         | position    | expected shape \(N, 3\) with N = 2 as in mass, got \(2, 2\)
+P([1, 1], np.zeros((3, 3)))                         | position    | with N = 2 as in mass, got \(3, 3\)
+P([1, 1], np.zeros((3, 2)))                         | position    | pass x.T
+P([1, 1], apart, np.zeros((2, 2)))                  | velocity    | got \(2, 2\)
+P(1.0, [0, 0, 0])                                   | mass        | expected shape \(N,\), got \(\)
+P([1, np.nan], apart)                               | mass        | mass\[1\] is nan
+P([1, 1], [[0, 0, 0], [1, -np.inf, 0]])             | position    | position\[1, 1\] is -inf
+P([1, -2], apart)                                   | mass        | mass\[1\] is -2.0
+P([1 + 1j, 1], apart)                               | mass        | complex
+P(np.array([1, None]), apart)                       | mass        | object
+scene.ensemble()                                    | position    | leading axis
+scene.ensemble(position=np.zeros((2, 3)))           | position    | got \(2, 3\)
+scene.ensemble(mass=[[1, 1], [1, -1]])              | mass        | mass\[1, 1\] is -1.0
+scene.ensemble(mass=[1, 1])                         | mass        | expected shape \(any, 2\), got \(2,\)
+scene.ensemble(position=np.zeros((3, 2, 3)), velocity=np.zeros((2, 2, 3))) | velocity | expected 3 copies like position, got 2
+scene.ensemble(position=np.zeros((0, 2, 3)))        | position    | at least one copy
+scene.ensemble(position=np.zeros((3, 2, 3))).run(1) | position    | position\[0, 0\] = position\[0, 1\]
+vv.Scene(P([1, 1], [[2, 0, 0], [2, 0, 0]]), vv.Gravity(1.0)).plan(1) | position | position\[0\] = position\[1\]
+vv.Scene()                                          | parts       | got 0; the forces need bodies
+vv.Scene(P([1], [[0, 0, 0]]), P([1], [[1, 0, 0]]))  | parts       | got 2; join
+vv.Scene(vv.Gravity)                                | parts       | the class Gravity
+vv.Gravity(1.0, softening=-0.5)                     | softening   | at least 0, got -0.5
+vv.UniformField(9.81)                               | g           | expected shape \(3,\), got \(\)
+vv.CentralField(vv.potentials.Coulomb)              | potential   | for example
+vv.potentials.Yukawa(1.0, length=-1.0)              | length      | positive number, got -1.0
+vv.potentials.potential_by_name("colomb", [1])      | potential   | did you mean 'coulomb'
+vv.potentials.potential_by_name(["coulomb"], [1])   | potential   | expected one of
+vv.potentials.potential_by_name("yukawa", [1])      | parameters  | 2 \(k, length\) for yukawa, got 1
+scene.run([])                                       | t           | got none
+scene.run([1.0, 0.5])                               | t           | t\[1\] = 0.5 after 1
+scene.run([-1.0, 0.5])                              | t           | two directions
+scene.run(np.nan)                                   | t           | t is nan
+scene.run(1, method="leap_frog", dt=0.1)            | method      | got 'leap_frog'; did you mean 'leapfrog'\?
+scene.run(1, method=None)                           | method      | expected a name, got NoneType
+scene.run(1, method="rk4")                          | dt          | got None
+scene.run(1, method="rk4", dt=0)                    | dt          | other than 0, got 0
+scene.run(1, method="rk4", dt=-0.1)                 | dt          | positive step for a run forward in time, got -0.1
+scene.run(1, method="rk4", dt=np.nan)               | dt          | dt is nan
+scene.run(1, method="dop853", dt=0.1)               | dt          | leave dt out
+scene.run(1, rtol=1e-15)                            | rtol        | 2.3e-14 .* got 1e-15
+scene.run(1, atol=-1)                               | atol        | at least 0 or None, got -1
+scene.run(1, max_step=0)                            | max_step    | positive time or None, got 0
+scene.run(1, max_steps=0)                           | max_steps   | at least 1 or None, got 0
+scene.run(1, max_steps=1e6)                         | max_steps   | whole number, got 1000000.0; pass int\(1000000.0\)
+scene.run(1, max_steps=10**30)                      | max_steps   | whole number from
+scene.run(1, threads=0)                             | threads     | from 1 to 1024, got 0
+scene.run(1, threads=True)                          | threads     | got True
+scene.run(1, record="postion")                      | record      | got 'postion'; did you mean 'position'\?
+scene.run(1, record=None)                           | record      | a name or several names, got None
+scene.run(1, record=["position", 4])                | record      | expected a name, got int
+scene.run(1, progress=3)                            | progress    | callable
+scene.run(1, record="energy").position              | record      | 'position' in record
+scene.run(1).conservation(about="com")              | about       | 'center_of_mass', got 'com'
+scene.particles.rescaled(length=0)                  | length      | positive number of new units
+scene.particles.rescaled(time="day")                | time        | expected real numbers
+scene.rescaled(mass=-1)                             | mass        | positive number of new units per old one, got -1
+center.shifted(velocity=[1, 0, 0])                  | velocity    | fixed centre
+vv.problems.kepler(e="round")                       | e           | expected real numbers
+vv.problems.kepler(e=1.0)                           | e           | 0 ≤ e < 1, got 1.0
+vv.problems.kepler(mass_ratio="one")                | mass_ratio  | expected real numbers
+vv.problems.kepler(periods=np.nan)                  | periods     | whole number, got nan
+vv.problems.figure_eight(periods="two")             | periods     | whole number, got 'two'
+vv.problems.lagrange_triangle(3)                    | masses      | expected shape \(3,\)
+vv.problems.lagrange_triangle([1, -2, 3])           | masses      | at least 0
+vv.problems.lagrange_triangle(side=-1)              | side        | positive length, got -1
+vv.problems.lagrange_triangle(turn="once")          | turn        | expected real numbers
+vv.problems.kepler().error(3)                       | final       | expected a Scene or a Trajectory, got int
+vv.load(__file__)                                   | path        | expected a run that visviva saved
+mc(vv.potentials.Yukawa(1.0, 1.0))                  | potential   | expected a Coulomb potential
+mc(beam_energy=-1)                                  | beam_energy | positive finite number, got -1
+mc(masses=(1, 1, 1))                                | masses      | expected shape \(2,\), got \(3,\)
+mc(masses=(1, -1))                                  | masses      | masses\[1\] is -1
+mc(n_events=1e6)                                    | n_events    | pass int\(1000000.0\)
+mc(n_events=0)                                      | n_events    | from 1 to
+mc(seed=-1)                                         | seed        | from 0 to 18446744073709551615, got -1
+mc(bins=0)                                          | bins        | from 1 to 65536, got 0
+mc(tally="angle")                                   | tally       | got 'angle'
+mc(tally={"cm_angle": [1, 0]})                      | cm_angle    | strictly increasing
+vv.scattering.lab_angle(1.0, mass_ratio=0)          | mass_ratio  | positive number, got 0
+vv.scattering.rutherford_cross_section(coulomb, energy=1, angle=1, frame="LAB") | frame | did you mean 'lab'
+vv.scattering.rutherford_angle(coulomb, energy=0, impact_parameter=1) | energy | positive number, got 0
+vv.orbits.elements(0.0, [1, 0, 0], [0, 1, 0])       | mu          | mu = 0
+"""  # noqa: E501
+ROWS = [tuple(part.strip() for part in line.split("|", 2)) for line in TABLE.strip().splitlines()]
+
+
+@pytest.mark.parametrize(("typed", "argument", "message"), ROWS, ids=[row[0] for row in ROWS])
+def test_bad_input_is_refused_by_name(typed: str, argument: str, message: str) -> None:
+    with pytest.raises(vv.InvalidInput) as caught:
+        eval(typed, NAMES | {"__file__": __file__})
+    assert caught.value.argument == argument
+    assert re.search(message, caught.value.message), caught.value.message
+
+
+def test_a_folder_that_is_not_there_is_named(tmp_path: object) -> None:
+    with pytest.raises(FileNotFoundError, match=r"no such folder.*nowhere'$"):
+        vv.problems.kepler().scene.run(1.0).save(f"{tmp_path}/nowhere/run.npz")
+
+
+def test_a_public_name_with_other_capitals_is_suggested() -> None:
+    with pytest.raises(AttributeError) as caught:
+        vv.gravity  # type: ignore[attr-defined]  # noqa: B018
+    assert caught.value.name == "gravity"
+    assert caught.value.obj is vv

@@ -1,0 +1,145 @@
+"""Every public function, constructor and method refuses a keyword that it does not take, and says which is nearest.
+
+The callables are found, not listed: a public name that is added without `known_keywords` fails here.
+"""
+
+import enum
+import inspect
+import pickle
+from collections.abc import Callable, Iterator
+from dataclasses import replace
+from types import FunctionType, ModuleType
+from typing import Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ONE = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]]))
+
+
+def public(module: ModuleType) -> Iterator[tuple[str, Callable[..., Any], bool]]:
+    """Name, callable, and whether it wants a `self`, of all that a module and the rooms in it export."""
+    for name in module.__all__:
+        found = getattr(module, name)
+        label = f"{module.__name__}.{name}"
+        if isinstance(found, ModuleType):
+            yield from public(found)
+        elif not isinstance(found, type):
+            yield label, found, False
+        # Exceptions are made by the package; the values of an enumeration or a tuple are given by position.
+        elif not issubclass(found, BaseException | enum.Enum | tuple) and found is not vv.forces.Force:
+            for attribute, value in inspect.getmembers(found, inspect.isfunction):
+                home = next(base for base in found.__mro__ if attribute in vars(base))
+                ours = home.__module__.startswith("visviva")  # not what a base from elsewhere brings
+                if ours and (attribute == "__init__" or not attribute.startswith("_")):
+                    yield f"{label}.{attribute}", value, True
+
+
+CALLABLES = list({label: (label, *rest) for label, *rest in public(vv)}.values())
+
+
+def parameters(function: Callable[..., Any], method: bool) -> list[str]:
+    kinds = (inspect.Parameter.POSITIONAL_OR_KEYWORD, inspect.Parameter.KEYWORD_ONLY)
+    names = [name for name, found in inspect.signature(function).parameters.items() if found.kind in kinds]
+    return names[1:] if method else names
+
+
+def test_the_walk_finds_the_public_names() -> None:
+    labels = {label for label, *_ in CALLABLES}
+    for name in (
+        "Scene.run",
+        "Scene.__init__",
+        "EnsembleScene.plan",
+        "Trajectory.conservation",
+        "Gravity.__init__",
+        "load",
+        "methods",
+        "potentials.Yukawa.__init__",
+        "potentials.Yukawa.value",
+        "scattering.monte_carlo",
+        "orbits.state",
+        "problems.kepler",
+        "datasets.outer_solar_system",
+    ):
+        assert f"visviva.{name}" in labels
+
+
+@pytest.mark.parametrize(("label", "function", "method"), CALLABLES, ids=[label for label, *_ in CALLABLES])
+def test_an_unknown_keyword_is_refused_by_name(label: str, function: Callable[..., Any], method: bool) -> None:
+    arguments = (None,) if method else ()
+    with pytest.raises(vv.UnknownKeyword) as caught:
+        function(*arguments, zzzzzzzzzz=1)
+    assert caught.value.argument == "zzzzzzzzzz"
+    assert "did you mean" not in str(caught.value)
+    known = parameters(function, method)
+    for name in known:
+        assert name in caught.value.message
+        misspelt = name + name[-1] + name[-1]
+        with pytest.raises(vv.UnknownKeyword) as caught:
+            function(*arguments, **{misspelt: 1})
+        assert caught.value.argument == misspelt
+        assert str(caught.value).endswith(f"got {misspelt!r}; did you mean '{name}'?")
+
+
+@pytest.mark.parametrize(("label", "function", "method"), CALLABLES, ids=[label for label, *_ in CALLABLES])
+def test_what_is_checked_still_looks_like_itself(label: str, function: Callable[..., Any], method: bool) -> None:
+    original = function.__wrapped__  # type: ignore[attr-defined]
+    assert isinstance(original, FunctionType)
+    assert inspect.signature(function) == inspect.signature(original)
+    assert (function.__doc__, function.__name__, function.__module__) == (
+        original.__doc__,
+        original.__name__,
+        original.__module__,
+    )
+
+
+@pytest.mark.parametrize(
+    ("call", "came", "meant"),
+    [
+        (lambda: ONE.run(t=1.0, metod="dop853"), "metod", "method"),
+        (lambda: ONE.run(t=1.0, Method="dop853"), "Method", "method"),
+        (lambda: ONE.run(1.0, tol=1e-9), "tol", "rtol"),
+        (lambda: ONE.plan(t=1.0, rtoll=1e-9), "rtoll", "rtol"),
+        (lambda: ONE.ensemble(positon=np.zeros((2, 1, 3))), "positon", "position"),
+        (lambda: ONE.ensemble(position=np.zeros((2, 1, 3))).run(t=1.0, max_step_=1), "max_step_", "max_step"),
+        (lambda: vv.Scene(vv.Particles([1.0], [[0, 0, 0]]), t=0.0), "t", "t0"),
+        (lambda: vv.Particles(mas=[1.0], position=[[0, 0, 0]]), "mas", "mass"),
+        (lambda: vv.Particles([1.0], [[0, 0, 0]], velocities=[[0, 0, 0]]), "velocities", "velocity"),
+        (lambda: vv.Gravity(g=1.0), "g", "G"),
+        (lambda: vv.UniformField(G=[0, 0, -1]), "G", "g"),
+        (lambda: vv.CentralField(vv.potentials.Coulomb(1.0), centre=[0, 0, 0]), "centre", "center"),
+        (lambda: vv.potentials.Coulomb(kk=1.0), "kk", "k"),
+        (lambda: replace(vv.potentials.Coulomb(1.0), kk=1.0), "kk", "k"),
+        (lambda: vv.potentials.Yukawa(k=1.0, lenght=2.0), "lenght", "length"),
+        (lambda: vv.scattering.monte_carlo(vv.potentials.Coulomb(1.0), energy=1.0), "energy", "beam_energy"),
+        (lambda: vv.orbits.state(1.0, pericenter=1.0, eccentricity=0.0), "pericenter", "pericentre"),
+    ],
+)
+def test_the_nearest_name_is_suggested(call: Callable[[], object], came: str, meant: str) -> None:
+    with pytest.raises(vv.InvalidInput) as caught:
+        call()
+    assert caught.value.argument == came
+    assert str(caught.value).endswith(f"; did you mean '{meant}'?")
+
+
+def test_it_is_the_error_that_programs_catch() -> None:
+    for kind in (TypeError, ValueError, vv.Error, vv.InvalidInput):
+        with pytest.raises(kind, match="metod"):
+            ONE.run(t=1.0, metod="rk4")  # type: ignore[call-arg]
+
+
+def test_other_type_errors_are_pythons_own() -> None:
+    for call in (ONE.run, lambda: ONE.run(1.0, t=1.0), lambda: vv.Gravity(1.0, 0.0, 0.0)):
+        with pytest.raises(TypeError) as caught:
+            call()
+        assert not isinstance(caught.value, vv.Error)
+
+
+def test_checked_classes_pickle_and_copy_with_changes() -> None:
+    yukawa = vv.potentials.Yukawa(k=1.0, length=2.0)
+    assert pickle.loads(pickle.dumps(yukawa)) == yukawa
+    assert replace(yukawa, length=3.0) == vv.potentials.Yukawa(1.0, 3.0)
+    assert replace(vv.Gravity(1.0), softening=0.5) == vv.Gravity(1.0, 0.5)
+    assert pickle.loads(pickle.dumps(vv.scattering.monte_carlo)) is vv.scattering.monte_carlo
