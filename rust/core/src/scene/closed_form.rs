@@ -132,7 +132,7 @@ pub fn run(
             last.clear();
             for (particle, state) in states.iter().enumerate() {
                 let entry = entry(scene, copy, particle, *state, t);
-                writer.write(copy, index, particle, &entry);
+                writer.output(copy, index).write(particle, &entry);
                 last.push(entry);
             }
             ticker.tick()?;

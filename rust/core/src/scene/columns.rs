@@ -126,46 +126,48 @@ pub struct Entry {
     pub velocity_rest: [f64; 3],
 }
 
-impl Writer<'_> {
+impl<'a> Writer<'a> {
     /// Whether what the values leave out is kept.
     pub fn keeps_rest(&self) -> bool {
         self.position_rest.1 > 0
     }
 
+    /// The entries of a copy at an output time.
     #[inline(always)]
-    fn put(
-        &self,
-        (array, len): (*mut f64, usize),
-        copy: usize,
-        time: usize,
-        particle: usize,
-        values: [f64; 3],
-    ) {
-        let at = ((copy * self.times + time) * self.particles + particle) * 3;
+    pub fn output(&'a self, copy: usize, time: usize) -> Output<'a> {
+        Output { writer: self, start: (copy * self.times + time) * self.particles }
+    }
+}
+
+/// What is recorded of a copy at one output time. Only one thread may write a given particle.
+#[derive(Debug)]
+pub struct Output<'a> {
+    writer: &'a Writer<'a>,
+    /// The entry of its first particle.
+    start: usize,
+}
+
+impl Output<'_> {
+    #[inline(always)]
+    fn put(&self, (array, len): (*mut f64, usize), particle: usize, values: [f64; 3]) {
+        let at = (self.start + particle) * 3;
         if at + 3 <= len {
-            // SAFETY: in bounds by the test; no other thread writes this particle (see `write`).
+            // SAFETY: in bounds by the test; no other thread writes this particle (see the type).
             unsafe { array.add(at).cast::<[f64; 3]>().write(values) };
         }
     }
 
-    /// Writes a particle of a copy at an output time. Only one thread may write a given particle.
-    pub fn write(&self, copy: usize, time: usize, particle: usize, entry: &Entry) {
-        self.write_rounded(copy, time, particle, entry.position, entry.velocity);
-        self.put(self.position_rest, copy, time, particle, entry.position_rest);
-        self.put(self.velocity_rest, copy, time, particle, entry.velocity_rest);
+    /// Writes a particle.
+    pub fn write(&self, particle: usize, entry: &Entry) {
+        self.write_rounded(particle, entry.position, entry.velocity);
+        self.put(self.writer.position_rest, particle, entry.position_rest);
+        self.put(self.writer.velocity_rest, particle, entry.velocity_rest);
     }
 
     /// As [`write`](Self::write), without what the values leave out.
     #[inline(always)]
-    pub fn write_rounded(
-        &self,
-        copy: usize,
-        time: usize,
-        particle: usize,
-        position: [f64; 3],
-        velocity: [f64; 3],
-    ) {
-        self.put(self.position, copy, time, particle, position);
-        self.put(self.velocity, copy, time, particle, velocity);
+    pub fn write_rounded(&self, particle: usize, position: [f64; 3], velocity: [f64; 3]) {
+        self.put(self.writer.position, particle, position);
+        self.put(self.writer.velocity, particle, velocity);
     }
 }

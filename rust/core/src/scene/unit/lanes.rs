@@ -102,24 +102,41 @@ impl Prepared {
         if writer.keeps_rest() || self.origin != Origin::default() {
             return self.record_precisely(writer, time, state, unit_lane, elapsed);
         }
-        // The common case, kept lean: a run of cheap steps with many outputs spends its time here.
-        let Shape { rows, components } = self.shape;
+        if self.shape.components == 2 {
+            self.record_rounded::<2>(writer, time, state, unit_lane)
+        } else {
+            self.record_rounded::<3>(writer, time, state, unit_lane)
+        }
+    }
+
+    /// The common case, kept lean: a run of cheap steps with many outputs spends its time here.
+    fn record_rounded<const COMPONENTS: usize>(
+        &self,
+        writer: &Writer<'_>,
+        time: usize,
+        state: &State<Lanes>,
+        unit_lane: usize,
+    ) -> bool {
+        let stride = self.shape.rows * WIDTH;
         let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
         let (length, speed) = (power_of_two(self.units.length), power_of_two(-self.units.velocity()));
-        let mut check = 0.0;
+        let output = writer.output(self.unit.copy, time);
+        // Sums of their own, lest each addition wait for the one before.
+        let mut check = [[0.0; 2]; COMPONENTS];
         for slot in self.unit.recorded.clone() {
             let (row, lane) = self.locate(slot, unit_lane);
             let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
-            for c in 0..components {
-                let at = (c * rows + row) * WIDTH + lane;
+            for c in 0..COMPONENTS {
+                let at = c * stride + row * WIDTH + lane;
                 position[c] = q[at] * length;
                 velocity[c] = v[at] * speed;
                 // Zero times a finite number is zero; times anything else it is not a number.
-                check += 0.0 * position[c] + 0.0 * velocity[c];
+                check[c][0] += 0.0 * position[c];
+                check[c][1] += 0.0 * velocity[c];
             }
-            writer.write_rounded(self.unit.copy, time, self.unit.bodies[slot], position, velocity);
+            output.write_rounded(self.unit.bodies[slot], position, velocity);
         }
-        check == 0.0
+        check.iter().flatten().all(|&sum| sum == 0.0)
     }
 
     fn record_precisely(
@@ -131,10 +148,11 @@ impl Prepared {
         elapsed: f64,
     ) -> bool {
         let mut finite = true;
+        let output = writer.output(self.unit.copy, time);
         for slot in self.unit.recorded.clone() {
             let entry = self.read(slot, state, unit_lane, elapsed);
             finite &= entry.position.iter().chain(&entry.velocity).all(|x| x.is_finite());
-            writer.write(self.unit.copy, time, self.unit.bodies[slot], &entry);
+            output.write(self.unit.bodies[slot], &entry);
         }
         finite
     }
