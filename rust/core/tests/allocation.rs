@@ -8,10 +8,13 @@ mod support;
 use core::cell::Cell;
 use std::alloc::{GlobalAlloc, Layout, System};
 use support::{Each, Problem, Stepper, five_lanes, henon_heiles, three_bodies};
+use visviva_core::forces::Dynamics;
+use visviva_core::forces::gravity::Tiles;
 use visviva_core::integrators::Scheme;
-use visviva_core::numerics::element::Element;
+use visviva_core::integrators::state::State;
+use visviva_core::numerics::element::{Element, Shape};
 use visviva_core::numerics::lanes::Lanes;
-use visviva_core::numerics::real::Mask;
+use visviva_core::numerics::real::{Mask, Real};
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
@@ -69,6 +72,7 @@ fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let mut counts = Vec::new();
     for method in METHODS {
         let Scheme::Embedded(embedded) = &method.scheme else { continue };
+        let mut between = state.clone();
         let (mut engine, mut clock) = support::adaptive(embedded, &state, 1e-9, 1e3);
         let all = S::Mask::splat(true);
         engine.start(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
@@ -77,12 +81,28 @@ fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
                 let outcome =
                     engine.step(all, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
                 engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
+                engine.interpolate(&state, outcome.h, S::splat(0.5), &mut between);
                 engine.commit(outcome.accepted, &mut state);
             }
         });
         counts.push((method.name, count));
     }
     counts
+}
+
+/// Twenty massive bodies and two hundred massless ones, on one thread.
+fn swarm() -> Problem<Lanes> {
+    let shape = Shape { rows: 3 + 25, components: 3 };
+    let q: Vec<Lanes> =
+        (0..shape.len()).map(|k| Lanes(core::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
+    let v = vec![Lanes::zero(); shape.len()];
+    let mut strength = vec![Lanes::one(); 3];
+    strength[2].0[4..].fill(0.0);
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(Tiles::new(shape, strength, 20, 0.1, 1))]),
+        state: State::new(shape, &q, &v),
+        mass: Vec::new(),
+    }
 }
 
 #[test]
@@ -92,6 +112,7 @@ fn no_step_allocates() {
         fixed(henon_heiles::<f64>()),
         fixed(three_bodies::<f64>()),
         fixed(five_lanes()),
+        fixed(swarm()),
         adaptive(three_bodies::<f64>()),
         adaptive::<Lanes>(five_lanes()),
     ];

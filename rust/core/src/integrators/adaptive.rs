@@ -69,6 +69,8 @@ pub struct Adaptive<S: Element> {
     second_error: Option<Vec<Term<S>>>,
     dense_rows: Vec<Vec<Term<S>>>,
     dense: &'static [&'static [crate::numerics::double_double::DoubleDouble]],
+    /// Room for the weights of the continuous extension at one fraction of the step.
+    dense_weights: Vec<Term<S>>,
     error_exponent: u32,
     next: State<S>,
     /// What distances are measured from, at the present time: three components of `q`, three of `v`.
@@ -110,6 +112,7 @@ impl<S: Element> Adaptive<S> {
             second_error: method.second_error.map(terms),
             dense_rows: method.dense_a.iter().map(|row| terms(row)).collect(),
             dense: method.dense,
+            dense_weights: (0..method.dense.len()).map(|stage| Term { stage, weight: S::zero() }).collect(),
             error_exponent: method.error_exponent,
             next: state.clone(),
             reference_now: [S::zero(); 6],
@@ -297,22 +300,16 @@ impl<S: Element> Adaptive<S> {
     }
 
     /// The state at the fraction `theta` of the step, lane by lane; needs [`prepare_dense`](Self::prepare_dense).
-    pub fn interpolate(&self, state: &State<S>, h: S, theta: S, into: &mut State<S>) {
+    pub fn interpolate(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>) {
         let rest = S::one() - theta;
-        let weights: Vec<Term<S>> = self
-            .dense
-            .iter()
-            .enumerate()
-            .map(|(stage, row)| {
-                let mut weight = S::zero();
-                for (index, &coefficient) in row.iter().enumerate().rev() {
-                    let factor = if index % 2 == 0 { theta } else { rest };
-                    weight = factor * (S::from_double_double(coefficient) + weight);
-                }
-                Term { stage, weight }
-            })
-            .collect();
-        S::combine_compensated(into.all_mut(), state.all(), h, &weights, &self.stages.k);
+        for (term, row) in self.dense_weights.iter_mut().zip(self.dense) {
+            term.weight = S::zero();
+            for (index, &coefficient) in row.iter().enumerate().rev() {
+                let factor = if index % 2 == 0 { theta } else { rest };
+                term.weight = factor * (S::from_double_double(coefficient) + term.weight);
+            }
+        }
+        S::combine_compensated(into.all_mut(), state.all(), h, &self.dense_weights, &self.stages.k);
     }
 
     /// Force evaluations of the continuous extension beyond the step's own.

@@ -18,7 +18,7 @@ use crate::numerics::lanes::{Bits, Lanes, Register, Vector8, WIDTH, as_numbers, 
 use crate::numerics::real::Real;
 use crate::parallel::{Ticker, for_chunks};
 use crate::tiered;
-use std::sync::Mutex;
+use std::sync::{Mutex, PoisonError};
 
 /// Bodies per shard, and the most shards: enough for balance on many threads, few enough that adding
 /// them up stays below one percent.
@@ -30,14 +30,22 @@ const PASSIVE_ROWS: usize = 64;
 /// step need not be able to go back.
 const LONG_ROWS: usize = 128;
 
-/// A run of block rows and the accelerations it contributes.
+/// Rows that one thread works on, and the accelerations that come of them, with the sign changed (which saves an
+/// operation for each pair).
 #[derive(Debug)]
 struct Shard {
     start: usize,
     end: usize,
-    /// Minus the accelerations (the sign saves an operation for each pair), component after component,
-    /// `active_rows - start` blocks each: only `j ≥ start` can be reached.
+    /// Component after component, from row `start` to the last that can be reached: the last of the massive bodies
+    /// if the rows are theirs, else the last of these rows.
     pull: Vec<Lanes>,
+}
+
+impl Shard {
+    /// The rows `start..end`, which act on those up to `reach`.
+    fn new(shape: Shape, start: usize, end: usize, reach: usize) -> Mutex<Self> {
+        Mutex::new(Self { start, end, pull: vec![Lanes::zero(); shape.components * (reach - start)] })
+    }
 }
 
 /// Gravity among many massive bodies (rows below `active_rows`) and on the massless ones after them.
@@ -48,6 +56,7 @@ pub struct Tiles {
     strength: Vec<Lanes>,
     bodies: usize,
     softening2: f64,
+    /// Those of the massive bodies, then those of the massless ones.
     shards: Vec<Mutex<Shard>>,
     threads: usize,
 }
@@ -58,7 +67,7 @@ impl Tiles {
         let active_rows = strength.len();
         let count = (bodies / BODIES_PER_SHARD).clamp(1, SHARDS_MAX);
         let total = active_rows * (active_rows + 1) / 2;
-        let mut shards = Vec::with_capacity(count);
+        let mut shards = Vec::new();
         let (mut start, mut tiles) = (0, 0);
         for shard in 1..=count {
             let mut end = start;
@@ -66,9 +75,12 @@ impl Tiles {
                 tiles += active_rows - end;
                 end += 1;
             }
-            let len = shape.components * (active_rows - start);
-            shards.push(Mutex::new(Shard { start, end, pull: vec![Lanes::zero(); len] }));
+            shards.push(Shard::new(shape, start, end, active_rows));
             start = end;
+        }
+        for start in (active_rows..shape.rows).step_by(PASSIVE_ROWS) {
+            let end = (start + PASSIVE_ROWS).min(shape.rows);
+            shards.push(Shard::new(shape, start, end, end));
         }
         Self { shape, active_rows, strength, bodies, softening2: softening * softening, shards, threads }
     }
@@ -229,14 +241,14 @@ where
     }
 }
 
-/// The massless rows `start..end`, into their accelerations.
+/// The massless rows `start..end`.
 #[inline(always)]
 fn passive_rows<V: Vector8 + InverseCube>(
     tiles: &Tiles,
     q: &[Lanes],
     start: usize,
     end: usize,
-    out: &mut [Lanes],
+    pull: &mut [Lanes],
 ) {
     let rows = tiles.shape.rows;
     let planar = tiles.shape.components == 2;
@@ -265,16 +277,8 @@ fn passive_rows<V: Vector8 + InverseCube>(
             }
         };
         for c in 0..tiles.shape.components {
-            out[c * (end - start) + row - start] = term[c].store();
+            pull[c * (end - start) + row - start] = (-term[c]).store();
         }
-    }
-}
-
-/// Adds `from` to `into`.
-#[inline(always)]
-fn add<V: Vector8 + InverseCube>(into: &mut [Lanes], from: &[Lanes]) {
-    for (into, from) in V::view_mut(into).iter_mut().zip(V::view(from)) {
-        *into += *from;
     }
 }
 
@@ -288,8 +292,7 @@ fn subtract<V: Vector8>(into: &mut [Lanes], from: &[Lanes]) {
 
 tiered! {
     fn block_row_tier[][](tiles: &Tiles, q: &[Lanes], shard_start: usize, pull: &mut [Lanes], row: usize) = block_row;
-    fn passive_rows_tier[][](tiles: &Tiles, q: &[Lanes], start: usize, end: usize, out: &mut [Lanes]) = passive_rows;
-    fn add_tier[][](into: &mut [Lanes], from: &[Lanes]) = add;
+    fn passive_rows_tier[][](tiles: &Tiles, q: &[Lanes], start: usize, end: usize, pull: &mut [Lanes]) = passive_rows;
     fn subtract_tier[][](into: &mut [Lanes], from: &[Lanes]) = subtract;
 }
 
@@ -303,52 +306,32 @@ impl Force<Lanes> for Tiles {
     ) -> Result<()> {
         let (this, q) = (&*self, phase.q);
         let Shape { rows, components } = this.shape;
-        let passive = this.active_rows..rows;
-        let passive_chunks = passive.len().div_ceil(PASSIVE_ROWS);
-        let passive_run = |chunk: usize| {
-            let start = passive.start + chunk * PASSIVE_ROWS;
-            start..(start + PASSIVE_ROWS).min(rows)
-        };
-        let chunks = this.shards.len() + passive_chunks;
         let stops = this.stops_midway();
         let tick = |ticker: &mut Ticker<'_>| if stops { ticker.tick() } else { Ok(()) };
-        let passive_terms = for_chunks(this.threads, chunks, ticker, |chunk, ticker| {
-            let Some(shard) = this.shards.get(chunk) else {
-                let run = passive_run(chunk - this.shards.len());
-                let mut out = vec![Lanes::zero(); components * run.len()];
-                passive_rows_tier(this, q, run.start, run.end, &mut out);
-                tick(ticker)?;
-                return Ok(Some(out));
-            };
+        let _: Vec<()> = for_chunks(this.threads, this.shards.len(), ticker, |index, ticker| {
             // Each shard is locked once per evaluation, by the one thread that works on it.
-            let mut shard = shard.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
+            let mut shard = this.shards[index].lock().unwrap_or_else(PoisonError::into_inner);
             let Shard { start, end, ref mut pull } = *shard;
+            if start >= this.active_rows {
+                passive_rows_tier(this, q, start, end, pull);
+                return tick(ticker);
+            }
             pull.fill(Lanes::zero());
             for row in start..end {
                 block_row_tier(this, q, start, pull, row);
                 tick(ticker)?;
             }
-            Ok(None)
+            Ok(())
         })?;
         if first {
             a.fill(Lanes::zero());
         }
         for shard in &mut self.shards {
-            let shard = shard.get_mut().unwrap_or_else(std::sync::PoisonError::into_inner);
-            let local = self.active_rows - shard.start;
+            let Shard { start, pull, .. } = shard.get_mut().unwrap_or_else(PoisonError::into_inner);
+            let reached = pull.len() / components;
             for c in 0..components {
-                let into = &mut a[c * rows + shard.start..c * rows + self.active_rows];
-                subtract_tier(into, &shard.pull[c * local..(c + 1) * local]);
-            }
-        }
-        for (chunk, out) in passive_terms[self.shards.len()..].iter().enumerate() {
-            let run = passive_run(chunk);
-            for c in 0..components {
-                let out = out.as_deref().unwrap_or_default();
-                add_tier(
-                    &mut a[c * rows + run.start..c * rows + run.end],
-                    &out[c * run.len()..(c + 1) * run.len()],
-                );
+                let into = &mut a[c * rows + *start..][..reached];
+                subtract_tier(into, &pull[c * reached..][..reached]);
             }
         }
         Ok(())
