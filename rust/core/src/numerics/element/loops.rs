@@ -1,0 +1,179 @@
+//! The loops over the state, once for every scalar.
+//!
+//! No closures: they would be compiled without the tier's instructions.
+
+use super::{Scaled, Shape, Term};
+use crate::numerics::real::Real;
+
+/// `y + e + increment`, again as a sum and what it leaves out. What the step's coefficient leaves out joins the increment before `e` does: so a step
+/// stays the symplectic map of its rounded coefficients. Added to `e` first it is kept or lost depending on the
+/// state, which is no symplectic map: over 1.5e6 steps of kahan_li8 the mean energy error of 32 outer Solar
+/// Systems then drifts to 1.8e-14, three times its scatter, instead of 1e-15.
+///
+/// Kahan's three operations instead of Knuth's six: they differ only where a coordinate is smaller than its own
+/// increment, by no more than the rounding that every increment brings along.
+#[inline(always)]
+fn add_compensated<S: Real>(y: S, e: S, increment: S) -> (S, S) {
+    let increment = increment + e;
+    let sum = y + increment;
+    (sum, increment - (sum - y))
+}
+
+#[inline(always)]
+pub(super) fn kick_drift<S: Real>(
+    (q, q_error): (&mut [S], &mut [S]),
+    (v, v_error): (&mut [S], &mut [S]),
+    a: &[S],
+    kick: &Scaled<S>,
+    drift: &Scaled<S>,
+) {
+    let n = a.len();
+    let (q, q_error, v, v_error) = (&mut q[..n], &mut q_error[..n], &mut v[..n], &mut v_error[..n]);
+    for i in 0..n {
+        let change = kick.0.multiply_add(a[i], kick.1 * a[i]);
+        let (speed, speed_error) = add_compensated(v[i], v_error[i], change);
+        let change = drift.0.multiply_add(speed, drift.1.multiply_add(speed, drift.0 * speed_error));
+        (q[i], q_error[i]) = add_compensated(q[i], q_error[i], change);
+        (v[i], v_error[i]) = (speed, speed_error);
+    }
+}
+
+#[inline(always)]
+pub(super) fn advance<S: Real>((y, e): (&mut [S], &mut [S]), k: &[S], step: &Scaled<S>) {
+    let n = k.len();
+    let (y, e) = (&mut y[..n], &mut e[..n]);
+    for i in 0..n {
+        (y[i], e[i]) = add_compensated(y[i], e[i], step.0.multiply_add(k[i], step.1 * k[i]));
+    }
+}
+
+/// `Σ weight·k[stage]` at `G` elements from `i` on, in the order of the terms. Several elements at a time,
+/// because one sum alone waits for each of its additions.
+#[inline(always)]
+fn weighted<S: Real, const G: usize>(terms: &[Term<S>], k: &[S], stride: usize, i: usize) -> [S; G] {
+    let mut sums = [S::zero(); G];
+    for &Term { stage, weight } in terms {
+        let column = &k[stage * stride + i..][..G];
+        for g in 0..G {
+            sums[g] = weight.multiply_add(column[g], sums[g]);
+        }
+    }
+    sums
+}
+
+/// Runs `$body` with `$i` and `$sum = Σ weight·k[stage]` for every element below `$n`, six at a time while
+/// there are six. A macro and not a closure: a closure would be compiled without the tier's instructions.
+macro_rules! for_weighted {
+    (($n:expr, $terms:expr, $k:expr), |$i:ident, $sum:ident| $body:expr) => {{
+        let mut start = 0;
+        for_weighted!(@groups 6, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 2, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 1, ($n, $terms, $k), start, |$i, $sum| $body);
+    }};
+    (@groups $g:literal, ($n:expr, $terms:expr, $k:expr), $start:ident, |$i:ident, $sum:ident| $body:expr) => {
+        while $n - $start >= $g {
+            let sums = weighted::<S, $g>($terms, $k, $n, $start);
+            for g in 0..$g {
+                let ($i, $sum) = ($start + g, sums[g]);
+                $body;
+            }
+            $start += $g;
+        }
+    };
+}
+
+#[inline(always)]
+pub(super) fn combine<S: Real>(out: &mut [S], (y, e): (&[S], &[S]), h: S, terms: &[Term<S>], k: &[S]) {
+    let n = out.len();
+    let (y, e) = (&y[..n], &e[..n]);
+    for_weighted!((n, terms, k), |i, sum| out[i] = y[i] + h.multiply_add(sum, e[i]));
+}
+
+#[inline(always)]
+pub(super) fn combine_compensated<S: Real>(
+    (out, out_error): (&mut [S], &mut [S]),
+    (y, e): (&[S], &[S]),
+    h: S,
+    terms: &[Term<S>],
+    k: &[S],
+) {
+    let n = out.len();
+    let (y, e, out_error) = (&y[..n], &e[..n], &mut out_error[..n]);
+    for_weighted!((n, terms, k), |i, sum| (out[i], out_error[i]) = add_compensated(y[i], e[i], h * sum));
+}
+
+/// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
+const HUGE: f64 = 1e300;
+
+#[inline(always)]
+pub(super) fn largest_errors<S: Real>(
+    shape: Shape,
+    y: &[S],
+    reference: &[S],
+    tolerance: (S, S),
+    h: S,
+    terms: [&[Term<S>]; 2],
+    k: &[S],
+    stride: usize,
+) -> [S; 2] {
+    if shape.components == 2 {
+        largest_vector_errors::<S, 2>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+    } else {
+        largest_vector_errors::<S, 3>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+    }
+}
+
+/// As [`largest_errors`], the number of components known when compiled.
+#[inline(always)]
+fn largest_vector_errors<S: Real, const C: usize>(
+    rows: usize,
+    y: &[S],
+    reference: &[S],
+    (atol, rtol): (S, S),
+    h: S,
+    terms: [&[Term<S>]; 2],
+    k: &[S],
+    stride: usize,
+) -> [S; 2] {
+    let mut largest = [S::zero(); 2];
+    for row in 0..rows {
+        let mut distance2 = S::zero();
+        for c in 0..C {
+            let distance = y[c * rows + row] - reference[c];
+            distance2 = distance.multiply_add(distance, distance2);
+        }
+        let scale = atol + rtol * distance2.sqrt();
+        let inverse_scale2 = S::one() / (scale * scale);
+        for estimate in 0..2 {
+            let mut sums = [S::zero(); C];
+            for &Term { stage, weight } in terms[estimate] {
+                let column = &k[stage * stride + row..][..(C - 1) * rows + 1];
+                for c in 0..C {
+                    sums[c] = weight.multiply_add(column[c * rows], sums[c]);
+                }
+            }
+            let mut error2 = S::zero();
+            for c in 0..C {
+                let error = h * sums[c];
+                error2 = error.multiply_add(error, error2);
+            }
+            let ratio = error2 * inverse_scale2;
+            let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
+            let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
+            largest[estimate] = largest[estimate].max(ratio);
+        }
+    }
+    largest
+}
+
+#[inline(always)]
+pub(super) fn repeated_sqrt<S: Real>(value: S, times: u32) -> S {
+    (0..times).fold(value, |value, _| value.sqrt())
+}
+
+#[inline(always)]
+pub(super) fn replace<S: Real>(into: &mut [S], from: &[S], mask: S::Mask) {
+    for (into, from) in into.iter_mut().zip(from) {
+        *into = S::select(mask, *from, *into);
+    }
+}
