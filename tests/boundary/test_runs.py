@@ -103,6 +103,33 @@ def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> N
     assert out.final.particles.velocity.tobytes() == again.particles.velocity.tobytes()
 
 
+@pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
+@pytest.mark.parametrize("delay", np.linspace(0.06, 0.3, 12))
+def test_an_interrupted_adaptive_run_says_the_time_of_its_state(delay: float) -> None:
+    """Wherever in a step it is stopped: so many steps lead to that time and to that state, to the bit."""
+    large = scene(2000)
+    times = [0.0, *np.linspace(1e-4, 1e9, 3)]
+
+    def handler(number: int, frame: object) -> None:
+        raise KeyboardInterrupt
+
+    before = signal.signal(signal.SIGALRM, handler)
+    try:
+        signal.setitimer(signal.ITIMER_REAL, delay)
+        with pytest.raises(errors.Interrupted) as caught:
+            large.run(times, method="dop853", rtol=1e-10)
+    finally:
+        signal.signal(signal.SIGALRM, before)
+    out = caught.value.trajectory
+    again = large
+    if steps := out.stats.steps + out.stats.rejected:
+        with pytest.raises(errors.ConvergenceError) as stopped:
+            large.run(times, method="dop853", rtol=1e-10, max_steps=steps)
+        again = stopped.value.trajectory.final
+    assert out.final.t0 == again.t0
+    assert out.final.particles.position.tobytes() == again.particles.position.tobytes()
+
+
 @pytest.mark.parametrize("run", ["fixed steps", "adaptive steps", "large", "batch"])
 def test_an_exception_of_the_callback_is_raised_again(run: str) -> None:
     stop = ArithmeticError("enough")

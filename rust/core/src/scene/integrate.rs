@@ -82,7 +82,7 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     }
     ticker.control().set_total(job.total_progress(units.len()));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
-        Scheme::Embedded(method) => Ok(adaptive::run(job, method, runs[chunk], inside, ticker)),
+        Scheme::Embedded(method) => adaptive::run(job, method, runs[chunk], inside, ticker),
         _ => fixed::run(job, runs[chunk], inside, ticker),
     })?;
     Ok(reports.into_iter().flatten().collect())

@@ -11,6 +11,7 @@ use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
+use crate::error::Error;
 use crate::forces::Dynamics;
 use crate::integrators::Embedded;
 use crate::integrators::adaptive::{Adaptive, Clock, Outcome};
@@ -27,19 +28,27 @@ use measure::Measure;
 pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
 
 /// Runs the units; one that is stopped reports how far it came.
+///
+/// # Errors
+/// As [`run`](super::run).
 pub(super) fn run(
     job: &Job<'_>,
     method: &Embedded,
     units: &[Unit],
     threads: usize,
     ticker: &mut Ticker<'_>,
-) -> Vec<Report> {
+) -> Result<Vec<Report>> {
     let mut run = Run::new(job, method, units, threads);
     loop {
         let fresh = run.take_up();
         let running = run.running();
-        if !running.any() || run.advance(fresh, running, ticker).is_err() {
-            return run.into_reports();
+        if !running.any() {
+            return Ok(run.into_reports());
+        }
+        match run.advance(fresh, running, ticker) {
+            Ok(()) => {}
+            Err(Error::Interrupted) => return Ok(run.into_reports()),
+            Err(other) => return Err(other),
         }
     }
 }
@@ -154,20 +163,33 @@ impl<'a> Run<'a> {
     /// Starts the fresh lanes and takes a step in all that run.
     ///
     /// # Errors
-    /// When the caller asks to stop; the step is then not kept.
+    /// When the caller asks to stop; a step that was not whole is then not kept.
     fn advance(&mut self, fresh: Bits, running: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
         if fresh.any() {
             self.start(fresh, ticker)?;
         }
-        let layout = &self.job.plan.layout;
-        let Self { engine, state, clock, dynamics, .. } = self;
-        let outcome = engine.step(running, state, clock, dynamics, layout, ticker)?;
-        self.record(&outcome, ticker)?;
+        let before = self.clock;
+        let outcome = match self.step(running, ticker) {
+            Ok(outcome) => outcome,
+            Err(error) => {
+                // The state has not moved yet; the clock may have.
+                self.clock = before;
+                return Err(error);
+            }
+        };
         self.engine.commit(outcome.accepted, &mut self.state);
-        for lane in 0..layout.units() {
+        for lane in 0..self.job.plan.layout.units() {
             self.settle(lane, &outcome, ticker);
         }
         ticker.tick()
+    }
+
+    /// Tries a step and records the outputs on it, up to where the state moves.
+    fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Outcome<Lanes>> {
+        let Self { engine, state, clock, dynamics, .. } = self;
+        let outcome = engine.step(running, state, clock, dynamics, &self.job.plan.layout, ticker)?;
+        self.record(&outcome, ticker)?;
+        Ok(outcome)
     }
 
     fn start(&mut self, fresh: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
