@@ -6,14 +6,14 @@ returns can go to the core as it is.
 """
 
 import math
-from typing import TypeAlias
+from typing import TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
 
 from visviva.errors import InvalidInput
 
-__all__ = ["Shape", "Sizes", "float_array", "mass_array", "number", "positive", "whole_number"]
+__all__ = ["Shape", "Sizes", "float_array", "in_range", "mass_array", "number", "positive", "whole_number"]
 
 Shape: TypeAlias = tuple[int | str | None, ...]
 """Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
@@ -166,6 +166,32 @@ def positive(name: str, value: object, what: str = "number") -> float:
     if not checked > 0.0:
         raise InvalidInput(name, f"expected a positive {what}, got {checked!r}")
     return checked
+
+
+_Values = TypeVar("_Values", float, NDArray[np.float64])
+
+
+def in_range(name: str, before: _Values, after: _Values) -> _Values:
+    """Check that a change of units lost nothing: what comes after is finite, and zero only where it was zero before.
+
+    Examples
+    --------
+    >>> from visviva._arrays import in_range
+    >>> in_range("G", 2.0, 0.0)
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: G: expected units in which it stays within float64, but 2.0 becomes 0.0; choose them \
+nearer to the scene
+    """
+    old, new = np.asarray(before), np.asarray(after)
+    lost = ~np.isfinite(new) | ((new == 0.0) & (old != 0.0))
+    if lost.any():
+        raise InvalidInput(
+            name,
+            f"expected units in which it stays within float64, but {old[lost][0]} becomes {new[lost][0]}; "
+            "choose them nearer to the scene",
+        )
+    return after
 
 
 def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**63 - 1) -> int:

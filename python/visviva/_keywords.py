@@ -11,6 +11,7 @@ from inspect import Parameter, signature
 from types import FunctionType
 from typing import TYPE_CHECKING, ParamSpec, TypeVar, overload
 
+from visviva import _core
 from visviva.errors import UnknownKeyword
 
 if TYPE_CHECKING:
@@ -60,19 +61,20 @@ mean 'distance'?
 
 
 def did_you_mean(word: str, names: Iterable[str]) -> str:
-    """The end of a message: the nearest of the names, if one is near at all, whatever its capitals.
+    """The end of a message: the nearest of the names, if one is near at all.
+
+    Capitals do not count, and ``-``, ``_`` and a space are the same. The core judges, as it does of the names that
+    come to it.
 
     Examples
     --------
     >>> from visviva._keywords import did_you_mean
-    >>> did_you_mean("g", ["G", "softening"])
-    "; did you mean 'G'?"
+    >>> did_you_mean("Max Step", ["dt", "max_step"])
+    "; did you mean 'max_step'?"
     """
-    from difflib import get_close_matches
-
-    folded = {name.casefold(): name for name in names}
-    near = get_close_matches(word.casefold(), folded, n=1, cutoff=0.5)
-    return f"; did you mean '{folded[near[0]]}'?" if near else ""
+    # A name out of half a surrogate pair is a str of Python, but no text to anybody else.
+    near = _core.nearest(word.encode(errors="replace").decode(), list(names))
+    return f"; did you mean '{near}'?" if near else ""
 
 
 def _names(function: Callable[..., object]) -> tuple[str, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -16,7 +16,7 @@ from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterator
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -285,18 +285,20 @@ def monte_carlo(
 
 def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float64]]]:
     if isinstance(tally, str):
-        return [(tally, bins)]
+        tally = (tally,)
     pairs: list[tuple[str, int | NDArray[np.float64]]]
     if isinstance(tally, Mapping):
         pairs = [(name, float_array(str(name), edges, (None,))) for name, edges in tally.items()]
-    elif isinstance(tally, tuple | list | set | frozenset):
-        pairs = [(name, bins) for name in (sorted(tally) if isinstance(tally, set | frozenset) else tally)]
+    elif isinstance(tally, Iterable):
+        # A set has no order of its own that would be the same in the next process.
+        pairs = [(name, bins) for name in (sorted(tally, key=str) if isinstance(tally, Set) else tally)]
     else:
         raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
     names = [name for name, _ in pairs]
     if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
         raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
-    return pairs
+    # Half a surrogate pair is no text to the core; what remains is refused there as an unknown name.
+    return [(name.encode(errors="replace").decode(), edges) for name, edges in pairs]
 
 
 def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:

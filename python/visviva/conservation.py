@@ -108,9 +108,9 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     point = reference_point(about)
     mass, position, velocity = scene.particles.mass, scene.particles.position, scene.particles.velocity
     origin = start.center_of_mass if point is None else point
-    speeds = np.linalg.norm(velocity - (start.center_of_mass_velocity if point is None else 0.0), axis=1)
-    distances = np.linalg.norm(position - origin, axis=1)
-    spread = float(np.linalg.norm(position - start.center_of_mass, axis=1).max())
+    speeds = _lengths(velocity - (start.center_of_mass_velocity if point is None else 0.0))
+    distances = _lengths(position - origin)
+    spread = float(_lengths(position - start.center_of_mass).max())
     closed = all(force.conserves_momentum for force in scene.forces)
 
     t = trajectory.t
@@ -132,7 +132,7 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
             "momentum",
             t,
             trajectory.momentum - start.momentum,
-            fsum(mass * np.linalg.norm(velocity, axis=1)),
+            fsum(mass * _lengths(velocity)),
             conserved=closed,
         ),
         angular_momentum=_drift(
@@ -145,8 +145,15 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     )
 
 
+def _lengths(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Lengths of vectors (…, 3), by way of a power of two with which no square overflows or vanishes."""
+    _, power = np.frexp(np.abs(vectors).max(initial=0.0, where=np.isfinite(vectors)))
+    lengths: NDArray[np.float64] = np.ldexp(np.linalg.norm(np.ldexp(vectors, -power), axis=-1), power)
+    return lengths
+
+
 def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale: float, *, conserved: bool) -> Drift:
-    sizes = np.abs(change) if change.ndim == 1 else np.linalg.norm(change, axis=1)
+    sizes = np.abs(change) if change.ndim == 1 else _lengths(change)
     reached = np.isfinite(sizes)
     if not reached.any():
         raise InvalidInput("record", f"there is no row from which the drift of {name} could be told")

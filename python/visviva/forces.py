@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 import numpy as np
 
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, in_range, number, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -113,7 +113,10 @@ class Gravity(Force):
 
     def rescaled(self, *, length: float, mass: float, time: float) -> Gravity:
         """G has the dimension length³ / (mass · time²)."""
-        return Gravity(self.G * (length * length * length / (mass * time * time)), self.softening * length)
+        scales = length, mass, time
+        return Gravity(
+            _in_units("G", self.G, (3, -1, -2), *scales), in_range("softening", self.softening, self.softening * length)
+        )
 
     def _to_core(self) -> dict[str, Any]:
         return {"kind": self.kind, "G": self.G, "softening": self.softening}
@@ -165,7 +168,7 @@ class UniformField(Force):
 
     def rescaled(self, *, length: float, mass: float, time: float) -> UniformField:
         """An acceleration: length / time²."""
-        return UniformField(np.array(self.g) * (length / (time * time)))
+        return UniformField([_in_units("g", component, (1, 0, -2), length, mass, time) for component in self.g])
 
     def _to_core(self) -> dict[str, Any]:
         return {"kind": self.kind, "g": np.array(self.g)}
@@ -265,6 +268,23 @@ def force_from_core(description: dict[str, Any]) -> Force:
             "path", f"the file holds a force {kind!r} that this version does not know; use a newer visviva"
         )
     return _FORCES[kind]._from_core(description)
+
+
+def _in_units(name: str, value: float, powers: tuple[int, int, int], *scales: float) -> float:
+    """A number of the dimension length^p mass^q time^r in other units, rounded once.
+
+    The product is exact: scales of 1e±150 that together make a moderate factor do not overflow or vanish on the way.
+    """
+    from fractions import Fraction
+
+    exact = Fraction(value)
+    for unit, scale, power in zip(("length", "mass", "time"), scales, powers, strict=True):
+        exact *= Fraction(positive(unit, scale, "number of new units per old one")) ** power
+    try:
+        result = float(exact)
+    except OverflowError:
+        result = float("inf")
+    return in_range(name, value, result)
 
 
 def _vector(name: str, value: ArrayLike) -> _Vector:

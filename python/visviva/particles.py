@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva._arrays import float_array, mass_array, positive
+from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._keywords import known_keywords
 from visviva._text import count
 
@@ -116,7 +116,7 @@ class Particles:
         Raises
         ------
         visviva.InvalidInput
-            If a scale is not positive.
+            If a scale is not positive, or a number would leave the range of float64.
 
         Examples
         --------
@@ -127,7 +127,13 @@ class Particles:
         """
         for name, scale in (("length", length), ("mass", mass), ("time", time)):
             positive(name, scale, "number of new units per old one")
-        return Particles(self.mass * mass, self.position * length, self.velocity * (length / time))
+        with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # in_range tells it better
+            new = {
+                "mass": self.mass * mass,
+                "position": self.position * length,
+                "velocity": self.velocity * (length / time),
+            }
+        return Particles(**{name: in_range(name, getattr(self, name), values) for name, values in new.items()})
 
 
 def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:

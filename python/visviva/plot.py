@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -40,6 +41,12 @@ def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axe
 
 def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) -> Figure:
     """Orbits in the plane of their largest extent and, if it is known, the relative change of the energy."""
+    if not trajectory.scene.particles or not len(trajectory):
+        raise InvalidInput(
+            "plot",
+            "expected a trajectory with bodies and times, got "
+            f"{count(len(trajectory.scene.particles), 'body', 'bodies')} and {count(len(trajectory), 'time')}",
+        )
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0))
     _orbits(axes[0], trajectory, names)

@@ -95,12 +95,13 @@ def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
 def _word(name: str, value: object) -> str:
     if not isinstance(value, str):
         raise InvalidInput(name, f"expected a name, got {type(value).__name__}")
-    return value
+    # Half a surrogate pair is no text to the core; what remains is refused there as an unknown name.
+    return value if value.isascii() else value.encode(errors="replace").decode()
 
 
 def _words(name: str, value: object) -> list[str]:
     if isinstance(value, str):
-        return [value]
+        return [_word(name, value)]
     if not isinstance(value, Iterable):
         raise InvalidInput(name, f"expected a name or several names, got {value!r}")
     return [_word(name, word) for word in value]

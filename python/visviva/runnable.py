@@ -61,15 +61,16 @@ class Runnable(ABC, Generic[_Result]):
             One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
             runs.
         dt : float, optional
-            The step of a fixed-step method; backwards in time its sign may be either.
+            The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         rtol : float, optional
-            Relative tolerance of an adaptive method, at least 2.3e-14.
+            Relative tolerance of an adaptive method, at least 2.3e-14; a fixed-step method has no use for it.
         atol : float, optional
-            Absolute tolerance; by default `rtol` times the size of each kind of quantity at the start.
+            Absolute tolerance of an adaptive method; by default `rtol` times the size of each kind of quantity
+            at the start. A fixed-step method refuses it.
         max_step : float, optional
-            The longest step an adaptive method may take.
+            The longest step an adaptive method may take. A fixed-step method refuses it.
         max_steps : int, optional
-            The run ends with an error beyond this number of steps.
+            The run ends with an error beyond this number of steps, of any method.
         record : sequence of str, optional
             Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
             ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.

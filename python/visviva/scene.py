@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array, in_range, number
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import Force
@@ -256,7 +256,7 @@ class Scene(Runnable[Trajectory]):
         Raises
         ------
         visviva.InvalidInput
-            If a scale is not positive, or a force cannot be scaled.
+            If a scale is not positive, a force cannot be scaled, or a number would leave the range of float64.
 
         Examples
         --------
@@ -267,7 +267,7 @@ class Scene(Runnable[Trajectory]):
         """
         particles = self.particles.rescaled(length=length, mass=mass, time=time)
         forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
-        return Scene(particles, *forces, t0=self.t0 * time)
+        return Scene(particles, *forces, t0=in_range("t0", self.t0, self.t0 * time))
 
     def reversed(self) -> Scene:
         """The scene with every velocity turned round: run on, it retraces its path.

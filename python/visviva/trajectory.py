@@ -174,7 +174,7 @@ class Trajectory(Recorded):
         Raises
         ------
         visviva.InvalidInput
-            If matplotlib is not installed or positions were not recorded.
+            If matplotlib is not installed, positions were not recorded, or there is no body or no time.
 
         Examples
         --------

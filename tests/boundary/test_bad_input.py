@@ -22,6 +22,7 @@ NAMES = {
     "coulomb": COULOMB,
     "scene": vv.Scene(vv.Particles([1, 1], APART), vv.Gravity(1.0)),
     "center": vv.Scene(vv.Particles([1], [[1, 0, 0]]), vv.CentralField(vv.potentials.Coulomb(-1.0))),
+    "copies": vv.Scene(vv.Particles([1, 1], APART), vv.Gravity(1.0)).ensemble(mass=[[1, 1], [1, 2]]),
     "mc": lambda potential=COULOMB, **given: vv.scattering.monte_carlo(potential, **(BEAM | given)),
 }
 
@@ -62,7 +63,24 @@ scene.run(1, method="leap_frog", dt=0.1)            | method      | got 'leap_fr
 scene.run(1, method=None)                           | method      | expected a name, got NoneType
 scene.run(1, method="rk4")                          | dt          | got None
 scene.run(1, method="rk4", dt=0)                    | dt          | other than 0, got 0
-scene.run(1, method="rk4", dt=-0.1)                 | dt          | positive step for a run forward in time, got -0.1
+scene.run(1, method="rk4", dt=-0.1)                 | dt          | run forward in time, from t0 = 0.0 to 1.0, got -0.1
+scene.plan(1, method="rk4", dt=-1e-15)              | dt          | got -1e-15
+scene.run([0, 1], method="rk4", dt=-1)              | dt          | from t0 = 0.0 to 1.0, got -1.0
+scene.run(1, method="RK4", dt=0.1)                  | method      | got 'RK4'; did you mean 'rk4'\?
+scene.run(1, method="Kahan-Li 8", dt=0.1)           | method      | did you mean 'kahan_li8'\?
+scene.run(1, method="\ud800")                       | method      | got '\?'$
+scene.run(1, record="\ud800")                       | record      | got '\?'$
+scene.run(1, record="Angular-Momentum")             | record      | did you mean 'angular_momentum'\?
+scene.run(1, **{"Max Step": 1})                     | Max Step    | did you mean 'max_step'\?
+scene.run(1, method="rk4", dt=0.1, max_step=0.5)    | max_step    | rk4 has a fixed step.*got 0.5; leave max_step out
+scene.run(1, method="leapfrog", dt=0.1, atol=0)     | atol        | leapfrog has a fixed step.*got 0.0; leave atol out.*dop853
+scene.plan(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fixed step
+scene.plan(1, method="rk4", dt=0.1, atol=1e-9)      | atol        | got 1e-09
+copies.run(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fixed step
+copies.plan(1, method="rk4", dt=0.1, atol=1e-9)     | atol        | rk4 has a fixed step
+copies.run(1, method="rk4", dt=-0.1)                | dt          | from t0 = 0.0 to 1.0, got -0.1
+scene.run([1.0, 0.0])                               | t           | lead away from t0 = 0.0 in order, got t\[1\] = 0.0 after 1.0
+scene.run(1, rtol=-1)                               | rtol        | 2.3e-14 .* to 1, got -1.0;
 scene.run(1, method="rk4", dt=np.nan)               | dt          | dt is nan
 scene.run(1, method="dop853", dt=0.1)               | dt          | leave dt out
 scene.run(1, rtol=1e-15)                            | rtol        | 2.3e-14 .* got 1e-15
@@ -81,6 +99,10 @@ scene.run(1, record="energy").position              | record      | 'position' i
 scene.run(1).conservation(about="com")              | about       | 'center_of_mass', got 'com'
 scene.particles.rescaled(length=0)                  | length      | positive number of new units
 scene.particles.rescaled(time="day")                | time        | expected real numbers
+scene.rescaled(length=1e200)                        | G           | 1.0 becomes inf; choose them nearer
+scene.rescaled(length=1e-300, mass=1e-300)          | G           | 1.0 becomes 0.0
+vv.problems.kepler().scene.particles.rescaled(length=1e-200, time=1e200) | velocity    | becomes -?0.0
+vv.Gravity(1.0).rescaled(length=0, mass=1, time=1)  | length      | positive number of new units
 scene.rescaled(mass=-1)                             | mass        | positive number of new units per old one, got -1
 center.shifted(velocity=[1, 0, 0])                  | velocity    | fixed centre
 vv.problems.kepler(e="round")                       | e           | expected real numbers
@@ -102,7 +124,13 @@ mc(n_events=1e6)                                    | n_events    | pass int\(10
 mc(n_events=0)                                      | n_events    | from 1 to
 mc(seed=-1)                                         | seed        | from 0 to 18446744073709551615, got -1
 mc(bins=0)                                          | bins        | from 1 to 65536, got 0
-mc(tally="angle")                                   | tally       | got 'angle'
+mc(tally="angle")                                   | tally       | got 'angle'; did you mean 'cm_angle'\?
+mc(tally=["energy", "Recoil Angle"])                | tally       | got 'Recoil Angle'; did you mean 'recoil_angle'\?
+mc(tally={"impact": [0, 1]})                        | tally       | did you mean 'impact_parameter'\?
+mc(tally="\ud800")                                  | tally       | got '\?'$
+mc(tally={"cm_angle", 3})                           | tally       | different names, got
+mc(tally=iter([]))                                  | tally       | different names, got \[\]
+mc(b_max=1e300)                                     | b_max       | = 0.625, E .* got 1e\+300
 mc(tally={"cm_angle": [1, 0]})                      | cm_angle    | strictly increasing
 vv.scattering.lab_angle(1.0, mass_ratio=0)          | mass_ratio  | positive number, got 0
 vv.scattering.rutherford_cross_section(coulomb, energy=1, angle=1, frame="LAB") | frame | did you mean 'lab'

@@ -124,6 +124,11 @@ def test_the_nearest_name_is_suggested(call: Callable[[], object], came: str, me
     assert str(caught.value).endswith(f"; did you mean '{meant}'?")
 
 
+def test_a_keyword_that_is_no_text_is_refused_like_any_other() -> None:
+    with pytest.raises(vv.UnknownKeyword, match="expected a keyword of run"):
+        ONE.run(t=1.0, **{"\ud800": 1})
+
+
 def test_it_is_the_error_that_programs_catch() -> None:
     for kind in (TypeError, ValueError, vv.Error, vv.InvalidInput):
         with pytest.raises(kind, match="metod"):

@@ -1,5 +1,6 @@
 //! The errors of the core: what was asked, what came, what to do.
 
+use crate::words::number;
 use core::fmt;
 
 /// Why a computation did not give a result.
@@ -45,11 +46,13 @@ impl fmt::Display for Error {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::InvalidInput { argument, message } => write!(formatter, "{argument}: {message}"),
-            Self::Convergence { message, time } => write!(formatter, "{message} (at t = {time})"),
+            Self::Convergence { message, time } => write!(formatter, "{message} (at t = {})", number(*time)),
             Self::CloseEncounter { time, bodies: (i, j), distance } => write!(
                 formatter,
-                "the step size fell to zero at t = {time}: bodies {i} and {j} are {distance:e} apart; \
-                 soften the force, or use a fixed step that passes over the encounter"
+                "the step size fell to zero at t = {}: bodies {i} and {j} are {} apart; \
+                 soften the force, or use a fixed step that passes over the encounter",
+                number(*time),
+                number(*distance)
             ),
             Self::Interrupted => write!(formatter, "interrupted"),
             Self::Internal(message) => write!(formatter, "internal error: {message}"),

@@ -14,5 +14,6 @@ pub mod potentials;
 pub mod registry;
 pub mod scattering;
 pub mod scene;
+pub mod words;
 
 pub use error::{Error, Result};

@@ -12,6 +12,7 @@ mod orbits;
 mod registry;
 mod scattering;
 mod scene;
+mod words;
 
 use pyo3::prelude::*;
 
@@ -36,6 +37,8 @@ mod _core {
     use crate::scattering::{monte_carlo, scattering_function, solid_angles};
     #[pymodule_export]
     use crate::scene::{acceleration, conserved, plan, run};
+    #[pymodule_export]
+    use crate::words::nearest;
 
     /// A wrong `VISVIVA_SIMD` is refused here, before anything runs on another tier than was asked for.
     #[pymodule_init]

@@ -9,7 +9,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::potentials::Potential;
 use visviva_core::registry;
-use visviva_core::scene::request::unknown;
+use visviva_core::words::unknown;
 
 /// What every integration method declares about itself.
 #[pyfunction]

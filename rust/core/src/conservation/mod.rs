@@ -195,7 +195,7 @@ pub fn column(name: &str, forces: &[ForceSpec], bodies: &[Body], about: [f64; 3]
         "momentum" => three(momentum(bodies)),
         "angular_momentum" => three(angular_momentum(bodies, about)),
         "center_of_mass" => three(center_of_mass(bodies)),
-        _ => Err(crate::scene::request::unknown("columns", name, COLUMNS.into_iter())),
+        _ => Err(crate::words::unknown("columns", name, COLUMNS.into_iter())),
     }
 }
 

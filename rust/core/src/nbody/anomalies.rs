@@ -10,10 +10,15 @@ use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::{cbrt, ln};
 use crate::numerics::stumpff::UniversalFunctions;
+use crate::words::number;
 use core::f64::consts::{FRAC_PI_2, PI};
 
 fn check(name: &str, value: f64, good: bool, expected: &str) -> Result<()> {
-    if good { Ok(()) } else { Err(Error::invalid(name, format!("expected {expected}, got {value}"))) }
+    if good {
+        Ok(())
+    } else {
+        Err(Error::invalid(name, format!("expected {expected}, got {}", number(value))))
+    }
 }
 
 /// M = E − e sin E.

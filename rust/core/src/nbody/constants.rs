@@ -10,6 +10,7 @@ use crate::numerics::angles::atan2;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::real::Real;
+use crate::words::number;
 use core::f64::consts::PI;
 use nalgebra::Vector3;
 
@@ -42,12 +43,12 @@ pub struct ConicConstants {
 
 fn check_mass(mass: f64, strength: f64) -> Result<()> {
     if !(mass.is_finite() && mass > 0.0) {
-        return Err(Error::invalid("mass", format!("expected a positive number, got {mass}")));
+        return Err(Error::invalid("mass", format!("expected a positive number, got {}", number(mass))));
     }
     if !(strength.is_finite() && strength != 0.0) {
         return Err(Error::invalid(
             "strength",
-            format!("expected a finite number other than 0, got {strength}"),
+            format!("expected a finite number other than 0, got {}", number(strength)),
         ));
     }
     Ok(())
@@ -95,13 +96,13 @@ impl ConicConstants {
     pub fn from_constants(mass: f64, strength: f64, angular_momentum: f64, energy: f64) -> Result<Self> {
         check_mass(mass, strength)?;
         if !(angular_momentum.is_finite() && angular_momentum >= 0.0) {
-            let message = format!("expected a finite number ≥ 0, got {angular_momentum}");
+            let message = format!("expected a finite number ≥ 0, got {}", number(angular_momentum));
             return Err(Error::invalid("angular_momentum", message));
         }
         if !energy.is_finite() || (strength < 0.0 && energy <= 0.0) {
             let expected =
                 if strength < 0.0 { "a positive energy, for repulsion" } else { "a finite number" };
-            return Err(Error::invalid("energy", format!("expected {expected}, got {energy}")));
+            return Err(Error::invalid("energy", format!("expected {expected}, got {}", number(energy))));
         }
         if angular_momentum == 0.0 && energy == 0.0 {
             return Err(Error::invalid(
@@ -130,8 +131,11 @@ impl ConicConstants {
             if square.to_f64() < -4.0 * f64::EPSILON * (mu * mu).to_f64() {
                 let least = -0.5 * mass * (strength / angular_momentum) * (strength / angular_momentum)
                     / (mass * mass);
-                let message =
-                    format!("expected at least {least:e}, the energy of the circle, got {energy:e}");
+                let message = format!(
+                    "expected at least {}, the energy of the circle, got {}",
+                    number(least),
+                    number(energy)
+                );
                 return Err(Error::invalid("energy", message));
             }
             square = DoubleDouble::zero();
@@ -184,7 +188,7 @@ pub(super) fn dynamical_time(mu: f64, length: f64) -> f64 {
 pub fn period(mu: f64, semi_major_axis: f64) -> Result<f64> {
     for (name, value) in [("mu", mu), ("semi_major_axis", semi_major_axis)] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(Error::invalid(name, format!("expected a positive number, got {value}")));
+            return Err(Error::invalid(name, format!("expected a positive number, got {}", number(value))));
         }
     }
     Ok(2.0 * PI * dynamical_time(mu, semi_major_axis))

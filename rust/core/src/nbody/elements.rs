@@ -14,6 +14,7 @@ use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
+use crate::words::{number, numbers};
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 
@@ -74,7 +75,10 @@ impl Elements {
         let orbit = KeplerOrbit::new(mu, position, velocity)?;
         match &orbit.conic {
             Some(conic) => Ok(Self::from_conic(conic, orbit.length, orbit.speed)),
-            None => Err(Error::invalid("mu", format!("expected a force that bends the path, got mu = {mu}"))),
+            None => Err(Error::invalid(
+                "mu",
+                format!("expected a force that bends the path, got mu = {}", number(mu)),
+            )),
         }
     }
 
@@ -171,17 +175,26 @@ pub fn state_from_elements(
 ) -> Result<(Vector3<f64>, Vector3<f64>)> {
     let e = eccentricity;
     if !mu.is_finite() || mu == 0.0 {
-        return Err(Error::invalid("mu", format!("expected a finite number other than 0, got {mu}")));
+        return Err(Error::invalid(
+            "mu",
+            format!("expected a finite number other than 0, got {}", number(mu)),
+        ));
     }
     if !(pericentre.is_finite() && pericentre > 0.0) {
-        return Err(Error::invalid("pericentre", format!("expected a positive distance, got {pericentre}")));
+        return Err(Error::invalid(
+            "pericentre",
+            format!("expected a positive distance, got {}", number(pericentre)),
+        ));
     }
     if !(e.is_finite() && e >= 0.0 && (mu > 0.0 || e > 1.0)) {
-        return Err(Error::invalid("eccentricity", format!("expected e ≥ 0 (mu < 0: e > 1), got {e}")));
+        return Err(Error::invalid(
+            "eccentricity",
+            format!("expected e ≥ 0 (mu < 0: e > 1), got {}", number(e)),
+        ));
     }
     let angles = [inclination, node, argument_of_pericentre, true_anomaly];
     if !angles.iter().all(|angle| angle.is_finite()) {
-        return Err(Error::invalid("angles", format!("expected finite angles, got {angles:?}")));
+        return Err(Error::invalid("angles", format!("expected finite angles, got {}", numbers(&angles))));
     }
     let (half_sine, half_cosine) = sin_cos(0.5 * true_anomaly);
     // ±1 + e cos ν, without the cancellation at an apocentre far out or near ν = 0 of repulsion.
@@ -193,7 +206,11 @@ pub fn state_from_elements(
     if shape <= 0.0 {
         return Err(Error::invalid(
             "true_anomaly",
-            format!("expected an angle inside the asymptotes of e = {e}, got {true_anomaly}"),
+            format!(
+                "expected an angle inside the asymptotes of e = {}, got {}",
+                number(e),
+                number(true_anomaly)
+            ),
         ));
     }
     let (sine, cosine) = sin_cos(true_anomaly);
@@ -223,13 +240,13 @@ pub fn state_from_elements(
 pub fn free_fall_time(mu: f64, start: f64, end: f64) -> Result<f64> {
     for (name, value) in [("mu", mu), ("start", start)] {
         if !(value > 0.0 && value.is_finite()) {
-            return Err(Error::invalid(name, format!("expected a positive number, got {value}")));
+            return Err(Error::invalid(name, format!("expected a positive number, got {}", number(value))));
         }
     }
     if !(0.0..=start).contains(&end) {
         return Err(Error::invalid(
             "end",
-            format!("expected a distance from 0 to start = {start}, got {end}"),
+            format!("expected a distance from 0 to start = {}, got {}", number(start), number(end)),
         ));
     }
     let (fallen, left) = ((start - end) / start, end / start);

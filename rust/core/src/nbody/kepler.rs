@@ -14,6 +14,7 @@ use super::kepler_equation::{Anchor, solve};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
+use crate::words::{number, numbers};
 use nalgebra::Vector3;
 
 /// Beyond this many dynamical times a hyperbola is its asymptote.
@@ -60,13 +61,13 @@ impl KeplerOrbit {
     /// [`Error::InvalidInput`] if an argument is not finite, or `position` is zero.
     pub fn new(mu: f64, position: Vector3<f64>, velocity: Vector3<f64>) -> Result<Self> {
         if !mu.is_finite() {
-            return Err(Error::invalid("mu", format!("expected a finite number, got {mu}")));
+            return Err(Error::invalid("mu", format!("expected a finite number, got {}", number(mu))));
         }
         for (name, vector) in [("position", &position), ("velocity", &velocity)] {
             if !vector.iter().all(|component| component.is_finite()) {
                 return Err(Error::invalid(
                     name,
-                    format!("expected three finite numbers, got [{}, {}, {}]", vector.x, vector.y, vector.z),
+                    format!("expected three finite numbers, got {}", numbers(vector.as_slice())),
                 ));
             }
         }
@@ -186,7 +187,7 @@ pub fn propagate(
 ) -> Result<Vec<(Vector3<f64>, Vector3<f64>)>> {
     let orbit = KeplerOrbit::new(mu, position, velocity)?;
     if let Some(bad) = times.iter().find(|time| !time.is_finite()) {
-        return Err(Error::invalid("times", format!("expected finite numbers, got {bad}")));
+        return Err(Error::invalid("times", format!("expected finite numbers, got {}", number(*bad))));
     }
     Ok(times.iter().map(|&time| orbit.state(time)).collect())
 }

@@ -10,6 +10,7 @@ use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::words::number;
 use nalgebra::Vector3;
 
 /// Position and velocity.
@@ -38,11 +39,14 @@ impl TwoBody {
     pub fn new(gravitational_constant: f64, masses: [f64; 2], states: [State; 2]) -> Result<Self> {
         for mass in masses {
             if !(mass.is_finite() && mass >= 0.0) {
-                return Err(Error::invalid("mass", format!("expected a finite mass ≥ 0, got {mass}")));
+                return Err(Error::invalid(
+                    "mass",
+                    format!("expected a finite mass ≥ 0, got {}", number(mass)),
+                ));
             }
         }
         if masses == [0.0, 0.0] {
-            return Err(Error::invalid("mass", "expected at least one mass above 0, got 0 and 0"));
+            return Err(Error::invalid("mass", "expected at least one mass above 0, got 0.0 and 0.0"));
         }
         // In units of the greater mass, so that the sum cannot overflow.
         let unit = exponent(masses[0].max(masses[1]));

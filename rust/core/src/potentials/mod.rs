@@ -15,6 +15,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
+use crate::words::number;
 use core::fmt::Debug;
 use std::sync::Arc;
 
@@ -141,7 +142,12 @@ impl Declaration {
                 let kind = if parameter.positive { "a finite number above 0" } else { "a finite number" };
                 return Err(Error::invalid(
                     parameter.name,
-                    format!("{} expected {kind} ({}), got {value}", self.class_name, parameter.description),
+                    format!(
+                        "{} expected {kind} ({}), got {}",
+                        self.class_name,
+                        parameter.description,
+                        number(value)
+                    ),
                 ));
             }
         }

@@ -6,6 +6,7 @@
 //! comparison.
 
 use crate::numerics::philox::DRAW_BITS;
+use crate::words::number;
 use crate::{Error, Result};
 
 /// The most bins of one histogram.
@@ -30,7 +31,7 @@ impl Edges {
         if let Some(index) = edges.iter().position(|edge| !edge.is_finite()) {
             return Err(Error::invalid(
                 argument,
-                format!("expected finite edges, but edge {index} is {}", edges[index]),
+                format!("expected finite edges, but edge {index} is {}", number(edges[index])),
             ));
         }
         if let Some(index) = edges.windows(2).position(|pair| pair[0] >= pair[1]) {
@@ -38,9 +39,9 @@ impl Edges {
                 argument,
                 format!(
                     "expected strictly increasing edges, but edge {index} is {} and edge {} is {}",
-                    edges[index],
+                    number(edges[index]),
                     index + 1,
-                    edges[index + 1]
+                    number(edges[index + 1])
                 ),
             ));
         }

@@ -7,6 +7,7 @@
 //! *Mechanics*, §17.
 
 use crate::numerics::angles::{atan2, sin_cos};
+use crate::words::number;
 use crate::{Error, Result};
 
 /// Half the scattering angle ψ in [0, π], as its sine and cosine up to a common factor.
@@ -60,7 +61,7 @@ impl Collision {
             if !(mass > 0.0 && mass.is_finite()) {
                 return Err(Error::invalid(
                     "masses",
-                    format!("expected two positive finite masses, but masses[{index}] is {mass}"),
+                    format!("expected two positive finite masses, but masses[{index}] is {}", number(mass)),
                 ));
             }
         }

@@ -12,6 +12,7 @@ use super::kinematics::{Collision, HalfAngle};
 use super::rutherford::half_distance;
 use crate::numerics::philox::{DRAW_BITS, DRAWS, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
+use crate::words::{number, unknown};
 use crate::{Error, Result};
 use core::f64::consts::{FRAC_PI_2, PI};
 
@@ -47,10 +48,11 @@ impl Quantity {
     /// # Errors
     /// `InvalidInput` naming `tally`.
     pub fn named(name: &str) -> Result<Self> {
-        Self::ALL.iter().find(|(known, _)| *known == name).map(|(_, quantity)| *quantity).ok_or_else(|| {
-            let known = Self::ALL.map(|(name, _)| name).join(", ");
-            Error::invalid("tally", format!("expected names out of {known}, got '{name}'"))
-        })
+        Self::ALL
+            .iter()
+            .find(|(known, _)| *known == name)
+            .map(|(_, quantity)| *quantity)
+            .ok_or_else(|| unknown("tally", name, Self::ALL.iter().map(|(known, _)| *known)))
     }
 }
 
@@ -74,12 +76,15 @@ impl Beam {
         if !(k.is_finite() && k != 0.0) {
             return Err(Error::invalid(
                 "potential",
-                format!("expected a finite k other than 0, got k = {k}"),
+                format!("expected a finite k other than 0, got k = {}", number(k)),
             ));
         }
         for (name, value) in [("beam_energy", energy), ("b_max", b_max)] {
             if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::invalid(name, format!("expected a positive finite number, got {value}")));
+                return Err(Error::invalid(
+                    name,
+                    format!("expected a positive finite number, got {}", number(value)),
+                ));
             }
         }
         let collision = Collision::new(masses.0, masses.1)?;
@@ -89,8 +94,10 @@ impl Beam {
             return Err(Error::invalid(
                 "b_max",
                 format!(
-                    "expected a length within 150 decades of |k|/(2 E) = {half_distance:e}, E the energy of \
-                     relative motion, got {b_max:e}"
+                    "expected a length within 150 decades of |k|/(2 E) = {}, E the energy of \
+                     relative motion, got {}",
+                    number(half_distance),
+                    number(b_max)
                 ),
             ));
         }

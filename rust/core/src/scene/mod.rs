@@ -17,6 +17,7 @@ pub mod unit;
 
 use crate::error::{Error, Result};
 use crate::potentials::Potential;
+use crate::words::{number, numbers};
 use std::sync::Arc;
 
 /// A force of a scene, as described.
@@ -106,7 +107,7 @@ impl Scene {
                 let name = self.name("mass", index / self.particles, index % self.particles);
                 return Err(Error::invalid(
                     "mass",
-                    format!("expected finite masses of at least 0, got {name} = {mass}"),
+                    format!("expected finite masses of at least 0, got {name} = {}", number(mass)),
                 ));
             }
         }
@@ -115,17 +116,17 @@ impl Scene {
                 let name = self.name(argument, index / self.particles, index % self.particles);
                 return Err(Error::invalid(
                     argument,
-                    format!("expected finite numbers, got {name} = {:?}", values[index]),
+                    format!("expected finite numbers, got {name} = {}", numbers(&values[index])),
                 ));
             }
         }
         if !self.t0.is_finite() {
-            return Err(Error::invalid("t0", format!("expected a finite time, got {}", self.t0)));
+            return Err(Error::invalid("t0", format!("expected a finite time, got {}", number(self.t0))));
         }
         self.forces.iter().try_for_each(|force| match force {
             ForceSpec::Gravity { constant, softening } => self.validate_gravity(*constant, *softening),
             ForceSpec::UniformField { g } if g.iter().any(|g| !g.is_finite()) => {
-                Err(Error::invalid("g", format!("expected three finite numbers, got {g:?}")))
+                Err(Error::invalid("g", format!("expected three finite numbers, got {}", numbers(g))))
             }
             ForceSpec::UniformField { .. } => Ok(()),
             ForceSpec::CentralField { potential, center } => self.validate_center(&**potential, *center),
@@ -134,10 +135,10 @@ impl Scene {
 
     fn validate_gravity(&self, constant: f64, softening: f64) -> Result<()> {
         if !constant.is_finite() {
-            return Err(Error::invalid("G", format!("expected a finite number, got {constant}")));
+            return Err(Error::invalid("G", format!("expected a finite number, got {}", number(constant))));
         }
         if !(softening >= 0.0 && softening.is_finite()) {
-            let message = format!("expected a finite length of at least 0, got {softening}");
+            let message = format!("expected a finite length of at least 0, got {}", number(softening));
             return Err(Error::invalid("softening", message));
         }
         if softening > 0.0 {
@@ -159,8 +160,8 @@ impl Scene {
                         "position",
                         format!(
                             "expected distinct positions for bodies that attract each other, got {first} = \
-                             {second} = {:?}; move one of them or give Gravity a softening",
-                            position[i]
+                             {second} = {}; move one of them or give Gravity a softening",
+                            numbers(&position[i])
                         ),
                     ));
                 }
@@ -171,13 +172,16 @@ impl Scene {
 
     fn validate_center(&self, potential: &dyn Potential, center: [f64; 3]) -> Result<()> {
         if center.iter().any(|x| !x.is_finite()) {
-            return Err(Error::invalid("center", format!("expected three finite numbers, got {center:?}")));
+            return Err(Error::invalid(
+                "center",
+                format!("expected three finite numbers, got {}", numbers(&center)),
+            ));
         }
         if let Some(index) = self.mass.iter().position(|&mass| mass == 0.0) {
             let name = self.name("mass", index / self.particles, index % self.particles);
             return Err(Error::invalid(
                 "mass",
-                format!("CentralField acts by its force, so every mass must be positive, got {name} = 0"),
+                format!("CentralField acts by its force, so every mass must be positive, got {name} = 0.0"),
             ));
         }
         if !potential.singular() {
@@ -190,7 +194,8 @@ impl Scene {
                 Err(Error::invalid(
                     "position",
                     format!(
-                        "{name} = {center:?} is the singular center of CentralField; move one of the two"
+                        "{name} = {} is the singular center of CentralField; move one of the two",
+                        numbers(&center)
                     ),
                 ))
             }

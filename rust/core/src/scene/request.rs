@@ -4,6 +4,7 @@ use super::Scene;
 use crate::error::{Error, Result};
 use crate::integrators::Method;
 use crate::registry;
+use crate::words::{number, unknown};
 
 /// The smallest relative tolerance that double precision can honour (a hundred units in the last place).
 pub const RTOL_MIN: f64 = 2.3e-14;
@@ -33,36 +34,6 @@ pub struct Request {
     pub record: Vec<String>,
     /// Threads.
     pub threads: usize,
-}
-
-/// The nearest of the names, if it is near at all.
-pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
-    let distance = |a: &str, b: &str| {
-        let b: Vec<char> = b.chars().collect();
-        let mut row: Vec<usize> = (0..=b.len()).collect();
-        for (i, x) in a.chars().enumerate() {
-            let mut diagonal = row[0];
-            row[0] = i + 1;
-            for (j, &y) in b.iter().enumerate() {
-                let substitute = diagonal + usize::from(x != y);
-                diagonal = row[j + 1];
-                row[j + 1] = substitute.min(row[j] + 1).min(row[j + 1] + 1);
-            }
-        }
-        row[b.len()]
-    };
-    names
-        .map(|name| (distance(word, name), name))
-        .min()
-        .filter(|(distance, name)| *distance <= name.len().max(word.len()) / 2)
-        .map(|(_, name)| name)
-}
-
-/// "expected one of …, got 'x'; did you mean 'y'?"
-pub fn unknown<'a>(argument: &str, word: &str, names: impl Iterator<Item = &'a str> + Clone) -> Error {
-    let list: Vec<&str> = names.clone().collect();
-    let hint = nearest(word, names).map(|name| format!("; did you mean '{name}'?")).unwrap_or_default();
-    Error::invalid(argument, format!("expected one of {}, got '{word}'{hint}", list.join(", ")))
 }
 
 /// A checked request.
@@ -99,42 +70,60 @@ impl Request {
             }
         }
         let direction = self.direction(scene)?;
-        if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
-            return Err(Error::invalid(
-                "rtol",
-                format!(
-                    "expected {RTOL_MIN:e} (what double precision can honour) to 1, got {:e}; a smaller error \
-                     needs a fixed-step method such as kahan_li8",
-                    self.rtol
-                ),
-            ));
-        }
-        match self.atol {
-            Some(atol) if !(atol >= 0.0 && atol.is_finite()) => {
-                return Err(Error::invalid(
-                    "atol",
-                    format!("expected a number of at least 0 or None, got {atol}"),
-                ));
-            }
-            _ => {}
-        }
-        match self.max_step {
-            Some(step) if step.is_nan() || step <= 0.0 => {
-                return Err(Error::invalid(
-                    "max_step",
-                    format!("expected a positive time or None, got {step}"),
-                ));
-            }
-            _ => {}
-        }
+        self.check_tolerances(method)?;
         match self.max_steps {
             Some(steps) if steps < 1 => {
                 return Err(Error::invalid("max_steps", format!("expected at least 1 or None, got {steps}")));
             }
             _ => {}
         }
-        let dt = self.checked_step(method, automatic, direction)?;
+        let dt = self.checked_step(scene, method, automatic, direction)?;
         Ok(Checked { method, automatic, direction, dt })
+    }
+
+    /// What steers an adaptive method. `rtol` always has a value, so that a method without tolerances ignores it.
+    fn check_tolerances(&self, method: &Method) -> Result<()> {
+        if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
+            return Err(Error::invalid(
+                "rtol",
+                format!(
+                    "expected {} (what double precision can honour) to 1, got {}; a smaller error needs a \
+                     fixed-step method such as kahan_li8",
+                    number(RTOL_MIN),
+                    number(self.rtol)
+                ),
+            ));
+        }
+        let refused = |argument: &str, expected: &str, came: f64| {
+            Err(Error::invalid(argument, format!("expected {expected} or None, got {}", number(came))))
+        };
+        match self.atol {
+            Some(atol) if !(atol >= 0.0 && atol.is_finite()) => {
+                return refused("atol", "a number of at least 0", atol);
+            }
+            _ => {}
+        }
+        match self.max_step {
+            Some(step) if step.is_nan() || step <= 0.0 => {
+                return refused("max_step", "a positive time", step);
+            }
+            _ => {}
+        }
+        for (argument, given) in [("atol", self.atol), ("max_step", self.max_step)] {
+            match given {
+                Some(given) if !method.adaptive() => {
+                    let message = format!(
+                        "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
+                         out and choose dt, or name an adaptive method such as dop853",
+                        method.name,
+                        number(given)
+                    );
+                    return Err(Error::invalid(argument, message));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
     }
 
     fn direction(&self, scene: &Scene) -> Result<f64> {
@@ -145,7 +134,7 @@ impl Request {
         if let Some(index) = times.iter().position(|t| !t.is_finite()) {
             return Err(Error::invalid(
                 "t",
-                format!("expected finite times, got t[{index}] = {}", times[index]),
+                format!("expected finite times, got t[{index}] = {}", number(times[index])),
             ));
         }
         let end = times[times.len() - 1];
@@ -156,9 +145,11 @@ impl Request {
                 return Err(Error::invalid(
                     "t",
                     format!(
-                        "expected times in order from t0 = {} towards {end}, got t[{index}] = {t} after {before}; \
-                         sort them, and run the two directions from t0 separately",
-                        scene.t0
+                        "expected times that lead away from t0 = {} in order, got t[{index}] = {} after {}; sort \
+                         them, and run the two directions from t0 separately",
+                        number(scene.t0),
+                        number(t),
+                        number(before)
                     ),
                 ));
             }
@@ -167,7 +158,16 @@ impl Request {
         Ok(direction)
     }
 
-    fn checked_step(&self, method: &Method, automatic: bool, direction: f64) -> Result<Option<f64>> {
+    /// The step with the sign of the direction. It is given by its length; a sign is taken if it agrees with the
+    /// direction of time.
+    fn checked_step(
+        &self,
+        scene: &Scene,
+        method: &Method,
+        automatic: bool,
+        direction: f64,
+    ) -> Result<Option<f64>> {
+        let end = self.times.last().copied().unwrap_or(scene.t0);
         match self.dt {
             None if method.adaptive() => Ok(None),
             None => Err(Error::invalid(
@@ -175,7 +175,7 @@ impl Request {
                 format!("{} has a fixed step: expected dt, the time of one step, got None", method.name),
             )),
             Some(dt) if !dt.is_finite() || dt == 0.0 => {
-                Err(Error::invalid("dt", format!("expected a finite time other than 0, got {dt}")))
+                Err(Error::invalid("dt", format!("expected a finite time other than 0, got {}", number(dt))))
             }
             Some(_) if method.adaptive() => Err(Error::invalid(
                 "dt",
@@ -185,9 +185,14 @@ impl Request {
                     if automatic { ", or name a fixed-step method" } else { "" }
                 ),
             )),
-            Some(dt) if dt < 0.0 && direction > 0.0 => Err(Error::invalid(
+            Some(dt) if dt < 0.0 && end > scene.t0 => Err(Error::invalid(
                 "dt",
-                format!("expected a positive step for a run forward in time, got {dt}"),
+                format!(
+                    "expected a positive step for a run forward in time, from t0 = {} to {}, got {}",
+                    number(scene.t0),
+                    number(end),
+                    number(dt)
+                ),
             )),
             Some(dt) => Ok(Some(dt.abs() * direction)),
         }

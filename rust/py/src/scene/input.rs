@@ -8,8 +8,9 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use visviva_core::Error;
 use visviva_core::parallel::thread_count;
-use visviva_core::scene::request::{Request, unknown};
+use visviva_core::scene::request::Request;
 use visviva_core::scene::{ForceSpec, Scene};
+use visviva_core::words::unknown;
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 
@@ -37,10 +38,16 @@ impl Asked<'_> {
     /// The scene and the request, to be run on so many threads.
     ///
     /// # Errors
-    /// `InvalidInput` for arrays whose shapes do not agree, an unknown force, a number of threads that cannot be.
+    /// `InvalidInput` for arrays whose shapes do not agree, no copies, an unknown force, a number of threads that cannot be.
     pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request)> {
         let py = self.forces.py();
         let (mass, [copies, particles]) = copied("mass", &self.mass, [None, None])?;
+        if copies == 0 {
+            return Err(raised(
+                py,
+                Error::invalid("mass", "expected at least one copy of the scene, got none"),
+            ));
+        }
         let shape = [Some(copies), Some(particles), Some(3)];
         let position = points(&copied("position", &self.position, shape)?.0);
         let velocity = points(&copied("velocity", &self.velocity, shape)?.0);
