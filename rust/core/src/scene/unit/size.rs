@@ -10,6 +10,10 @@ impl Prepared {
     /// Finds the unit's reference and size.
     pub(super) fn measure(&mut self, plan: &Plan) {
         self.reference = self.find_reference(plan);
+        if self.moves_as_a_polynomial(plan) {
+            self.size = (f64::INFINITY, f64::INFINITY);
+            return;
+        }
         let mut extent = 0.0_f64;
         let mut speed = 0.0_f64;
         for (x, v) in self.position.iter().zip(&self.velocity) {
@@ -25,6 +29,14 @@ impl Prepared {
         // A body at rest in a field gets its scale from the fall over that length.
         let velocity = if velocity > 0.0 { velocity } else { (length * self.field_strength(plan)).sqrt() };
         self.size = (length, if velocity > 0.0 { velocity } else { 1.0 });
+    }
+
+    /// Whether the unit is one massive body on which nothing acts, or a uniform field: every adaptive method moves it
+    /// exactly, in steps of any length. Nothing about it would tell a size either, it being its own reference; one of
+    /// the plan's units instead would make its steps depend on the other copies of an ensemble.
+    fn moves_as_a_polynomial(&self, plan: &Plan) -> bool {
+        let gentle = |force: &ForceSpec| !matches!(force, ForceSpec::CentralField { .. });
+        self.unit.active == 1 && self.position.len() == 1 && plan.forces.iter().all(gentle)
     }
 
     /// A fixed centre if there is one, else the centre of mass.
