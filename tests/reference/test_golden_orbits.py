@@ -3,35 +3,15 @@
 Comparisons are relative to 1e-13, the accuracy the file promises, unless the line says why not.
 """
 
-import json
-from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from golden_cases import Golden, close
 
 import visviva as vv
 
-CASES: dict[str, dict[str, Any]] = {
-    case["id"]: case for case in json.loads(Path(__file__).with_name("golden.json").read_text())
-}
-Check = Callable[[dict[str, Any], dict[str, Any]], None]
-CHECKS: dict[str, Check] = {}
-
-
-def golden(identifier: str) -> Callable[[Check], Check]:
-    def register(check: Check) -> Check:
-        CHECKS[identifier] = check
-        return check
-
-    return register
-
-
-def close(value: Any, expected: Any, scale: float = 0.0) -> None:
-    value, expected = np.asarray(value, dtype=float), np.asarray(expected, dtype=float)
-    assert value.shape == expected.shape
-    assert np.all(np.abs(value - expected) <= 1e-13 * np.maximum(np.abs(expected), scale)), (value, expected)
+golden = Golden()
 
 
 def spatial(plane: list[float]) -> list[float]:
@@ -241,7 +221,6 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(out.velocity[-1], wanted[1], scale=1.0)
 
 
-@pytest.mark.parametrize("identifier", CHECKS)
+@pytest.mark.parametrize("identifier", golden.checks)
 def test_golden(identifier: str) -> None:
-    case = CASES[identifier]
-    CHECKS[identifier](case["inputs"], case["outputs"])
+    golden.run(identifier)
