@@ -12,6 +12,7 @@ use visviva_core::forces::Dynamics;
 use visviva_core::forces::gravity::Tiles;
 use visviva_core::integrators::Scheme;
 use visviva_core::integrators::state::State;
+use visviva_core::integrators::step_control::Controlled;
 use visviva_core::numerics::element::{Element, Shape};
 use visviva_core::numerics::lanes::Lanes;
 use visviva_core::numerics::real::{Mask, Real};
@@ -65,7 +66,7 @@ fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
         .collect()
 }
 
-fn adaptive<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
+fn adaptive<S: Controlled>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let Problem { mut state, mut dynamics, .. } = problem;
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);

@@ -17,7 +17,7 @@ use crate::parallel::Ticker;
 pub struct Phase<'a, S> {
     /// Coordinates.
     pub q: &'a [S],
-    /// Velocities.
+    /// Velocities, for a force that [needs](Force::needs_velocity) them; for another they may be of any time.
     pub v: &'a [S],
 }
 
@@ -35,6 +35,11 @@ pub trait Force<S: Element>: Send {
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
 
+    /// Whether it looks at velocities. If no force does, none may be there in the middle of a step.
+    fn needs_velocity(&self) -> bool {
+        false
+    }
+
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
     /// changes a state between evaluations must then be able to take that back.
     fn stops_midway(&self) -> bool {
@@ -47,15 +52,22 @@ pub struct Dynamics<S: Element> {
     /// How the coordinates lie.
     pub shape: Shape,
     /// The forces, in the scene's order, which is the order of summation.
-    pub forces: Vec<Box<dyn Force<S>>>,
+    forces: Vec<Box<dyn Force<S>>>,
     /// Force evaluations so far.
     pub evaluations: u64,
+    needs_velocity: bool,
 }
 
 impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
     pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
-        Self { shape, forces, evaluations: 0 }
+        let needs_velocity = forces.iter().any(|force| force.needs_velocity());
+        Self { shape, forces, evaluations: 0, needs_velocity }
+    }
+
+    /// Whether any force looks at velocities.
+    pub fn needs_velocity(&self) -> bool {
+        self.needs_velocity
     }
 
     /// Whether any force may be interrupted in the middle of an evaluation.

@@ -3,26 +3,21 @@
 //! The one idea: a step is computed for all lanes and kept where it is accepted, so eight trajectories
 //! with eight step sequences share every instruction, and one trajectory packed over the lanes is the same
 //! code with all lanes alike. Outputs are read off the continuous extension and never steer; only the
-//! last step is clamped to the end. Step control: Hairer, Nørsett & Wanner, *Solving ODE I*, II.4, II.10.
+//! last step is clamped to the end. Error estimates: Hairer, Nørsett & Wanner, *Solving ODE I*, II.10.
 //!
 //! Time is counted from the start of the run, so that a large `t0` costs no digits.
 
 use super::Embedded;
-use super::runge_kutta::{Stages, terms};
+use super::nystrom::{Row, pair_terms, twice};
+use super::runge_kutta::Stages;
 use super::state::State;
+use super::step_control::{Clock, Controlled, Outcome, Rule, root};
 use crate::error::Result;
 use crate::forces::Dynamics;
-use crate::numerics::double_double::two_sum;
-use crate::numerics::element::{Element, Shape, Term};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::element::{Element, PairTerm, Term};
 use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;
-
-/// Growth limits of the step, and its safety factor (the values of DOP853).
-const SHRINK: f64 = 1.0 / 3.0;
-const GROW: f64 = 6.0;
-const SAFETY: f64 = 0.9;
-/// A step below this many units in the last place of the elapsed time is no step.
-const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
 
 /// What the error of a step is measured against.
 #[derive(Clone, Copy, Debug)]
@@ -44,59 +39,41 @@ pub struct Reference<S> {
     pub velocity: [S; 3],
 }
 
-/// Everything that is one number per lane.
-#[derive(Clone, Copy, Debug)]
-pub struct Clock<S> {
-    /// Elapsed time, and what it leaves out.
-    pub elapsed: S,
-    error: S,
-    /// The next step, signed.
-    pub h: S,
-    /// The end, as elapsed time.
-    pub end: S,
-}
-
 /// The largest of the lanes, in every lane; each lane its own if they are separate trajectories.
 pub trait Reduce<S> {
     /// Reduces.
     fn largest(&self, value: S) -> S;
 }
 
+/// Weights of the accelerations in the coordinates and in the velocities.
+type Weights<T> = [Vec<T>; 2];
+
 /// An embedded method at work on one state (of one or of eight trajectories).
 pub struct Adaptive<S: Element> {
     stages: Stages<S>,
-    error: Vec<Term<S>>,
-    second_error: Option<Vec<Term<S>>>,
-    dense_rows: Vec<Vec<Term<S>>>,
-    dense: &'static [&'static [crate::numerics::double_double::DoubleDouble]],
-    /// Room for the weights of the continuous extension at one fraction of the step.
-    dense_weights: Vec<Term<S>>,
-    error_exponent: u32,
+    /// The weights of the two error estimates.
+    errors: Weights<PairTerm<S>>,
+    two_estimates: bool,
+    /// The stages that only the continuous extension uses.
+    dense_rows: Vec<Row<S>>,
+    /// For every stage, its weights in the continuous extension in the nested basis of [`Embedded::dense`].
+    dense: Weights<Vec<S>>,
+    /// Room for those weights at one fraction of the step.
+    between: Row<S>,
+    rule: Rule,
     next: State<S>,
-    /// What distances are measured from, at the present time: three components of `q`, three of `v`.
-    reference_now: [S; 6],
     tolerance: Tolerance<S>,
     reference: Reference<S>,
-    max_step: S,
-    /// Lanes whose last step was rejected.
-    rejected: S::Mask,
 }
 
-/// What a step did, lane by lane.
-pub struct Outcome<S: Element> {
-    /// The state moved.
-    pub accepted: S::Mask,
-    /// The end is reached.
-    pub finished: S::Mask,
-    /// The step fell to zero.
-    pub stuck: S::Mask,
-    /// Elapsed time before the step, and its length.
-    pub from: S,
-    /// Its length.
-    pub h: S,
+/// A weighted sum of derivatives to be measured, and what it is multiplied with: of the coordinates or of the velocities.
+struct Change<'a, S> {
+    k: &'a [S],
+    terms: &'a [PairTerm<S>],
+    factor: S,
 }
 
-impl<S: Element> Adaptive<S> {
+impl<S: Controlled> Adaptive<S> {
     /// For states like `state`.
     pub fn new(
         method: &Embedded,
@@ -105,60 +82,49 @@ impl<S: Element> Adaptive<S> {
         reference: Reference<S>,
         max_step: f64,
     ) -> Self {
-        let own = method.tableau.b.len();
+        let tableau = &method.tableau;
+        // The derivative at the end is a stage of its own, whose row are the weights.
+        let rows = tableau.a.iter().chain([&tableau.b]).chain(method.dense_a);
+        let a: Vec<Vec<DoubleDouble>> = rows.map(|row| row.to_vec()).collect();
+        let errors = [method.error, method.second_error.unwrap_or_default()];
+        let [of_q, of_q2] = errors.map(|row| twice(row, &a));
+        let dense_rows = method.dense_a.iter().zip(method.dense_c);
+        let every_stage = || (0..a.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
         Self {
-            stages: Stages::new(&method.tableau, 1 + method.dense_a.len(), 2 * state.shape.len()),
-            error: terms(method.error),
-            second_error: method.second_error.map(terms),
-            dense_rows: method.dense_a.iter().map(|row| terms(row)).collect(),
-            dense: method.dense,
-            dense_weights: (0..method.dense.len()).map(|stage| Term { stage, weight: S::zero() }).collect(),
-            error_exponent: method.error_exponent,
+            stages: Stages::new(tableau, 1 + method.dense_a.len(), state.shape.len()),
+            errors: [pair_terms([&of_q, &of_q2]), pair_terms(errors)],
+            two_estimates: method.second_error.is_some(),
+            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, &a)).collect(),
+            dense: dense(method, &a),
+            between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
+            rule: Rule { error_exponent: method.error_exponent, max_step },
             next: state.clone(),
-            reference_now: [S::zero(); 6],
             tolerance,
             reference,
-            max_step: S::splat(max_step),
-            rejected: S::Mask::splat(false),
         }
-        .checked(own)
     }
 
-    fn checked(self, own: usize) -> Self {
-        debug_assert_eq!(self.dense.len(), own + 1 + self.dense_rows.len());
-        self
-    }
-
-    /// The stage that holds the derivative at the end of the step.
+    /// The stage that holds the acceleration at the end of the step.
     fn end_stage(&self) -> usize {
-        self.dense.len() - self.dense_rows.len() - 1
+        self.dense[0].len() - self.dense_rows.len() - 1
     }
 
-    fn locate_reference(&mut self, elapsed: S) {
-        for c in 0..3 {
-            self.reference_now[c] = self.reference.position[c] + self.reference.velocity[c] * elapsed;
-            self.reference_now[3 + c] = self.reference.velocity[c];
-        }
-    }
-
-    /// The larger squared scaled size of the two halves of `h Σ weight·k`, for two sets of weights.
-    fn scaled_sizes(&self, y: &[S], h: S, terms: [&[Term<S>]; 2], reduce: &impl Reduce<S>) -> [S; 2] {
-        let shape: Shape = self.next.shape;
-        let n = shape.len();
-        let (k, stride) = (&self.stages.k, self.stages.len());
-        let sizes = |half: usize, atol: S| {
-            S::largest_errors(
-                shape,
-                &y[half * n..],
-                &self.reference_now[3 * half..],
-                (atol, self.tolerance.rtol),
-                h,
-                terms,
-                &k[half * n..],
-                stride,
-            )
+    /// The larger squared scaled size of the changes of `[q, v]`, for each of the two sets of weights.
+    fn scaled_sizes(
+        &self,
+        state: &State<S>,
+        elapsed: S,
+        [of_q, of_v]: [Change<'_, S>; 2],
+        reduce: &impl Reduce<S>,
+    ) -> [S; 2] {
+        let Reference { position, velocity } = self.reference;
+        let place: [S; 3] = core::array::from_fn(|c| position[c] + velocity[c] * elapsed);
+        let sizes = |y: &[S], reference: &[S; 3], atol: &S, change: &Change<'_, S>| {
+            let tolerance = (atol, &self.tolerance.rtol);
+            S::largest_errors(state.shape, y, reference, tolerance, &change.factor, change.terms, change.k)
         };
-        let [of_q, of_v] = [sizes(0, self.tolerance.atol_q), sizes(1, self.tolerance.atol_v)];
+        let of_q = sizes(state.q(), &place, &self.tolerance.atol_q, &of_q);
+        let of_v = sizes(state.v(), &velocity, &self.tolerance.atol_v, &of_v);
         [reduce.largest(of_q[0].max(of_v[0])), reduce.largest(of_q[1].max(of_v[1]))]
     }
 
@@ -168,7 +134,7 @@ impl<S: Element> Adaptive<S> {
         self.reference = reference;
     }
 
-    /// Starts the lanes of `fresh`: evaluates their first derivative and chooses their first step
+    /// Starts the lanes of `fresh`: evaluates their first acceleration and chooses their first step
     /// (Hairer, Nørsett & Wanner, II.4, with scaled sizes of the largest particle).
     ///
     /// # Errors
@@ -183,39 +149,40 @@ impl<S: Element> Adaptive<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let end_stage = self.end_stage();
-        self.stages.evaluate(end_stage, state.all().0, dynamics, ticker)?;
-        let len = self.stages.len();
-        let (before, after) = self.stages.k.split_at_mut(end_stage * len);
-        S::replace(&mut before[..len], &after[..len], fresh);
-        self.rejected = self.rejected.and(fresh.not());
-        self.locate_reference(clock.elapsed);
+        self.stages.evaluate(end_stage, state, dynamics, ticker)?;
+        self.begin_with_end(fresh);
 
-        let first = [Term { stage: 0, weight: S::one() }];
-        let y = state.all().0;
-        // With a zero derivative any step will do; the span is then the step.
-        let slope2 = self.scaled_sizes(y, S::one(), [&first, &[]], reduce)[0];
+        let alone = |stage, weight| PairTerm { stage, weights: [weight, S::zero()] };
+        let first = [alone(0, S::one())];
+        // With a slope of zero any step will do; the span is then the step.
+        let slope = |k| Change { k, terms: &first, factor: S::one() };
+        let slopes = [slope(state.v()), slope(self.stages.acceleration(0))];
+        let slope2 = self.scaled_sizes(state, clock.elapsed, slopes, reduce)[0];
         let span = (clock.end - clock.elapsed).abs();
-        let longest = span.min(self.max_step);
+        let longest = span.min(S::splat(self.rule.max_step));
         let still = slope2.less_equal(S::zero());
         // The time in which the state changes by its own size; a hundredth of it for the trial step.
         let time = S::select(still, longest, S::one() / (self.tolerance.rtol * slope2.sqrt()));
         let trial = (S::splat(0.01) * time).min(longest);
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
-        self.stages.evaluate_at(end_stage, state, trial * direction, &first, dynamics, ticker)?;
-        let change = [Term { stage: end_stage, weight: S::one() }, Term { stage: 0, weight: -S::one() }];
-        let curvature2 = self.scaled_sizes(y, time / trial, [&change, &[]], reduce)[0];
+        let euler =
+            Row { fraction: S::one(), position: vec![], velocity: vec![Term { stage: 0, weight: S::one() }] };
+        self.stages.evaluate_at(end_stage, state, &(trial * direction), &euler, dynamics, ticker)?;
+        let difference = [alone(end_stage, S::one()), alone(0, -S::one())];
+        // The slope of the coordinates changes by `trial·a`, that of the velocities by the difference of `a`.
+        let a = &self.stages.a[..];
+        let curvatures = [
+            Change { k: a, terms: &first, factor: time },
+            Change { k: a, terms: &difference, factor: time / trial },
+        ];
+        let curvature2 = self.scaled_sizes(state, clock.elapsed, curvatures, reduce)[0];
         // Both sizes in units of that time, so that the choice does not depend on the unit of time.
         let largest = (slope2 * time * time).max(curvature2 * time * time);
-        let by_order = time * self.root(S::splat(1e-4) / largest);
+        let by_order = time * root(S::splat(1e-4) / largest, self.rule);
         let by_order = S::select(largest.less_equal(S::zero()), longest, by_order);
         let h = by_order.min(time).min(longest);
         clock.h = S::select(fresh, h * direction, clock.h);
         Ok(())
-    }
-
-    /// `square^(1 / (2·error_exponent))`, the exponent being a power of two.
-    fn root(&self, square: S) -> S {
-        square.repeated_sqrt((2 * self.error_exponent).ilog2())
     }
 
     /// Tries one step in every lane.
@@ -225,56 +192,32 @@ impl<S: Element> Adaptive<S> {
     pub fn step(
         &mut self,
         running: S::Mask,
-        state: &mut State<S>,
+        state: &State<S>,
         clock: &mut Clock<S>,
         dynamics: &mut Dynamics<S>,
         reduce: &impl Reduce<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
-        let remaining = (clock.end - clock.elapsed) - clock.error;
-        // A last step a little longer than planned beats a last step of nothing.
-        let last = remaining.abs().less_equal(clock.h.abs() * S::splat(1.0 + 1e-9));
-        let h = S::select(running, S::select(last, remaining, clock.h), S::zero());
-        self.stages.evaluate_rest(state, h, dynamics, ticker)?;
-        let stages = &self.stages;
-        S::combine_compensated(self.next.all_mut(), state.all(), h, &stages.weights, &stages.k);
-        self.locate_reference(clock.elapsed);
-        let size2 = self.error_size(state, h, reduce);
-        let accepted = size2.less_equal(S::one()).and(running);
-
-        let factor = S::splat(SAFETY) / self.root(size2);
-        let factor = factor.max(S::splat(SHRINK)).min(S::splat(GROW));
-        let factor = S::select(size2.less_equal(S::zero()), S::splat(GROW), factor);
-        let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
-        let from = clock.elapsed;
-        let proposed = h * factor;
-        let proposed =
-            S::select(self.max_step.less(proposed.abs()), clamp(proposed, self.max_step), proposed);
-        clock.h = S::select(running, proposed, clock.h);
-        self.rejected = S::Mask::and(accepted.not(), running);
-
-        let (elapsed, error) = two_sum(clock.elapsed, clock.error + h);
-        clock.elapsed = S::select(accepted, S::select(last, clock.end, elapsed), clock.elapsed);
-        clock.error = S::select(accepted, S::select(last, S::zero(), error), clock.error);
-        let finished = accepted.and(last);
-        let smallest = (S::splat(SMALLEST_STEP) * clock.elapsed.abs()).max(S::splat(f64::MIN_POSITIVE));
-        let stuck = clock.h.abs().less_equal(smallest).and(running).and(finished.not());
-        if accepted.any() {
-            let end_stage = self.end_stage();
-            self.stages.evaluate(end_stage, self.next.all().0, dynamics, ticker)?;
+        let h = S::next_step(clock, running);
+        self.stages.evaluate_rest(state, &h, dynamics, ticker)?;
+        self.stages.finish(state, &h, &mut self.next);
+        let size2 = self.error_size(state, clock.elapsed, h, reduce);
+        let outcome = S::settle(clock, running, size2, self.rule);
+        if outcome.accepted.any() {
+            self.stages.evaluate(self.end_stage(), &self.next, dynamics, ticker)?;
         }
-        Ok(Outcome { accepted, finished, stuck, from, h })
+        Ok(outcome)
     }
 
     /// The squared scaled error of the step.
-    fn error_size(&self, state: &State<S>, h: S, reduce: &impl Reduce<S>) -> S {
-        let y = state.all().0;
-        let Some(second) = &self.second_error else {
-            return self.scaled_sizes(y, h, [&self.error, &[]], reduce)[0];
-        };
-        let [main, second] = self.scaled_sizes(y, h, [&self.error, second], reduce);
+    fn error_size(&self, state: &State<S>, elapsed: S, h: S, reduce: &impl Reduce<S>) -> S {
+        let change = |half: usize, factor| Change { k: &self.stages.a, terms: &self.errors[half], factor };
+        let [main, other] = self.scaled_sizes(state, elapsed, [change(0, h * h), change(1, h)], reduce);
+        if !self.two_estimates {
+            return main;
+        }
         // (E² / sqrt(E² + 0.01 E3²))², with E² and E3² at hand.
-        let denominator = main + S::splat(0.01) * second;
+        let denominator = main + S::splat(0.01) * other;
         let size2 = main * (main / denominator);
         S::select(main.less_equal(S::zero()), S::zero(), size2)
     }
@@ -290,26 +233,28 @@ impl<S: Element> Adaptive<S> {
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let rows = core::mem::take(&mut self.dense_rows);
-        let first = self.dense.len() - rows.len();
-        let outcome = rows.iter().enumerate().try_for_each(|(index, row)| {
-            self.stages.evaluate_at(first + index, state, h, row, dynamics, ticker)
-        });
-        self.dense_rows = rows;
-        outcome
+        let first = self.end_stage() + 1;
+        let mut rows = self.dense_rows.iter().enumerate();
+        rows.try_for_each(|(index, row)| {
+            self.stages.evaluate_at(first + index, state, &h, row, dynamics, ticker)
+        })
     }
 
     /// The state at the fraction `theta` of the step, lane by lane; needs [`prepare_dense`](Self::prepare_dense).
     pub fn interpolate(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>) {
         let rest = S::one() - theta;
-        for (term, row) in self.dense_weights.iter_mut().zip(self.dense) {
-            term.weight = S::zero();
-            for (index, &coefficient) in row.iter().enumerate().rev() {
-                let factor = if index % 2 == 0 { theta } else { rest };
-                term.weight = factor * (S::from_double_double(coefficient) + term.weight);
+        self.between.fraction = theta;
+        let weights = [&mut self.between.position, &mut self.between.velocity];
+        for (terms, coefficients) in weights.into_iter().zip(&self.dense) {
+            for (term, row) in terms.iter_mut().zip(coefficients) {
+                term.weight = S::zero();
+                for (index, &coefficient) in row.iter().enumerate().rev() {
+                    let factor = if index % 2 == 0 { theta } else { rest };
+                    term.weight = factor * (coefficient + term.weight);
+                }
             }
         }
-        S::combine_compensated(into.all_mut(), state.all(), h, &self.dense_weights, &self.stages.k);
+        self.stages.state_at(&self.between, state, &h, into);
     }
 
     /// Force evaluations of the continuous extension beyond the step's own.
@@ -328,28 +273,28 @@ impl<S: Element> Adaptive<S> {
         let (next, next_error) = self.next.all();
         S::replace(y, next, accepted);
         S::replace(error, next_error, accepted);
+        self.begin_with_end(accepted);
+    }
+
+    /// Takes the acceleration at the end for that at the start.
+    fn begin_with_end(&mut self, lanes: S::Mask) {
         let (len, end_stage) = (self.stages.len(), self.end_stage());
-        let (before, after) = self.stages.k.split_at_mut(end_stage * len);
-        S::replace(&mut before[..len], &after[..len], accepted);
+        let (before, after) = self.stages.a.split_at_mut(end_stage * len);
+        S::replace(&mut before[..len], &after[..len], lanes);
     }
 }
 
-/// `value` with the magnitude `limit`.
-fn clamp<S: Real>(value: S, limit: S) -> S {
-    S::select(value.less(S::zero()), -limit, limit)
-}
-
-impl<S: Real> Clock<S> {
-    /// At the start of a run that ends at `end`.
-    pub fn new(end: S) -> Self {
-        Self { elapsed: S::zero(), error: S::zero(), h: S::zero(), end }
-    }
-    /// As `fresh` in the lanes of the mask.
-    pub fn restart(&mut self, lanes: S::Mask, end: S) {
-        let fresh = Self::new(end);
-        self.elapsed = S::select(lanes, fresh.elapsed, self.elapsed);
-        self.error = S::select(lanes, fresh.error, self.error);
-        self.h = S::select(lanes, fresh.h, self.h);
-        self.end = S::select(lanes, fresh.end, self.end);
-    }
+/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages.
+fn dense<S: Element>(method: &Embedded, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
+    let powers = method.dense.iter().map(|row| row.len()).max().unwrap_or(0);
+    let zero = DoubleDouble::zero();
+    let power = |index| -> Vec<DoubleDouble> {
+        method.dense.iter().map(|row| row.get(index).copied().unwrap_or(zero)).collect()
+    };
+    let of_v: Vec<Vec<DoubleDouble>> = (0..powers).map(power).collect();
+    let of_q: Vec<Vec<DoubleDouble>> = of_v.iter().map(|row| twice(row, a)).collect();
+    [of_q, of_v].map(|rows| {
+        let of_stage = |stage| rows.iter().map(|row| S::from_double_double(row[stage])).collect();
+        (0..a.len()).map(of_stage).collect()
+    })
 }

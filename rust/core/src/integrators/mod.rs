@@ -9,12 +9,14 @@ pub mod dop853;
 pub mod fixed;
 pub mod kahan_li8;
 pub mod leapfrog;
+pub mod nystrom;
 #[cfg(test)]
 mod order_conditions;
 pub mod rk4;
 pub mod runge_kutta;
 pub mod splitting;
 pub mod state;
+pub mod step_control;
 pub mod yoshida4;
 
 use crate::numerics::double_double::DoubleDouble;

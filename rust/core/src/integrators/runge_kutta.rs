@@ -1,92 +1,67 @@
-//! The stages of an explicit Runge–Kutta method on `y = (q, v)`, `y' = (v, a)`.
+//! The stages of an explicit Runge–Kutta method on the equations of motion `q'' = a(q, v)`.
 
 use super::Tableau;
+use super::nystrom::Row;
 use super::state::State;
 use crate::error::Result;
 use crate::forces::Dynamics;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Term};
+use crate::numerics::element::Element;
 use crate::parallel::Ticker;
 
-/// The terms of a row of coefficients that are not zero.
-pub fn terms<S: Element>(row: &[DoubleDouble]) -> Vec<Term<S>> {
-    row.iter()
-        .enumerate()
-        .filter(|(_, weight)| weight.to_f64() != 0.0)
-        .map(|(stage, &weight)| Term { stage, weight: S::from_double_double(weight) })
-        .collect()
-}
-
-/// The weights of a method, their sum as close to 1 as the scalar allows.
-///
-/// Every weight rounded by itself would leave a sum of, for RK4, `1 - 2^-54`: each step would fall short
-/// by that share, and a long run would lag behind in proportion to time. The smallest weight, being the
-/// finest, takes up what the rounding of all of them leaves out.
-fn weights<S: Element>(row: &[DoubleDouble]) -> Vec<Term<S>> {
-    let mut terms = terms(row);
-    let rest = row.iter().fold(S::zero(), |rest, &weight| rest + S::one().scaled_by(weight).1);
-    let size = |term: &Term<S>| row[term.stage].to_f64().abs();
-    if let Some(smallest) = terms.iter_mut().min_by(|a, b| size(a).total_cmp(&size(b))) {
-        smallest.weight += rest;
-    }
-    terms
-}
-
-/// The stages of a method and room for their derivatives.
+/// The stages of a method and room for their accelerations.
 #[derive(Clone, Debug)]
 pub struct Stages<S> {
-    rows: Vec<Vec<Term<S>>>,
-    /// The weights.
-    pub weights: Vec<Term<S>>,
-    /// Derivatives, stage after stage.
-    pub k: Vec<S>,
+    rows: Vec<Row<S>>,
+    end: Row<S>,
+    /// Accelerations, stage after stage.
+    pub a: Vec<S>,
     /// Where a stage is evaluated.
-    point: Vec<S>,
-    len: usize,
+    position: Vec<S>,
+    velocity: Vec<S>,
 }
 
 impl<S: Element> Stages<S> {
-    /// For a tableau with `extra` further derivatives, and states of `len` numbers (`q` and `v`).
+    /// For a tableau with `extra` further stages, and `len` coordinates.
     pub fn new(tableau: &Tableau, extra: usize, len: usize) -> Self {
+        let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
         Self {
-            rows: tableau.a.iter().map(|row| terms(row)).collect(),
-            weights: weights(tableau.b),
-            k: vec![S::zero(); (tableau.b.len() + extra) * len],
-            point: vec![S::zero(); len],
-            len,
+            rows: a.iter().zip(tableau.c).map(|(row, &c)| Row::new(row, c, &a)).collect(),
+            end: Row::end(tableau.b, &a),
+            a: vec![S::zero(); (tableau.b.len() + extra) * len],
+            position: vec![S::zero(); len],
+            velocity: vec![S::zero(); len],
         }
     }
-    /// Numbers per derivative.
+    /// Numbers per acceleration.
     pub fn len(&self) -> usize {
-        self.len
+        self.position.len()
     }
-    /// Whether a derivative has no numbers.
+    /// Whether an acceleration has no numbers.
     pub fn is_empty(&self) -> bool {
-        self.len == 0
+        self.position.is_empty()
     }
-    /// The derivative of stage `stage`.
-    pub fn derivative(&mut self, stage: usize) -> &mut [S] {
-        &mut self.k[stage * self.len..(stage + 1) * self.len]
+    /// The acceleration of stage `stage`.
+    pub fn acceleration(&self, stage: usize) -> &[S] {
+        &self.a[stage * self.len()..][..self.len()]
     }
 
-    /// Writes the derivative at `y` as that of `stage`.
+    /// Writes the acceleration at a state as that of `stage`.
     ///
     /// # Errors
     /// As [`Dynamics::acceleration`].
     pub fn evaluate(
         &mut self,
         stage: usize,
-        y: &[S],
+        state: &State<S>,
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let (q, v) = y.split_at(self.len / 2);
-        let (dq, dv) = self.derivative(stage).split_at_mut(v.len());
-        dq.copy_from_slice(v);
-        dynamics.acceleration(q, v, dv, ticker)
+        let len = self.len();
+        dynamics.acceleration(state.q(), state.v(), &mut self.a[stage * len..][..len], ticker)
     }
 
-    /// Writes the derivative of stage `stage`, at the point that the terms lead to.
+    /// Writes the acceleration of stage `stage`, at the point that the row leads to.
     ///
     /// # Errors
     /// As [`Dynamics::acceleration`].
@@ -94,16 +69,27 @@ impl<S: Element> Stages<S> {
         &mut self,
         stage: usize,
         state: &State<S>,
-        h: S,
-        terms: &[Term<S>],
+        h: &S,
+        row: &Row<S>,
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let mut point = core::mem::take(&mut self.point);
-        S::combine(&mut point, state.all(), h, terms, &self.k);
-        let outcome = self.evaluate(stage, &point, dynamics, ticker);
-        self.point = point;
-        outcome
+        let len = self.len();
+        S::combine(
+            &mut self.position,
+            state.position(),
+            (state.v(), &row.fraction),
+            h,
+            &row.position,
+            &self.a,
+        );
+        let velocity = if dynamics.needs_velocity() {
+            S::combine_velocity(&mut self.velocity, state.velocity(), h, &row.velocity, &self.a);
+            &self.velocity
+        } else {
+            state.v()
+        };
+        dynamics.acceleration(&self.position, velocity, &mut self.a[stage * len..][..len], ticker)
     }
 
     /// All stages of the tableau from the second on; the first must be there.
@@ -113,7 +99,7 @@ impl<S: Element> Stages<S> {
     pub fn evaluate_rest(
         &mut self,
         state: &State<S>,
-        h: S,
+        h: &S,
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
@@ -125,6 +111,19 @@ impl<S: Element> Stages<S> {
             .try_for_each(|(stage, row)| self.evaluate_at(stage, state, h, row, dynamics, ticker));
         self.rows = rows;
         outcome
+    }
+
+    /// Writes the end of the step, all stages of the tableau being there.
+    pub fn finish(&self, state: &State<S>, h: &S, next: &mut State<S>) {
+        self.state_at(&self.end, state, h, next);
+    }
+
+    /// Writes the state that the row leads to, compensated.
+    pub fn state_at(&self, row: &Row<S>, state: &State<S>, h: &S, into: &mut State<S>) {
+        let (q, v) = into.halves_mut();
+        let (from, slope) = (state.position(), (state.v(), &row.fraction));
+        S::combine_compensated(q, from, slope, h, &row.position, &self.a);
+        S::combine_velocity_compensated(v, state.velocity(), h, &row.velocity, &self.a);
     }
 }
 
@@ -139,7 +138,7 @@ pub struct RungeKuttaStep<S> {
 impl<S: Element> RungeKuttaStep<S> {
     /// The method `tableau` with step `h`, for states like `state`.
     pub fn new(tableau: &Tableau, h: S, state: &State<S>) -> Self {
-        Self { stages: Stages::new(tableau, 0, 2 * state.shape.len()), next: state.clone(), h }
+        Self { stages: Stages::new(tableau, 0, state.shape.len()), next: state.clone(), h }
     }
 
     /// Becomes the method with step `h`.
@@ -157,10 +156,9 @@ impl<S: Element> RungeKuttaStep<S> {
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        self.stages.evaluate(0, state.all().0, dynamics, ticker)?;
-        self.stages.evaluate_rest(state, self.h, dynamics, ticker)?;
-        let stages = &self.stages;
-        S::combine_compensated(self.next.all_mut(), state.all(), self.h, &stages.weights, &stages.k);
+        self.stages.evaluate(0, state, dynamics, ticker)?;
+        self.stages.evaluate_rest(state, &self.h, dynamics, ticker)?;
+        self.stages.finish(state, &self.h, &mut self.next);
         core::mem::swap(state, &mut self.next);
         Ok(())
     }

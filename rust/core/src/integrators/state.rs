@@ -35,6 +35,14 @@ impl<S: Element> State<S> {
     pub fn v_error(&self) -> &[S] {
         &self.error[self.shape.len()..]
     }
+    /// Coordinates and what they leave out.
+    pub fn position(&self) -> (&[S], &[S]) {
+        (self.q(), self.q_error())
+    }
+    /// Velocities and what they leave out.
+    pub fn velocity(&self) -> (&[S], &[S]) {
+        (self.v(), self.v_error())
+    }
     /// Coordinates and velocities, and their compensations.
     pub fn all(&self) -> (&[S], &[S]) {
         (&self.y, &self.error)

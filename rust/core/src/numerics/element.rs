@@ -11,7 +11,7 @@ mod batch;
 mod loops;
 
 use super::double_double::DoubleDouble;
-use super::real::Real;
+use super::inverse_cube::InverseCube;
 
 /// A coefficient times the step, as an unevaluated sum.
 pub type Scaled<S> = (S, S);
@@ -26,8 +26,18 @@ pub struct Term<S> {
     pub weight: S,
 }
 
+/// One term of two weighted sums of stages.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PairTerm<S> {
+    /// Which stage.
+    pub stage: usize,
+    /// Its weights.
+    pub weights: [S; 2],
+}
+
 /// A scalar that an integrator's state can be made of.
-pub trait Element: Real {
+pub trait Element: InverseCube {
     /// `v += kick·a`, then `q += drift·v`, both compensated.
     fn kick_drift(
         q: (&mut [Self], &mut [Self]),
@@ -38,15 +48,34 @@ pub trait Element: Real {
     );
     /// `y += step·k`, compensated.
     fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: &Scaled<Self>);
-    /// `out = y + (e + h Σ weight·k[stage])`; `k` holds the stages one after another.
-    fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]);
-    /// `y += h Σ weight·k[stage]`, compensated, into a new state `(out, out_e)`.
+    /// `out = q + (e + h·slope.1·slope.0 + h² Σ weight·a[stage])`: coordinates within a step, `slope` being the
+    /// velocities at its start and a fraction of it; `a` holds the accelerations of the stages one after another.
+    fn combine(
+        out: &mut [Self],
+        q: (&[Self], &[Self]),
+        slope: (&[Self], &Self),
+        h: &Self,
+        terms: &[Term<Self>],
+        a: &[Self],
+    );
+    /// As [`combine`](Self::combine), compensated, into `(out, out_e)`.
     fn combine_compensated(
         out: (&mut [Self], &mut [Self]),
-        y: (&[Self], &[Self]),
-        h: Self,
+        q: (&[Self], &[Self]),
+        slope: (&[Self], &Self),
+        h: &Self,
         terms: &[Term<Self>],
-        k: &[Self],
+        a: &[Self],
+    );
+    /// `out = v + (e + h Σ weight·a[stage])`: velocities within a step.
+    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), h: &Self, terms: &[Term<Self>], a: &[Self]);
+    /// As [`combine_velocity`](Self::combine_velocity), compensated, into `(out, out_e)`.
+    fn combine_velocity_compensated(
+        out: (&mut [Self], &mut [Self]),
+        v: (&[Self], &[Self]),
+        h: &Self,
+        terms: &[Term<Self>],
+        a: &[Self],
     );
     /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the
     /// rows (particles), for two sets of weights at once; each row is a vector of `shape.components` components.
@@ -54,14 +83,11 @@ pub trait Element: Real {
         shape: Shape,
         y: &[Self],
         reference: &[Self],
-        tolerance: (Self, Self),
-        h: Self,
-        terms: [&[Term<Self>]; 2],
+        tolerance: (&Self, &Self),
+        h: &Self,
+        terms: &[PairTerm<Self>],
         k: &[Self],
-        stride: usize,
     ) -> [Self; 2];
-    /// The square root of the square root of …, `times` times.
-    fn repeated_sqrt(self, times: u32) -> Self;
     /// `if mask { from } else { into }`, element by element.
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
 }
@@ -101,32 +127,54 @@ macro_rules! plain_element {
             fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: &Scaled<Self>) {
                 loops::advance(y, k, step);
             }
-            fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]) {
-                loops::combine(out, y, h, terms, k);
+            fn combine(
+                out: &mut [Self],
+                q: (&[Self], &[Self]),
+                slope: (&[Self], &Self),
+                h: &Self,
+                terms: &[Term<Self>],
+                a: &[Self],
+            ) {
+                loops::combine(out, q, (slope.0, *slope.1), *h, terms, a);
             }
             fn combine_compensated(
                 out: (&mut [Self], &mut [Self]),
-                y: (&[Self], &[Self]),
-                h: Self,
+                q: (&[Self], &[Self]),
+                slope: (&[Self], &Self),
+                h: &Self,
                 terms: &[Term<Self>],
-                k: &[Self],
+                a: &[Self],
             ) {
-                loops::combine_compensated(out, y, h, terms, k);
+                loops::combine_compensated(out, q, (slope.0, *slope.1), *h, terms, a);
+            }
+            fn combine_velocity(
+                out: &mut [Self],
+                v: (&[Self], &[Self]),
+                h: &Self,
+                terms: &[Term<Self>],
+                a: &[Self],
+            ) {
+                loops::combine_velocity(out, v, *h, terms, a);
+            }
+            fn combine_velocity_compensated(
+                out: (&mut [Self], &mut [Self]),
+                v: (&[Self], &[Self]),
+                h: &Self,
+                terms: &[Term<Self>],
+                a: &[Self],
+            ) {
+                loops::combine_velocity_compensated(out, v, *h, terms, a);
             }
             fn largest_errors(
                 shape: Shape,
                 y: &[Self],
                 reference: &[Self],
-                tolerance: (Self, Self),
-                h: Self,
-                terms: [&[Term<Self>]; 2],
+                tolerance: (&Self, &Self),
+                h: &Self,
+                terms: &[PairTerm<Self>],
                 k: &[Self],
-                stride: usize,
             ) -> [Self; 2] {
-                loops::largest_errors(shape, y, reference, tolerance, h, terms, k, stride)
-            }
-            fn repeated_sqrt(self, times: u32) -> Self {
-                loops::repeated_sqrt(self, times)
+                loops::largest_errors(shape, y, reference, (*tolerance.0, *tolerance.1), *h, terms, k)
             }
             fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
                 loops::replace(into, from, mask);

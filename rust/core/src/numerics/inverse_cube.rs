@@ -1,4 +1,4 @@
-//! `s^(-3/2)`: the weight of an inverse-square pull, from the squared distance `s`.
+//! `s^(-3/2)`: the weight of an inverse-square pull, from the squared distance `s`; and its rough beginning.
 //!
 //! The one idea: no square root and no division, whose units are the bottleneck of every gravity kernel, but
 //! a guess from the bits of `s` and two corrections. `y` is 1/√s to 17 bits, so y² and y³ are exact; what is
@@ -39,6 +39,15 @@ macro_rules! each {
     }};
 }
 
+/// `1/√s` to 1e-5, for positive `s`; something finite for 0.
+#[inline(always)]
+fn rough_inverse_root<S: Binary>(s: S) -> S {
+    let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
+    let guess = s.inverse_root_guess();
+    let e = (s * guess).multiply_subtract_from(guess, S::one());
+    guess * e.multiply_add(e.multiply_add(e.multiply_add(c3, c2), c1), c0)
+}
+
 #[inline(always)]
 fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let one = S::one();
@@ -70,6 +79,8 @@ pub trait InverseCube: Real {
         let [cube] = Self::inverse_cubes([self]);
         cube
     }
+    /// `1/√self` to 1e-5, for positive `self`, and something finite for 0: for deciding, not for results.
+    fn rough_inverse_root(self) -> Self;
 }
 
 macro_rules! binary {
@@ -78,6 +89,10 @@ macro_rules! binary {
             #[inline(always)]
             fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
                 inverse_cubes(s)
+            }
+            #[inline(always)]
+            fn rough_inverse_root(self) -> Self {
+                rough_inverse_root(self)
             }
         }
     )+};
@@ -89,6 +104,9 @@ binary!(Avx2Half Avx2 Avx512);
 impl InverseCube for DoubleDouble {
     fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
         s.map(|s| Self::one() / (s * s.sqrt()))
+    }
+    fn rough_inverse_root(self) -> Self {
+        Self::from(self.to_f64().rough_inverse_root())
     }
 }
 
@@ -130,12 +148,15 @@ mod tests {
             assert!(!s.inverse_cube().is_finite(), "{s}");
         }
         assert_eq!(1e300.inverse_cube(), 0.0);
+        assert!(0.0.rough_inverse_root().is_finite());
     }
 
     proptest! {
         #[test]
         fn holds_over_the_exponents(mantissa in 1.0..2.0f64, exponent in -600..600i32) {
-            prop_assert!(error(mantissa * 2.0_f64.powi(exponent)) < 0.501);
+            let s = mantissa * 2.0_f64.powi(exponent);
+            prop_assert!(error(s) < 0.501);
+            prop_assert!((s.rough_inverse_root() * s.sqrt() - 1.0).abs() < 1e-5);
         }
     }
 }

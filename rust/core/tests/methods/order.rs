@@ -2,8 +2,13 @@
 
 use super::support::{Problem, advance, distance};
 use super::{Make, PROBLEMS, reference};
-use visviva_core::integrators::Method;
+use visviva_core::Result;
+use visviva_core::forces::{Dynamics, Force, Phase};
 use visviva_core::integrators::fixed::{Place, run};
+use visviva_core::integrators::state::State;
+use visviva_core::integrators::{Method, Scheme};
+use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::numerics::element::Shape;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
@@ -77,5 +82,51 @@ fn states_between_nodes_have_the_declared_dense_order() {
             println!("{name}, {}: order between nodes {order:.3}", method.name);
             assert!((order - f64::from(method.dense_order)).abs() < 0.15, "{name}, {}: {order}", method.name);
         }
+    }
+}
+
+/// `a = -q³ - v³/4`.
+struct Resisted;
+impl Force<DoubleDouble> for Resisted {
+    fn apply(
+        &mut self,
+        &Phase { q, v }: &Phase<'_, DoubleDouble>,
+        a: &mut [DoubleDouble],
+        _: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        a[0] = -(q[0] * q[0] * q[0]) - (v[0] * v[0] * v[0]).scale(0.25);
+        Ok(())
+    }
+    fn needs_velocity(&self) -> bool {
+        true
+    }
+}
+
+fn resisted() -> Problem<DoubleDouble> {
+    let shape = Shape { rows: 1, components: 1 };
+    let number = |x: f64| [DoubleDouble::from(x)];
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(Resisted)]),
+        state: State::new(shape, &number(1.0), &number(0.5)),
+        mass: vec![1.0],
+    }
+}
+
+#[test]
+fn a_force_that_looks_at_velocities_gets_those_of_its_stage() {
+    for method in METHODS {
+        let (Scheme::RungeKutta(_) | Scheme::Embedded(_)) = &method.scheme else { continue };
+        let end = |steps: usize| {
+            let Problem { mut state, mut dynamics, .. } = resisted();
+            advance(method, 2.0 / steps as f64, steps, &mut state, &mut dynamics);
+            state
+        };
+        // Each halving of the step leaves a difference smaller by the order.
+        let steps = steps_for(method.order);
+        let [coarse, middle, fine] = [steps, 2 * steps, 4 * steps].map(end);
+        let order = (distance(&coarse, &middle) / distance(&middle, &fine)).log2();
+        println!("{}: order {order:.3} with resistance", method.name);
+        assert!((order - f64::from(method.order)).abs() < 0.15, "{}: {order}", method.name);
     }
 }

@@ -96,16 +96,23 @@ fn reversible_methods_return_in_double_precision_too() {
 }
 
 /// Five unequal bodies in space, without symmetry, softened so that no close encounter magnifies the rounding.
-fn five_bodies() -> Problem<f64> {
-    let mass = [1.0, 0.7, 0.4, 0.01, 1e-6];
+/// Copies differ in the heaviest mass.
+fn five_bodies(copy: u32) -> Problem<f64> {
+    let mass = [1.0 + 1e-3 * f64::from(copy), 0.7, 0.4, 0.01, 1e-6];
     let q = [0.0, 2.0, -3.0, 5.0, -6.5, 0.0, 0.5, 1.0, -4.0, 4.0, 0.0, -0.25, 0.5, 1.0, -1.0];
     let v = [0.1, 0.2, -0.3, 0.3, -0.2, -0.2, 0.6, -0.5, 0.4, -0.4, 0.0, 0.1, -0.1, 0.1, 0.2];
     bodies(&mass, &q, &v, 0.5)
 }
 
-/// Largest drift of `Σ m v` and of `Σ m x × v` over the steps, relative to `Σ m |v|` and `Σ m |x| |v|` (about 1).
+/// Largest drift of `Σ m v` and of `Σ m x × v` over the steps, relative to `Σ m |v|` and `Σ m |x| |v|` (about 1);
+/// rms over eight copies, since rounding is a random walk and one walk may go twice as far as another.
 fn drift(method: &Method, h: f64, steps: usize) -> [f64; 2] {
-    let Problem { mut state, mut dynamics, mass } = five_bodies();
+    let copies: Vec<[f64; 2]> = (0..8).map(|copy| drift_of(five_bodies(copy), method, h, steps)).collect();
+    [0, 1].map(|index| (copies.iter().map(|drift| drift[index].powi(2)).sum::<f64>() / 8.0).sqrt())
+}
+
+fn drift_of(problem: Problem<f64>, method: &Method, h: f64, steps: usize) -> [f64; 2] {
+    let Problem { mut state, mut dynamics, mass } = problem;
     let start = momenta(&exactly(&state), &mass);
     let mut worst = [0.0_f64; 2];
     for _ in 0..20 {
@@ -122,7 +129,9 @@ fn momentum_is_kept_by_all_and_angular_momentum_by_the_symplectic() {
     for method in METHODS {
         let [linear, angular] = drift(method, 1.0 / 16.0, 4000);
         println!("{}: momentum {linear:.1e}, angular momentum {angular:.1e}", method.name);
-        assert!(linear < 1e-15, "{}: {linear:e}", method.name);
+        // Measured 1e-16 to 1.7e-16; and 1e-15 for dop853, whose weights add up to 13 in magnitude.
+        let limit = if method.adaptive() { 2e-15 } else { 4e-16 };
+        assert!(linear < limit, "{}: {linear:e}", method.name);
         if method.symplectic {
             assert!(angular < 1e-14, "{}: {angular:e}", method.name);
         } else {

@@ -4,10 +4,11 @@
 use visviva_core::Result;
 use visviva_core::forces::gravity::{FewBodies, Ring};
 use visviva_core::forces::{Dynamics, Force, Phase};
-use visviva_core::integrators::adaptive::{Adaptive, Clock, Reduce, Reference, Tolerance};
+use visviva_core::integrators::adaptive::{Adaptive, Reduce, Reference, Tolerance};
 use visviva_core::integrators::fixed::FixedStep;
 use visviva_core::integrators::runge_kutta::RungeKuttaStep;
 use visviva_core::integrators::state::State;
+use visviva_core::integrators::step_control::{Clock, Controlled};
 use visviva_core::integrators::{Embedded, Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::{Element, Shape};
@@ -131,7 +132,7 @@ impl<S: Element> Reduce<S> for Each {
 
 /// A method with step control and its clock, for a run from `state` to `end`; errors are measured from zero,
 /// against `rtol` both relative and absolute.
-pub fn adaptive<S: Element>(
+pub fn adaptive<S: Controlled>(
     method: &Embedded,
     state: &State<S>,
     rtol: f64,

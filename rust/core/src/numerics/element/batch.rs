@@ -1,6 +1,7 @@
 //! The loops over [`Lanes`], compiled for every tier.
 
-use super::{Element, Scaled, Shape, Term, loops};
+use super::{Element, PairTerm, Scaled, Shape, Term, loops};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::tiered;
 
@@ -15,6 +16,14 @@ fn view_terms<V: Vector8>(terms: &[Term<Lanes>]) -> &[Term<V>] {
     const { assert!(size_of::<Term<V>>() == size_of::<Term<Lanes>>()) }
     // SAFETY: `V` has the size, alignment and validity of `Lanes` (see `Vector8::view`), and `Term` is
     // `repr(C)`, so the two have the same layout.
+    unsafe { core::slice::from_raw_parts(terms.as_ptr().cast(), terms.len()) }
+}
+
+/// As [`view_terms`].
+#[inline(always)]
+fn view_pair_terms<V: Vector8>(terms: &[PairTerm<Lanes>]) -> &[PairTerm<V>] {
+    const { assert!(size_of::<PairTerm<V>>() == size_of::<PairTerm<Lanes>>()) }
+    // SAFETY: as there; `PairTerm` is `repr(C)`, too.
     unsafe { core::slice::from_raw_parts(terms.as_ptr().cast(), terms.len()) }
 }
 
@@ -41,76 +50,107 @@ fn advance_lanes<V: Vector8>(y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step:
 #[inline(always)]
 fn combine_lanes<V: Vector8>(
     out: &mut [Lanes],
-    y: (&[Lanes], &[Lanes]),
-    h: Lanes,
+    q: (&[Lanes], &[Lanes]),
+    slope: (&[Lanes], &Lanes),
+    h: &Lanes,
     terms: &[Term<Lanes>],
-    k: &[Lanes],
+    a: &[Lanes],
 ) {
     loops::combine::<V>(
         V::view_mut(out),
-        (V::view(y.0), V::view(y.1)),
-        V::load(h),
+        (V::view(q.0), V::view(q.1)),
+        (V::view(slope.0), V::load(*slope.1)),
+        V::load(*h),
         view_terms(terms),
-        V::view(k),
+        V::view(a),
     );
 }
 #[inline(always)]
 fn combine_compensated_lanes<V: Vector8>(
     out: (&mut [Lanes], &mut [Lanes]),
-    y: (&[Lanes], &[Lanes]),
-    h: Lanes,
+    q: (&[Lanes], &[Lanes]),
+    slope: (&[Lanes], &Lanes),
+    h: &Lanes,
     terms: &[Term<Lanes>],
-    k: &[Lanes],
+    a: &[Lanes],
 ) {
     loops::combine_compensated::<V>(
         (V::view_mut(out.0), V::view_mut(out.1)),
-        (V::view(y.0), V::view(y.1)),
-        V::load(h),
+        (V::view(q.0), V::view(q.1)),
+        (V::view(slope.0), V::load(*slope.1)),
+        V::load(*h),
         view_terms(terms),
-        V::view(k),
+        V::view(a),
     );
 }
 #[inline(always)]
-fn largest_errors_lanes<V: Vector8>(
+fn combine_velocity_lanes<V: Vector8>(
+    out: &mut [Lanes],
+    v: (&[Lanes], &[Lanes]),
+    h: &Lanes,
+    terms: &[Term<Lanes>],
+    a: &[Lanes],
+) {
+    loops::combine_velocity::<V>(
+        V::view_mut(out),
+        (V::view(v.0), V::view(v.1)),
+        V::load(*h),
+        view_terms(terms),
+        V::view(a),
+    );
+}
+#[inline(always)]
+fn combine_velocity_compensated_lanes<V: Vector8>(
+    out: (&mut [Lanes], &mut [Lanes]),
+    v: (&[Lanes], &[Lanes]),
+    h: &Lanes,
+    terms: &[Term<Lanes>],
+    a: &[Lanes],
+) {
+    loops::combine_velocity_compensated::<V>(
+        (V::view_mut(out.0), V::view_mut(out.1)),
+        (V::view(v.0), V::view(v.1)),
+        V::load(*h),
+        view_terms(terms),
+        V::view(a),
+    );
+}
+#[inline(always)]
+fn largest_errors_lanes<V: Vector8 + InverseCube>(
     shape: Shape,
     y: &[Lanes],
     reference: &[Lanes],
-    tolerance: (Lanes, Lanes),
-    h: Lanes,
-    terms: [&[Term<Lanes>]; 2],
+    tolerance: (&Lanes, &Lanes),
+    h: &Lanes,
+    terms: &[PairTerm<Lanes>],
     k: &[Lanes],
-    stride: usize,
 ) -> [Lanes; 2] {
     let [first, second] = loops::largest_errors::<V>(
         shape,
         V::view(y),
         V::view(reference),
-        load(&tolerance),
-        V::load(h),
-        [view_terms(terms[0]), view_terms(terms[1])],
+        (V::load(*tolerance.0), V::load(*tolerance.1)),
+        V::load(*h),
+        view_pair_terms(terms),
         V::view(k),
-        stride,
     );
     [first.store(), second.store()]
 }
 
-#[inline(always)]
-fn repeated_sqrt_lanes<V: Vector8>(value: Lanes, times: u32) -> Lanes {
-    loops::repeated_sqrt(V::load(value), times).store()
-}
 #[inline(always)]
 fn replace_lanes<V: Vector8>(into: &mut [Lanes], from: &[Lanes], mask: Bits) {
     loops::replace::<V>(V::view_mut(into), V::view(from), mask);
 }
 
 tiered! {
-    fn repeated_sqrt_tier[][](value: Lanes, times: u32) -> Lanes = repeated_sqrt_lanes;
     fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: &Scaled<Lanes>, drift: &Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) = advance_lanes;
-    fn combine_tier[][](out: &mut [Lanes], y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_lanes;
-    fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), y: (&[Lanes], &[Lanes]), h: Lanes, terms: &[Term<Lanes>], k: &[Lanes]) = combine_compensated_lanes;
-    fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (Lanes, Lanes), h: Lanes, terms: [&[Term<Lanes>]; 2], k: &[Lanes], stride: usize) -> [Lanes; 2] = largest_errors_lanes;
+    fn combine_tier[][](out: &mut [Lanes], q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_lanes;
+    fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_compensated_lanes;
+    fn combine_velocity_tier[][](out: &mut [Lanes], v: (&[Lanes], &[Lanes]), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_velocity_lanes;
+    fn combine_velocity_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), v: (&[Lanes], &[Lanes]), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_velocity_compensated_lanes;
+    fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (&Lanes, &Lanes), h: &Lanes, terms: &[PairTerm<Lanes>], k: &[Lanes]) -> [Lanes; 2] = largest_errors_lanes;
 }
 
 impl Element for Lanes {
@@ -126,32 +166,48 @@ impl Element for Lanes {
     fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: &Scaled<Self>) {
         advance_tier(y, k, step);
     }
-    fn combine(out: &mut [Self], y: (&[Self], &[Self]), h: Self, terms: &[Term<Self>], k: &[Self]) {
-        combine_tier(out, y, h, terms, k);
+    fn combine(
+        out: &mut [Self],
+        q: (&[Self], &[Self]),
+        slope: (&[Self], &Self),
+        h: &Self,
+        terms: &[Term<Self>],
+        a: &[Self],
+    ) {
+        combine_tier(out, q, slope, h, terms, a);
     }
     fn combine_compensated(
         out: (&mut [Self], &mut [Self]),
-        y: (&[Self], &[Self]),
-        h: Self,
+        q: (&[Self], &[Self]),
+        slope: (&[Self], &Self),
+        h: &Self,
         terms: &[Term<Self>],
-        k: &[Self],
+        a: &[Self],
     ) {
-        combine_compensated_tier(out, y, h, terms, k);
+        combine_compensated_tier(out, q, slope, h, terms, a);
+    }
+    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), h: &Self, terms: &[Term<Self>], a: &[Self]) {
+        combine_velocity_tier(out, v, h, terms, a);
+    }
+    fn combine_velocity_compensated(
+        out: (&mut [Self], &mut [Self]),
+        v: (&[Self], &[Self]),
+        h: &Self,
+        terms: &[Term<Self>],
+        a: &[Self],
+    ) {
+        combine_velocity_compensated_tier(out, v, h, terms, a);
     }
     fn largest_errors(
         shape: Shape,
         y: &[Self],
         reference: &[Self],
-        tolerance: (Self, Self),
-        h: Self,
-        terms: [&[Term<Self>]; 2],
+        tolerance: (&Self, &Self),
+        h: &Self,
+        terms: &[PairTerm<Self>],
         k: &[Self],
-        stride: usize,
     ) -> [Self; 2] {
-        largest_errors_tier(shape, y, reference, tolerance, h, terms, k, stride)
-    }
-    fn repeated_sqrt(self, times: u32) -> Self {
-        repeated_sqrt_tier(self, times)
+        largest_errors_tier(shape, y, reference, tolerance, h, terms, k)
     }
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
         replace_tier(into, from, mask);

@@ -2,7 +2,8 @@
 //!
 //! No closures: they would be compiled without the tier's instructions.
 
-use super::{Scaled, Shape, Term};
+use super::{PairTerm, Scaled, Shape, Term};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::Real;
 
 /// `y + e + increment`, again as a sum and what it leaves out. What the step's coefficient leaves out joins the increment before `e` does: so a step
@@ -67,6 +68,7 @@ macro_rules! for_weighted {
     (($n:expr, $terms:expr, $k:expr), |$i:ident, $sum:ident| $body:expr) => {{
         let mut start = 0;
         for_weighted!(@groups 6, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 3, ($n, $terms, $k), start, |$i, $sum| $body);
         for_weighted!(@groups 2, ($n, $terms, $k), start, |$i, $sum| $body);
         for_weighted!(@groups 1, ($n, $terms, $k), start, |$i, $sum| $body);
     }};
@@ -83,57 +85,97 @@ macro_rules! for_weighted {
 }
 
 #[inline(always)]
-pub(super) fn combine<S: Real>(out: &mut [S], (y, e): (&[S], &[S]), h: S, terms: &[Term<S>], k: &[S]) {
+pub(super) fn combine<S: Real>(
+    out: &mut [S],
+    (q, e): (&[S], &[S]),
+    (slope, fraction): (&[S], S),
+    h: S,
+    terms: &[Term<S>],
+    a: &[S],
+) {
     let n = out.len();
-    let (y, e) = (&y[..n], &e[..n]);
-    for_weighted!((n, terms, k), |i, sum| out[i] = y[i] + h.multiply_add(sum, e[i]));
+    let (q, e, slope) = (&q[..n], &e[..n], &slope[..n]);
+    let (drift, square) = (h * fraction, h * h);
+    // All but the last operation can be done before the last acceleration is there.
+    for_weighted!((n, terms, a), |i, sum| {
+        out[i] = square.multiply_add(sum, q[i] + drift.multiply_add(slope[i], e[i]));
+    });
 }
 
 #[inline(always)]
 pub(super) fn combine_compensated<S: Real>(
     (out, out_error): (&mut [S], &mut [S]),
-    (y, e): (&[S], &[S]),
+    (q, e): (&[S], &[S]),
+    (slope, fraction): (&[S], S),
     h: S,
     terms: &[Term<S>],
-    k: &[S],
+    a: &[S],
 ) {
     let n = out.len();
-    let (y, e, out_error) = (&y[..n], &e[..n], &mut out_error[..n]);
-    for_weighted!((n, terms, k), |i, sum| (out[i], out_error[i]) = add_compensated(y[i], e[i], h * sum));
+    let (q, e, slope, out_error) = (&q[..n], &e[..n], &slope[..n], &mut out_error[..n]);
+    let (drift, square) = (h * fraction, h * h);
+    for_weighted!((n, terms, a), |i, sum| {
+        let change = square.multiply_add(sum, drift * slope[i]);
+        (out[i], out_error[i]) = add_compensated(q[i], e[i], change);
+    });
+}
+
+#[inline(always)]
+pub(super) fn combine_velocity<S: Real>(
+    out: &mut [S],
+    (v, e): (&[S], &[S]),
+    h: S,
+    terms: &[Term<S>],
+    a: &[S],
+) {
+    let n = out.len();
+    let (v, e) = (&v[..n], &e[..n]);
+    for_weighted!((n, terms, a), |i, sum| out[i] = v[i] + h.multiply_add(sum, e[i]));
+}
+
+#[inline(always)]
+pub(super) fn combine_velocity_compensated<S: Real>(
+    (out, out_error): (&mut [S], &mut [S]),
+    (v, e): (&[S], &[S]),
+    h: S,
+    terms: &[Term<S>],
+    a: &[S],
+) {
+    let n = out.len();
+    let (v, e, out_error) = (&v[..n], &e[..n], &mut out_error[..n]);
+    for_weighted!((n, terms, a), |i, sum| (out[i], out_error[i]) = add_compensated(v[i], e[i], h * sum));
 }
 
 /// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
 const HUGE: f64 = 1e300;
 
 #[inline(always)]
-pub(super) fn largest_errors<S: Real>(
+pub(super) fn largest_errors<S: InverseCube>(
     shape: Shape,
     y: &[S],
     reference: &[S],
-    tolerance: (S, S),
+    (atol, rtol): (S, S),
     h: S,
-    terms: [&[Term<S>]; 2],
+    terms: &[PairTerm<S>],
     k: &[S],
-    stride: usize,
 ) -> [S; 2] {
     if shape.components == 2 {
-        largest_vector_errors::<S, 2>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+        largest_vector_errors::<S, 2>(shape.rows, y, reference, (atol, rtol), h, terms, k)
     } else {
-        largest_vector_errors::<S, 3>(shape.rows, y, reference, tolerance, h, terms, k, stride)
+        largest_vector_errors::<S, 3>(shape.rows, y, reference, (atol, rtol), h, terms, k)
     }
 }
 
 /// As [`largest_errors`], the number of components known when compiled.
 #[inline(always)]
-fn largest_vector_errors<S: Real, const C: usize>(
+fn largest_vector_errors<S: InverseCube, const C: usize>(
     rows: usize,
     y: &[S],
     reference: &[S],
     (atol, rtol): (S, S),
     h: S,
-    terms: [&[Term<S>]; 2],
+    terms: &[PairTerm<S>],
     k: &[S],
-    stride: usize,
 ) -> [S; 2] {
     let mut largest = [S::zero(); 2];
     for row in 0..rows {
@@ -142,33 +184,30 @@ fn largest_vector_errors<S: Real, const C: usize>(
             let distance = y[c * rows + row] - reference[c];
             distance2 = distance.multiply_add(distance, distance2);
         }
-        let scale = atol + rtol * distance2.sqrt();
-        let inverse_scale2 = S::one() / (scale * scale);
-        for estimate in 0..2 {
-            let mut sums = [S::zero(); C];
-            for &Term { stage, weight } in terms[estimate] {
-                let column = &k[stage * stride + row..][..(C - 1) * rows + 1];
-                for c in 0..C {
-                    sums[c] = weight.multiply_add(column[c * rows], sums[c]);
-                }
+        // Rough roots will do: a step is no better for a tolerance kept to more than five digits.
+        let distance = distance2 * distance2.rough_inverse_root();
+        let scale = rtol.multiply_add(distance, atol);
+        let inverse_scale = (scale * scale).rough_inverse_root();
+        let mut sums = [[S::zero(); C]; 2];
+        for &PairTerm { stage, weights } in terms {
+            let column = &k[stage * C * rows + row..][..(C - 1) * rows + 1];
+            for c in 0..C {
+                let k = column[c * rows];
+                sums[0][c] = weights[0].multiply_add(k, sums[0][c]);
+                sums[1][c] = weights[1].multiply_add(k, sums[1][c]);
             }
+        }
+        for estimate in 0..2 {
             let mut error2 = S::zero();
             for c in 0..C {
-                let error = h * sums[c];
+                let error = h * sums[estimate][c] * inverse_scale;
                 error2 = error.multiply_add(error, error2);
             }
-            let ratio = error2 * inverse_scale2;
-            let ratio = S::select(ratio.less_equal(S::splat(HUGE)), ratio, S::splat(HUGE));
-            let ratio = S::select(error2.less_equal(S::zero()), S::zero(), ratio);
+            let ratio = S::select(error2.less_equal(S::splat(HUGE)), error2, S::splat(HUGE));
             largest[estimate] = largest[estimate].max(ratio);
         }
     }
     largest
-}
-
-#[inline(always)]
-pub(super) fn repeated_sqrt<S: Real>(value: S, times: u32) -> S {
-    (0..times).fold(value, |value, _| value.sqrt())
 }
 
 #[inline(always)]

@@ -5,7 +5,7 @@
 
 use super::{Run, Slot};
 use crate::error::Result;
-use crate::integrators::adaptive::Outcome;
+use crate::integrators::step_control::Outcome;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;

@@ -1,0 +1,183 @@
+//! The clock of a run that chooses its own steps, and the choice of the next step, lane by lane.
+//!
+//! The one idea: whether a step was good enough, how long the next one is and what time it is are a few dozen
+//! operations on one number per lane, the same in every lane, so they run in the tier's registers like the rest.
+//! Step control: Hairer, Nørsett & Wanner, *Solving ODE I*, II.4.
+
+use crate::numerics::double_double::{DoubleDouble, two_sum};
+use crate::numerics::element::Element;
+use crate::numerics::lanes::{Bits, Lanes, Vector8};
+use crate::numerics::real::{Mask, Real};
+use crate::tiered;
+
+/// Growth limits of the step, and its safety factor (the values of DOP853).
+const SHRINK: f64 = 1.0 / 3.0;
+const GROW: f64 = 6.0;
+const SAFETY: f64 = 0.9;
+/// A step below this many units in the last place of the elapsed time is no step.
+const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
+
+/// Everything about time that is one number per lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock<S: Real> {
+    /// Elapsed time, and what it leaves out.
+    pub elapsed: S,
+    error: S,
+    /// The next step, signed.
+    pub h: S,
+    /// The end, as elapsed time.
+    pub end: S,
+    /// Lanes whose last step was rejected.
+    rejected: S::Mask,
+}
+
+/// What a step did, lane by lane.
+#[derive(Clone, Copy, Debug)]
+pub struct Outcome<S: Real> {
+    /// The state moved.
+    pub accepted: S::Mask,
+    /// The end is reached.
+    pub finished: S::Mask,
+    /// The step fell to zero.
+    pub stuck: S::Mask,
+    /// Elapsed time before the step.
+    pub from: S,
+    /// Its length.
+    pub h: S,
+}
+
+/// What the choice of a step rests on, for a whole run.
+#[derive(Clone, Copy, Debug)]
+pub struct Rule {
+    /// The step goes with the scaled error to the power `-1 / error_exponent`, a power of two.
+    pub error_exponent: u32,
+    /// Longest step.
+    pub max_step: f64,
+}
+
+impl<S: Real> Clock<S> {
+    /// At the start of a run that ends at `end`.
+    pub fn new(end: S) -> Self {
+        let zero = S::zero();
+        Self { elapsed: zero, error: zero, h: zero, end, rejected: S::Mask::splat(false) }
+    }
+
+    /// As new in the lanes of the mask.
+    pub fn restart(&mut self, lanes: S::Mask, end: S) {
+        let fresh = Self::new(end);
+        self.elapsed = S::select(lanes, fresh.elapsed, self.elapsed);
+        self.error = S::select(lanes, fresh.error, self.error);
+        self.h = S::select(lanes, fresh.h, self.h);
+        self.end = S::select(lanes, fresh.end, self.end);
+        self.rejected = self.rejected.and(lanes.not());
+    }
+
+    /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
+    #[inline(always)]
+    fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
+        let remaining = (self.end - self.elapsed) - self.error;
+        // A last step a little longer than planned beats a last step of nothing.
+        let last = remaining.abs().less_equal(self.h.abs() * S::splat(1.0 + 1e-9));
+        (S::select(running, S::select(last, remaining, self.h), S::zero()), last)
+    }
+
+    /// Moves on by the step if its squared scaled error is at most 1, and chooses the next one.
+    #[inline(always)]
+    fn settle(&mut self, running: S::Mask, size2: S, rule: Rule) -> Outcome<S> {
+        let (h, last) = self.next_step(running);
+        let accepted = size2.less_equal(S::one()).and(running);
+
+        let factor = S::splat(SAFETY) / root(size2, rule);
+        let factor = factor.max(S::splat(SHRINK)).min(S::splat(GROW));
+        let factor = S::select(size2.less_equal(S::zero()), S::splat(GROW), factor);
+        let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
+        let from = self.elapsed;
+        let (proposed, max_step) = (h * factor, S::splat(rule.max_step));
+        let longest = S::select(proposed.less(S::zero()), -max_step, max_step);
+        let proposed = S::select(max_step.less(proposed.abs()), longest, proposed);
+        self.h = S::select(running, proposed, self.h);
+        self.rejected = accepted.not().and(running);
+
+        let (elapsed, error) = two_sum(self.elapsed, self.error + h);
+        self.elapsed = S::select(accepted, S::select(last, self.end, elapsed), self.elapsed);
+        self.error = S::select(accepted, S::select(last, S::zero(), error), self.error);
+        let finished = accepted.and(last);
+        let smallest = (S::splat(SMALLEST_STEP) * self.elapsed.abs()).max(S::splat(f64::MIN_POSITIVE));
+        let stuck = self.h.abs().less_equal(smallest).and(running).and(finished.not());
+        Outcome { accepted, finished, stuck, from, h }
+    }
+}
+
+/// `square^(1 / (2·error_exponent))`.
+#[inline(always)]
+pub(super) fn root<S: Real>(square: S, rule: Rule) -> S {
+    let mut root = square;
+    for _ in 0..(2 * rule.error_exponent).ilog2() {
+        root = root.sqrt();
+    }
+    root
+}
+
+/// Scalars whose steps can be controlled.
+pub trait Controlled: Element {
+    /// The next step of the running lanes, 0 in the others.
+    fn next_step(clock: &Clock<Self>, running: Self::Mask) -> Self;
+    /// Moves the clock on by that step if its squared scaled error is at most 1, and chooses the next one.
+    fn settle(clock: &mut Clock<Self>, running: Self::Mask, size2: Self, rule: Rule) -> Outcome<Self>;
+}
+
+macro_rules! controlled {
+    ($($type:ty)+) => {$(
+        impl Controlled for $type {
+            fn next_step(clock: &Clock<Self>, running: bool) -> Self {
+                clock.next_step(running).0
+            }
+            fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: Rule) -> Outcome<Self> {
+                clock.settle(running, size2, rule)
+            }
+        }
+    )+};
+}
+controlled!(f64 DoubleDouble);
+
+/// The clock in the tier's registers.
+#[inline(always)]
+fn load<V: Vector8>(clock: &Clock<Lanes>) -> Clock<V> {
+    let &Clock { elapsed, error, h, end, rejected } = clock;
+    let [elapsed, error, h, end] = [elapsed, error, h, end].map(V::load);
+    Clock { elapsed, error, h, end, rejected }
+}
+
+#[inline(always)]
+fn next_step_lanes<V: Vector8>(clock: &Clock<Lanes>, running: Bits) -> Lanes {
+    load::<V>(clock).next_step(running).0.store()
+}
+
+#[inline(always)]
+fn settle_lanes<V: Vector8>(
+    clock: &mut Clock<Lanes>,
+    running: Bits,
+    size2: Lanes,
+    rule: Rule,
+) -> Outcome<Lanes> {
+    let mut now = load::<V>(clock);
+    let Outcome { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), rule);
+    let Clock { elapsed, error, h: next, end, rejected } = now;
+    *clock =
+        Clock { elapsed: elapsed.store(), error: error.store(), h: next.store(), end: end.store(), rejected };
+    Outcome { accepted, finished, stuck, from: from.store(), h: h.store() }
+}
+
+tiered! {
+    fn next_step_tier[][](clock: &Clock<Lanes>, running: Bits) -> Lanes = next_step_lanes;
+    fn settle_tier[][](clock: &mut Clock<Lanes>, running: Bits, size2: Lanes, rule: Rule) -> Outcome<Lanes> = settle_lanes;
+}
+
+impl Controlled for Lanes {
+    fn next_step(clock: &Clock<Self>, running: Bits) -> Self {
+        next_step_tier(clock, running)
+    }
+    fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: Rule) -> Outcome<Self> {
+        settle_tier(clock, running, size2, rule)
+    }
+}
