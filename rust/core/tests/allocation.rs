@@ -80,7 +80,7 @@ fn adaptive<S: Controlled>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
         let count = allocations(|| {
             for _ in 0..10 {
                 let outcome =
-                    engine.step(all, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                    engine.step(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
                 engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
                 engine.interpolate(&state, outcome.h, S::splat(0.5), &mut between);
                 engine.commit(outcome.accepted, &mut state);

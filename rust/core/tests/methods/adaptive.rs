@@ -14,13 +14,13 @@ use visviva_core::registry::METHODS;
 
 /// The error of the continuous extension at the fraction `theta` of one step of `h`, from the start.
 fn dense_error(method: &Embedded, make: Make, h: f64, theta: f64) -> f64 {
-    let Problem { mut state, mut dynamics, .. } = make();
+    let Problem { state, mut dynamics, .. } = make();
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
     let (mut engine, mut clock) = adaptive(method, &state, 1e6, 1e3);
     engine.start(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
     clock.h = DoubleDouble::from(h);
-    let outcome = engine.step(true, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+    let outcome = engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
     assert!(outcome.accepted && !outcome.finished && !outcome.stuck);
     engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
     let mut between = state.clone();
@@ -69,7 +69,7 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
                 let (mut steps, mut finished) = (0, false);
                 while !finished {
                     let outcome =
-                        engine.step(true, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                        engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
                     engine.commit(outcome.accepted, &mut state);
                     assert!(!outcome.stuck);
                     (finished, steps) = (outcome.finished, steps + 1);
@@ -112,7 +112,7 @@ fn adaptive_methods_never_evaluate_beyond_the_span() {
             let mut finished = false;
             while !finished {
                 let outcome =
-                    engine.step(true, &mut state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                    engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
                 engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
                 engine.commit(outcome.accepted, &mut state);
                 finished = outcome.finished;

@@ -146,6 +146,9 @@ pub(super) fn combine_velocity_compensated<S: Real>(
     for_weighted!((n, terms, a), |i, sum| (out[i], out_error[i]) = add_compensated(v[i], e[i], h * sum));
 }
 
+/// An error that is allowed to be this large, or infinite, is no error: its square still is a number.
+const UNLIMITED: f64 = 1e150;
+
 /// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
 const HUGE: f64 = 1e300;
 
@@ -186,7 +189,7 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
         }
         // Rough roots will do: a step is no better for a tolerance kept to more than five digits.
         let distance = distance2 * distance2.rough_inverse_root();
-        let scale = rtol.multiply_add(distance, atol);
+        let scale = rtol.multiply_add(distance, atol).min(S::splat(UNLIMITED));
         let inverse_scale = (scale * scale).rough_inverse_root();
         let mut sums = [[S::zero(); C]; 2];
         for &PairTerm { stage, weights } in terms {
