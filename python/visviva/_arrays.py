@@ -22,6 +22,7 @@ Sizes: TypeAlias = dict[str, tuple[int, str]]
 """For each named length: its value and the argument that set it."""
 
 _EXACT = 2**53
+_FLOAT64 = np.dtype(np.float64)
 _ADVICE = {
     "b": "a mask is not a number; pass x.astype(float) if zeros and ones are meant",
     "c": "pass x.real if the imaginary part is to be dropped",
@@ -71,14 +72,22 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
       ...
     visviva.errors.InvalidInput: position: expected shape (N, 3) with N = 2 as in mass, got (1, 3)
     """
-    array = _real(name, value)
+    ready = _ready(value)
+    array = _real(name, value) if ready is None else ready
     if shape is not None:
         _check_shape(name, array.shape, shape, {} if sizes is None else sizes)
-    result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"])
+    result: NDArray[np.float64] = np.require(array, np.float64, ["C_CONTIGUOUS", "ALIGNED"]) if ready is None else ready
     finite = np.isfinite(result)
-    if not finite.all():
+    if np.count_nonzero(finite) < finite.size:
         raise InvalidInput(name, f"expected finite numbers, but {_first(name, result, ~finite)}; remove or replace it")
     return result
+
+
+def _ready(value: object) -> NDArray[np.float64] | None:
+    """Give an array that can go to the core as it is: a look, where making sure would cost as much as a short run."""
+    if type(value) is np.ndarray and value.dtype is _FLOAT64 and value.flags.c_contiguous and value.flags.aligned:
+        return value
+    return None
 
 
 def mass_array(value: object, shape: Shape, sizes: Sizes | None = None) -> NDArray[np.float64]:

@@ -43,7 +43,7 @@ pub(crate) fn run<'py>(
     let start = std::time::Instant::now();
     let outcome = compute(py, 0, progress.as_ref(), |ticker| run_scene(&scene, &request, ticker))?;
     let (output, interrupted) = outcome.partial(py)?;
-    let dict = output_dict(py, &scene, &request, output, start.elapsed().as_secs_f64(), ensemble)?;
+    let dict = output_dict(py, &scene, request, output, start.elapsed().as_secs_f64(), ensemble)?;
     if interrupted {
         // Also for a batch, and for a run that ended before it noticed: Ctrl-C is never swallowed.
         dict.set_item("error", error_dict(py, &Error::Interrupted)?)?;

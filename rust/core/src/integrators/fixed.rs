@@ -10,6 +10,7 @@ use super::{Method, Scheme};
 use crate::error::{Error, Result};
 use crate::forces::Dynamics;
 use crate::numerics::element::Element;
+use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 
 /// A method with a step, ready to advance a state.
@@ -83,14 +84,21 @@ pub struct Place {
 /// is on the node: it cannot be told from it, and a grid such as `linspace` hits nodes only that closely.
 pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
     let ratio = elapsed / h;
-    // Adding and taking away 1.5·2^52 rounds to an integer without a call, below 2^51 steps.
-    let shift = 6_755_399_441_055_744.0;
-    let nearest = if ratio < 2.0e15 { (ratio + shift) - shift } else { ratio.round() };
-    if (elapsed - nearest * h).abs() <= 2.0 * f64::EPSILON * magnitude.max(elapsed.abs()) {
-        return Place { node: nearest as u64, past: None };
+    // Adding 1.5·2^52 leaves a number below 2^51 as an integer in the last bits, without a call.
+    let shift = 6_755_399_441_055_744.0_f64;
+    let (nearest, node) = if ratio < 2.0e15 {
+        let shifted = ratio + shift;
+        (shifted - shift, shifted.to_bits().saturating_sub(shift.to_bits()))
+    } else {
+        (ratio.round(), ratio.round() as u64)
+    };
+    let distance = elapsed.abs();
+    if (elapsed - nearest * h).abs() <= 2.0 * f64::EPSILON * Real::max(magnitude, distance) {
+        return Place { node, past: None };
     }
-    let node = if nearest * h.abs() > elapsed.abs() { nearest - 1.0 } else { nearest };
-    Place { node: node as u64, past: Some(elapsed - node * h) }
+    let (nearest, node) =
+        if nearest * h.abs() > distance { (nearest - 1.0, node - 1) } else { (nearest, node) };
+    Place { node, past: Some(elapsed - nearest * h) }
 }
 
 /// Advances `state` through the places of the outputs, in order, and hands each state to `record`.
@@ -135,15 +143,16 @@ pub fn run<S: Element>(
                 }
                 ticker.tick()?;
             }
-            match place.past {
-                None => record(index, state)?,
+            let reached = match place.past {
+                None => &*state,
                 Some(past) => {
                     between.copy_from(state);
                     shadow.follow(method, past, &stepper);
                     shadow.step(&mut between, dynamics, ticker)?;
-                    record(index, &between)?;
+                    &between
                 }
-            }
+            };
+            record(index, reached)?;
         }
         ticker.advance(taken % PROGRESS_STEPS);
         Ok(())

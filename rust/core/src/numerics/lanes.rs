@@ -87,6 +87,13 @@ pub trait Vector8: Register {
     fn store(self) -> Lanes;
     /// Lane `i` of the result is lane `index[i]` of `self` (`index[i] < 8`).
     fn permute(self, index: &[i64; WIDTH]) -> Self;
+    /// `x0 y0 z0 x1 y1 z1 …`: eight points, coordinate after coordinate.
+    fn interleave(x: Self, y: Self, z: Self) -> [Self; 3];
+    /// Writes the lanes of the mask, lane `i` to the `i`-th number from `to` on.
+    ///
+    /// # Safety
+    /// Those numbers may be written; the others are left alone and need not be there.
+    unsafe fn write_where(self, mask: Bits, to: *mut f64);
 }
 
 /// `Lanes` as numbers, eight to each.
@@ -266,6 +273,19 @@ impl Vector8 for Lanes {
     #[inline(always)]
     fn permute(self, index: &[i64; WIDTH]) -> Self {
         Self(core::array::from_fn(|lane| self.0[(index[lane] & 7) as usize]))
+    }
+    #[inline(always)]
+    fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
+        let points: [[f64; 3]; WIDTH] = core::array::from_fn(|lane| [x.0[lane], y.0[lane], z.0[lane]]);
+        let numbers = points.as_flattened();
+        core::array::from_fn(|third| Self(core::array::from_fn(|lane| numbers[WIDTH * third + lane])))
+    }
+    #[inline(always)]
+    unsafe fn write_where(self, mask: Bits, to: *mut f64) {
+        for lane in (0..WIDTH).filter(|&lane| mask.lane(lane)) {
+            // SAFETY: the caller's promise.
+            unsafe { to.wrapping_add(lane).write(self.0[lane]) };
+        }
     }
 }
 

@@ -91,6 +91,19 @@ pub fn resolve() -> Result<Tier> {
     Ok(wanted)
 }
 
+/// Asks for the line of memory at `address` to be brought near; it need not be memory of ours.
+#[inline(always)]
+pub fn prefetch(address: *const f64) {
+    #[cfg(target_arch = "x86_64")]
+    {
+        use core::arch::x86_64::{_MM_HINT_T0, _mm_prefetch};
+        // SAFETY: every x86-64 has the instruction, and it does nothing where there is no memory.
+        unsafe { _mm_prefetch::<_MM_HINT_T0>(address.cast()) };
+    }
+    #[cfg(not(target_arch = "x86_64"))]
+    let _ = address;
+}
+
 /// Compiles one kernel body for every tier and dispatches to the one in force.
 ///
 /// `tiered! { pub fn name[P: Bound][P](argument: Type) -> Return = body; }` defines

@@ -1,6 +1,8 @@
 //! What a run records: arrays that trajectories fill side by side, with NaN where one has failed.
 
 use super::room;
+use crate::numerics::lanes::{Bits, Vector8, WIDTH};
+use crate::numerics::simd::prefetch;
 use core::marker::PhantomData;
 
 /// Output arrays of a batch, C order `(copies, times, particles, 3)`; empty where not asked for.
@@ -126,6 +128,28 @@ pub struct Entry {
     pub velocity_rest: [f64; 3],
 }
 
+/// Particles that follow each other, at most eight, in the lanes of a row from the first on.
+#[derive(Clone, Copy, Debug)]
+pub struct Run {
+    first: usize,
+    /// How many coordinates they have.
+    numbers: usize,
+    /// Which lanes of their points, three rows of coordinates, these are.
+    wanted: [Bits; 3],
+    /// The lanes without a particle.
+    pub idle: Bits,
+}
+
+impl Run {
+    /// From the first and how many they are.
+    pub fn new(first: usize, particles: usize) -> Self {
+        let numbers = 3 * particles;
+        let all = (1_u32 << numbers) - 1;
+        let wanted = [0, WIDTH, 2 * WIDTH].map(|offset| Bits((all >> offset) as u8));
+        Self { first, numbers, wanted, idle: Bits((0xff_u32 << particles) as u8) }
+    }
+}
+
 impl<'a> Writer<'a> {
     /// Whether what the values leave out is kept.
     pub fn keeps_rest(&self) -> bool {
@@ -162,6 +186,28 @@ impl Output<'_> {
         self.write_rounded(particle, entry.position, entry.velocity);
         self.put(self.writer.position_rest, particle, entry.position_rest);
         self.put(self.writer.velocity_rest, particle, entry.velocity_rest);
+    }
+
+    /// As [`write_rounded`](Self::write_rounded), of a run of particles, point after point.
+    #[inline(always)]
+    pub fn write_points<V: Vector8>(&self, run: &Run, position: [V; 3], velocity: [V; 3]) {
+        self.put_points(self.writer.position, run, position);
+        self.put_points(self.writer.velocity, run, velocity);
+    }
+
+    #[inline(always)]
+    fn put_points<V: Vector8>(&self, (array, len): (*mut f64, usize), run: &Run, points: [V; 3]) {
+        let at = (self.start + run.first) * 3;
+        if at + run.numbers <= len {
+            // A store to a line that is far holds up all after it, so the lines of the next output time come while
+            // there are steps to take.
+            let next = at + 3 * self.writer.particles;
+            for (third, lanes) in points.into_iter().enumerate() {
+                prefetch(array.wrapping_add(next + WIDTH * third));
+                // SAFETY: in bounds by the test; no other thread writes these particles (see the type).
+                unsafe { lanes.write_where(run.wanted[third], array.wrapping_add(at + WIDTH * third)) };
+            }
+        }
     }
 
     /// As [`write`](Self::write), without what the values leave out.

@@ -200,7 +200,7 @@ fn effective_forces(scene: &Scene) -> Vec<ForceSpec> {
 
 fn outputs_between(scene: &Scene, request: &Request) -> usize {
     let end = request.times[request.times.len() - 1];
-    request.times.iter().filter(|&&t| t != scene.t0 && t != end).count()
+    request.times.iter().filter(|&&t| (t != scene.t0) & (t != end)).count()
 }
 
 fn planar(scene: &Scene, forces: &[ForceSpec]) -> bool {

@@ -127,35 +127,42 @@ impl Request {
     }
 
     fn direction(&self, scene: &Scene) -> Result<f64> {
-        let times = &self.times;
-        if times.is_empty() {
+        let (Some(&first), Some(&end)) = (self.times.first(), self.times.last()) else {
             return Err(Error::invalid("t", "expected an end time or at least one output time, got none"));
+        };
+        let direction = if end < scene.t0 { -1.0 } else { 1.0 };
+        // Without a branch for each: a run of cheap steps with many outputs would feel it.
+        let follows = |before: f64, t: f64| t.is_finite() & ((t - before) * direction >= 0.0);
+        let all = |good, pair: &[f64]| good & follows(pair[0], pair[1]);
+        if self.times.windows(2).fold(follows(scene.t0, first), all) {
+            Ok(direction)
+        } else {
+            Err(self.disorder(scene.t0, direction))
         }
+    }
+
+    /// What is wrong with times that do not follow each other.
+    fn disorder(&self, t0: f64, direction: f64) -> Error {
+        let times = &self.times;
         if let Some(index) = times.iter().position(|t| !t.is_finite()) {
-            return Err(Error::invalid(
+            return Error::invalid(
                 "t",
                 format!("expected finite times, got t[{index}] = {}", number(times[index])),
-            ));
+            );
         }
-        let end = times[times.len() - 1];
-        let direction = if end < scene.t0 { -1.0 } else { 1.0 };
-        let mut before = scene.t0;
-        for (index, &t) in times.iter().enumerate() {
-            if (t - before) * direction < 0.0 {
-                return Err(Error::invalid(
-                    "t",
-                    format!(
-                        "expected times that lead away from t0 = {} in order, got t[{index}] = {} after {}; sort \
-                         them, and run the two directions from t0 separately",
-                        number(scene.t0),
-                        number(t),
-                        number(before)
-                    ),
-                ));
-            }
-            before = t;
-        }
-        Ok(direction)
+        let before = |index: usize| if index == 0 { t0 } else { times[index - 1] };
+        let back = |&index: &usize| (times[index] - before(index)) * direction < 0.0;
+        let index = (0..times.len()).find(back).unwrap_or(0);
+        Error::invalid(
+            "t",
+            format!(
+                "expected times that lead away from t0 = {} in order, got t[{index}] = {} after {}; sort \
+                 them, and run the two directions from t0 separately",
+                number(t0),
+                number(times[index]),
+                number(before(index))
+            ),
+        )
     }
 
     /// The step with the sign of the direction. It is given by its length; a sign is taken if it agrees with the

@@ -1,11 +1,12 @@
 //! A unit of integration: bodies whose motions hang together, massive ones first.
 //!
 //! [`Unit`] says which they are. [`Prepared`] holds them in the units and about the origin of the
-//! integration: `size` measures them, `lanes` lays them into a state and reads them off, `forces` builds
-//! what acts on them.
+//! integration: `size` measures them, `lanes` lays them into a state and reads them off, `record` does so at
+//! the output times, `forces` builds what acts on them.
 
 mod forces;
 mod lanes;
+mod record;
 mod size;
 
 pub use forces::dynamics;
@@ -16,6 +17,7 @@ use super::layout::Layout;
 use super::plan::Plan;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
+use record::Reading;
 
 /// Bodies that are integrated together: massive ones first.
 #[derive(Clone, Debug)]
@@ -53,6 +55,7 @@ pub struct Prepared {
     pub shape: Shape,
     layout: Layout,
     units: Units,
+    reading: Reading,
 }
 
 impl Prepared {
@@ -75,6 +78,7 @@ impl Prepared {
             unit.bodies[..unit.active].iter().map(|&i| units.strength(constant, masses[i])).collect();
         let mut prepared = Self {
             shape: lanes::shape(&unit, plan),
+            reading: Reading::new(&unit, plan.layout, &origin, units),
             unit,
             position,
             velocity,

@@ -36,7 +36,7 @@ pub(super) fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py
 pub(super) fn output_dict<'py>(
     py: Python<'py>,
     scene: &Scene,
-    request: &Request,
+    request: Request,
     output: Output,
     seconds: f64,
     ensemble: bool,
@@ -60,7 +60,9 @@ pub(super) fn output_dict<'py>(
         set(&column.name, column.values, if column.width == 1 { &shape[..2] } else { &shape })?;
     }
     let dict = PyDict::new(py);
-    dict.set_item("t", moved(py, request.times[..times].to_vec(), &[times])?)?;
+    let mut reached = request.times;
+    reached.truncate(times);
+    dict.set_item("t", moved(py, reached, &[times])?)?;
     dict.set_item("columns", columns)?;
     dict.set_item("plan", plan_dict(py, &output.plan)?)?;
     let statuses: Vec<i8> = outcomes.iter().map(|outcome| status(&outcome.ending)).collect();

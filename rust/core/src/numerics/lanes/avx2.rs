@@ -23,6 +23,15 @@ operators!(Avx2Half:
     |a: Avx2Half, b: Avx2Half| Avx2Half(unsafe { _mm256_div_pd(a.0, b.0) }),
     |a: Avx2Half| Avx2Half(unsafe { _mm256_xor_pd(a.0, _mm256_set1_pd(-0.0)) }));
 
+/// All bits of a lane for its bit in the mask.
+#[inline(always)]
+fn spread(mask: Bits) -> __m256i {
+    unsafe {
+        let lane = _mm256_setr_epi64x(1, 2, 4, 8);
+        _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(i64::from(mask.0)), lane), lane)
+    }
+}
+
 impl Register for Avx2Half {
     const COUNT: usize = 2;
 }
@@ -72,12 +81,7 @@ impl Real for Avx2Half {
     }
     #[inline(always)]
     fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
-        unsafe {
-            let lane = _mm256_setr_epi64x(1, 2, 4, 8);
-            let chosen = _mm256_and_si256(_mm256_set1_epi64x(i64::from(mask.0)), lane);
-            let chosen = _mm256_castsi256_pd(_mm256_cmpeq_epi64(chosen, lane));
-            Self(_mm256_blendv_pd(if_false.0, if_true.0, chosen))
-        }
+        Self(unsafe { _mm256_blendv_pd(if_false.0, if_true.0, _mm256_castsi256_pd(spread(mask))) })
     }
     #[inline(always)]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
@@ -202,6 +206,47 @@ impl Vector8 for Avx2 {
     #[inline(always)]
     fn permute(self, index: &[i64; WIDTH]) -> Self {
         Self::load(self.store().permute(index))
+    }
+    #[inline(always)]
+    fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
+        let [a, b, c] = interleave_half(x.0, y.0, z.0);
+        let [d, e, f] = interleave_half(x.1, y.1, z.1);
+        [Self(a, b), Self(c, d), Self(e, f)]
+    }
+    #[inline(always)]
+    unsafe fn write_where(self, mask: Bits, to: *mut f64) {
+        unsafe {
+            write_half_where(self.0, mask, to);
+            write_half_where(self.1, Bits(mask.0 >> 4), to.wrapping_add(WIDTH / 2));
+        }
+    }
+}
+
+/// As [`Vector8::write_where`], of a half.
+#[inline(always)]
+unsafe fn write_half_where(half: Avx2Half, mask: Bits, to: *mut f64) {
+    unsafe {
+        // Most are whole, and some processors are slow at the other instruction.
+        match mask.0 & 0xf {
+            0xf => _mm256_storeu_pd(to, half.0),
+            0 => {}
+            _ => _mm256_maskstore_pd(to, spread(mask), half.0),
+        }
+    }
+}
+
+/// Four points, coordinate after coordinate.
+#[inline(always)]
+fn interleave_half(x: Avx2Half, y: Avx2Half, z: Avx2Half) -> [Avx2Half; 3] {
+    unsafe {
+        let xy = _mm256_unpacklo_pd(x.0, y.0); // x0 y0 x2 y2
+        let yz = _mm256_unpackhi_pd(y.0, z.0); // y1 z1 y3 z3
+        let zx = _mm256_shuffle_pd::<0b1010>(z.0, x.0); // z0 x1 z2 x3
+        [
+            Avx2Half(_mm256_permute2f128_pd::<0x20>(xy, zx)),
+            Avx2Half(_mm256_blend_pd::<0b1100>(yz, xy)),
+            Avx2Half(_mm256_permute2f128_pd::<0x31>(zx, yz)),
+        ]
     }
 }
 

@@ -97,6 +97,27 @@ impl Vector8 for Avx512 {
     fn permute(self, index: &[i64; WIDTH]) -> Self {
         Self(unsafe { _mm512_permutexvar_pd(_mm512_loadu_si512(index.as_ptr().cast()), self.0) })
     }
+    #[inline(always)]
+    fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
+        // First x and y, numbered 0–7 and 8–15; then z joins in the places of the mask.
+        unsafe {
+            let xy0 = _mm512_permutex2var_pd(x.0, _mm512_setr_epi64(0, 8, 0, 1, 9, 0, 2, 10), y.0);
+            let xy1 = _mm512_permutex2var_pd(x.0, _mm512_setr_epi64(0, 3, 11, 0, 4, 12, 0, 5), y.0);
+            let xy2 = _mm512_permutex2var_pd(x.0, _mm512_setr_epi64(13, 0, 6, 14, 0, 7, 15, 0), y.0);
+            let z0 = _mm512_setr_epi64(0, 0, 0, 0, 0, 1, 0, 0);
+            let z1 = _mm512_setr_epi64(2, 0, 0, 3, 0, 0, 4, 0);
+            let z2 = _mm512_setr_epi64(0, 5, 0, 0, 6, 0, 0, 7);
+            [
+                Self(_mm512_mask_permutexvar_pd(xy0, 0b0010_0100, z0, z.0)),
+                Self(_mm512_mask_permutexvar_pd(xy1, 0b0100_1001, z1, z.0)),
+                Self(_mm512_mask_permutexvar_pd(xy2, 0b1001_0010, z2, z.0)),
+            ]
+        }
+    }
+    #[inline(always)]
+    unsafe fn write_where(self, mask: Bits, to: *mut f64) {
+        unsafe { _mm512_mask_storeu_pd(to, mask.0, self.0) };
+    }
 }
 
 impl Binary for Avx512 {

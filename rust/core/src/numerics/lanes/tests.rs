@@ -4,9 +4,14 @@ use proptest::prelude::*;
 
 /// What every tier must agree on, bit for bit.
 #[inline(always)]
-fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 13] {
+fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 18] {
     let [a, b, c] = input.map(V::load);
     let mask = a.less(b).or(b.less_equal(c).not());
+    let [first, second, third] = V::interleave(a, b, c);
+    let mut written = [Lanes([0.0; WIDTH]); 2];
+    // From the second number on: nothing asks for alignment.
+    // SAFETY: fifteen numbers lie there.
+    unsafe { a.write_where(mask, as_numbers_mut(&mut written)[1..].as_mut_ptr()) };
     [
         a + b * c,
         a / b - c,
@@ -21,15 +26,20 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 13] {
         a.multiply_subtract_from(b, c),
         (a * a).inverse_root_guess(),
         a.leading_bits(),
+        first,
+        second,
+        third,
+        V::load(written[0]),
+        V::load(written[1]),
     ]
     .map(V::store)
 }
 
 crate::tiered! {
-    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 13] = exercise;
+    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 18] = exercise;
 }
 
-fn bits(lanes: [Lanes; 13]) -> Vec<u64> {
+fn bits(lanes: [Lanes; 18]) -> Vec<u64> {
     lanes.iter().flat_map(|lane| lane.0.map(f64::to_bits)).collect()
 }
 
@@ -45,11 +55,30 @@ proptest! {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
             #[target_feature(enable = "avx2,fma")]
-            fn avx2(input: &[Lanes; 3]) -> [Lanes; 13] {
+            fn avx2(input: &[Lanes; 3]) -> [Lanes; 18] {
                 exercise::<Avx2>(input)
             }
             // SAFETY: the machine has AVX2 and FMA.
             prop_assert_eq!(&bits(unsafe { avx2(&input) }), &expected);
         }
     }
+}
+
+#[test]
+fn interleaved_coordinates_are_points() {
+    let coordinates: [Lanes; 3] =
+        core::array::from_fn(|c| Lanes(core::array::from_fn(|lane| (3 * lane + c) as f64)));
+    let [x, y, z] = coordinates;
+    let points = Lanes::interleave(x, y, z);
+    let counted: Vec<f64> = (0..24).map(f64::from).collect();
+    assert_eq!(as_numbers(&points), counted);
+}
+
+#[test]
+fn only_the_lanes_of_the_mask_are_written() {
+    let lanes = Lanes(core::array::from_fn(|lane| lane as f64));
+    let mut written = [-1.0; WIDTH];
+    // SAFETY: eight numbers lie there.
+    unsafe { lanes.write_where(Bits(0b0110_0001), written.as_mut_ptr()) };
+    assert_eq!(written, [0.0, -1.0, -1.0, -1.0, -1.0, 5.0, 6.0, -1.0]);
 }

@@ -8,6 +8,7 @@ use crate::integrators::fixed::{self, Place};
 use crate::integrators::state::State;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
+use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 
 /// Runs the units, a state full of them at a time.
@@ -38,12 +39,20 @@ fn lockstep(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'
         prepared[lane.min(units.len() - 1)].write(&mut state, lane);
     }
     let dt = plan.dt.unwrap_or(plan.direction);
-    let places = job.times.iter().map(|&t| {
-        let place = fixed::place(t - t0, dt, t.abs().max(t0.abs()));
-        Place { past: place.past.map(|past| scale(past, -plan.units.time)), ..place }
+    let unit_of_time = plan.units.time;
+    let places = job.times.iter().map(move |&t| {
+        let place = fixed::place(t - t0, dt, Real::max(t.abs(), t0.abs()));
+        Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
     });
     let h = scale(dt, -plan.units.time);
-    let mut records = Records { job, failed: vec![None; units.len()], units: prepared, rows: 0, last: None };
+    let mut records = Records {
+        job,
+        failed: vec![None; units.len()],
+        running: units.len(),
+        units: prepared,
+        rows: 0,
+        last: None,
+    };
     let (steps, outcome) = fixed::run(
         plan.method,
         h,
@@ -69,6 +78,8 @@ struct Records<'a> {
     units: Vec<Prepared>,
     /// The output time at which a unit was no longer finite.
     failed: Vec<Option<usize>>,
+    /// How many are still finite.
+    running: usize,
     /// Output times so far.
     rows: usize,
     /// The state at the last output time, which need not be a node.
@@ -80,19 +91,22 @@ impl Records<'_> {
     ///
     /// # Errors
     /// [`Error::Convergence`] when no unit is finite any more.
+    #[inline(always)]
     fn take(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
         let job = self.job;
         let t = job.times[index];
+        let elapsed = t - job.scene.t0;
         for (lane, unit) in self.units.iter().enumerate() {
-            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, t - job.scene.t0) {
+            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed) {
                 self.failed[lane] = Some(index);
+                self.running -= 1;
             }
         }
         self.rows = index + 1;
         if self.rows == job.times.len() {
             self.last = Some(state.clone());
         }
-        if self.failed.iter().all(Option::is_some) {
+        if self.running == 0 {
             return Err(Error::Convergence { message: "not finite".to_owned(), time: t });
         }
         Ok(())

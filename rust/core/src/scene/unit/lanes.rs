@@ -3,12 +3,11 @@
 //! Packed, the lanes are its bodies, massive ones first, each kind padded to whole blocks. Batched, it has
 //! one lane, and the rows are its bodies.
 
-use super::super::columns::{Entry, Writer};
+use super::super::columns::Entry;
 use super::{Layout, Origin, Plan, Prepared, Unit, scale};
 use crate::integrators::state::State;
 use crate::numerics::element::Shape;
-use crate::numerics::lanes::{Lanes, WIDTH, as_numbers};
-use crate::numerics::power_of_two::power_of_two;
+use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
 
 /// Padding lanes stand far out, each elsewhere, where nothing they feel or exert is felt.
@@ -88,72 +87,5 @@ impl Prepared {
             entry.velocity[2] = self.origin.drift[2];
         }
         entry
-    }
-
-    /// Records the unit's bodies at an output time; `false` if they are no longer finite.
-    pub fn record(
-        &self,
-        writer: &Writer<'_>,
-        time: usize,
-        state: &State<Lanes>,
-        unit_lane: usize,
-        elapsed: f64,
-    ) -> bool {
-        if writer.keeps_rest() || self.origin != Origin::default() {
-            return self.record_precisely(writer, time, state, unit_lane, elapsed);
-        }
-        if self.shape.components == 2 {
-            self.record_rounded::<2>(writer, time, state, unit_lane)
-        } else {
-            self.record_rounded::<3>(writer, time, state, unit_lane)
-        }
-    }
-
-    /// The common case, kept lean: a run of cheap steps with many outputs spends its time here.
-    fn record_rounded<const COMPONENTS: usize>(
-        &self,
-        writer: &Writer<'_>,
-        time: usize,
-        state: &State<Lanes>,
-        unit_lane: usize,
-    ) -> bool {
-        let stride = self.shape.rows * WIDTH;
-        let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
-        let (length, speed) = (power_of_two(self.units.length), power_of_two(-self.units.velocity()));
-        let output = writer.output(self.unit.copy, time);
-        // Sums of their own, lest each addition wait for the one before.
-        let mut check = [[0.0; 2]; COMPONENTS];
-        for slot in self.unit.recorded.clone() {
-            let (row, lane) = self.locate(slot, unit_lane);
-            let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
-            for c in 0..COMPONENTS {
-                let at = c * stride + row * WIDTH + lane;
-                position[c] = q[at] * length;
-                velocity[c] = v[at] * speed;
-                // Zero times a finite number is zero; times anything else it is not a number.
-                check[c][0] += 0.0 * position[c];
-                check[c][1] += 0.0 * velocity[c];
-            }
-            output.write_rounded(self.unit.bodies[slot], position, velocity);
-        }
-        check.iter().flatten().all(|&sum| sum == 0.0)
-    }
-
-    fn record_precisely(
-        &self,
-        writer: &Writer<'_>,
-        time: usize,
-        state: &State<Lanes>,
-        unit_lane: usize,
-        elapsed: f64,
-    ) -> bool {
-        let mut finite = true;
-        let output = writer.output(self.unit.copy, time);
-        for slot in self.unit.recorded.clone() {
-            let entry = self.read(slot, state, unit_lane, elapsed);
-            finite &= entry.position.iter().chain(&entry.velocity).all(|x| x.is_finite());
-            output.write(self.unit.bodies[slot], &entry);
-        }
-        finite
     }
 }

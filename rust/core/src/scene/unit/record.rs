@@ -1,0 +1,168 @@
+//! A unit's bodies, read off a state and written into the columns at an output time.
+//!
+//! A run of cheap steps with many outputs spends its time here, so what can be decided is decided once, when the
+//! unit is prepared; and packed bodies go eight at a time, coordinates into points by the tier's vectors.
+
+use super::super::columns::{Output, Run, Writer};
+use super::super::frame::Units;
+use super::{Layout, Origin, Prepared, Unit};
+use crate::integrators::state::State;
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::power_of_two::power_of_two;
+use crate::numerics::real::Mask;
+use crate::tiered;
+
+/// How a unit is read off.
+#[derive(Clone, Debug)]
+pub(super) struct Reading {
+    /// What takes a length and a velocity back to the scene's units.
+    factors: [f64; 2],
+    way: Way,
+}
+
+#[derive(Clone, Debug)]
+enum Way {
+    /// About an origin of its own, which has to be restored.
+    Restored,
+    /// Body after body.
+    Bodies,
+    /// Row after row, from the row `start` on.
+    Rows { start: usize, runs: Vec<Run> },
+}
+
+impl Reading {
+    pub(super) fn new(unit: &Unit, layout: Layout, origin: &Origin, units: Units) -> Self {
+        let way = if *origin != Origin::default() {
+            Way::Restored
+        } else if layout == Layout::Packed {
+            rows(unit).unwrap_or(Way::Bodies)
+        } else {
+            Way::Bodies
+        };
+        Self { factors: [power_of_two(units.length), power_of_two(-units.velocity())], way }
+    }
+}
+
+/// The rows of a packed unit, if the particles of each follow each other in the scene. Massless ones begin a row of
+/// their own, and a unit records from the beginning of a row on.
+fn rows(unit: &Unit) -> Option<Way> {
+    let start = unit.recorded.start.div_ceil(WIDTH);
+    let border = unit.active.clamp(unit.recorded.start, unit.recorded.end);
+    let kinds = [unit.recorded.start..border, border..unit.recorded.end];
+    let rows = kinds.into_iter().flat_map(|kind| unit.bodies[kind].chunks(WIDTH));
+    let runs = rows.map(|bodies| {
+        let (first, last) = (bodies[0], bodies[bodies.len() - 1]);
+        (last - first + 1 == bodies.len()).then(|| Run::new(first, bodies.len()))
+    });
+    Some(Way::Rows { start, runs: runs.collect::<Option<_>>()? })
+}
+
+impl Prepared {
+    /// Records the unit's bodies at an output time; `false` if they are no longer finite.
+    #[inline(always)]
+    pub fn record(
+        &self,
+        writer: &Writer<'_>,
+        time: usize,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
+    ) -> bool {
+        let output = writer.output(self.unit.copy, time);
+        let Reading { factors, way } = &self.reading;
+        match way {
+            Way::Rows { start, runs } if !writer.keeps_rest() => {
+                if self.shape.components == 2 {
+                    record_rows::<2>(runs, *start, state, *factors, &output)
+                } else {
+                    record_rows::<3>(runs, *start, state, *factors, &output)
+                }
+            }
+            Way::Bodies if !writer.keeps_rest() => {
+                if self.shape.components == 2 {
+                    self.record_bodies::<2>(&output, state, unit_lane, *factors)
+                } else {
+                    self.record_bodies::<3>(&output, state, unit_lane, *factors)
+                }
+            }
+            _ => self.record_precisely(&output, state, unit_lane, elapsed),
+        }
+    }
+
+    fn record_bodies<const COMPONENTS: usize>(
+        &self,
+        output: &Output<'_>,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        [length, speed]: [f64; 2],
+    ) -> bool {
+        let stride = self.shape.rows * WIDTH;
+        let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
+        // Sums of their own, lest each addition wait for the one before.
+        let mut check = [[0.0; 2]; COMPONENTS];
+        for slot in self.unit.recorded.clone() {
+            let (row, lane) = self.locate(slot, unit_lane);
+            let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
+            for c in 0..COMPONENTS {
+                let at = c * stride + row * WIDTH + lane;
+                position[c] = q[at] * length;
+                velocity[c] = v[at] * speed;
+                // Zero times a finite number is zero; times anything else it is not a number.
+                check[c][0] += 0.0 * position[c];
+                check[c][1] += 0.0 * velocity[c];
+            }
+            output.write_rounded(self.unit.bodies[slot], position, velocity);
+        }
+        check.iter().flatten().all(|&sum| sum == 0.0)
+    }
+
+    /// With what the rounded values leave out, or about another origin than the scene's.
+    fn record_precisely(
+        &self,
+        output: &Output<'_>,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
+    ) -> bool {
+        let mut finite = true;
+        for slot in self.unit.recorded.clone() {
+            let entry = self.read(slot, state, unit_lane, elapsed);
+            finite &= entry.position.iter().chain(&entry.velocity).all(|x| x.is_finite());
+            output.write(self.unit.bodies[slot], &entry);
+        }
+        finite
+    }
+}
+
+tiered! {
+    fn record_rows[const COMPONENTS: usize][COMPONENTS](runs: &[Run], start: usize, state: &State<Lanes>, factors: [f64; 2], output: &Output<'_>) -> bool = rows_as_points;
+}
+
+#[inline(always)]
+fn rows_as_points<V: Vector8, const COMPONENTS: usize>(
+    runs: &[Run],
+    start: usize,
+    state: &State<Lanes>,
+    [length, speed]: [f64; 2],
+    output: &Output<'_>,
+) -> bool {
+    let (length, speed) = (V::splat(length), V::splat(speed));
+    let rows = state.shape.rows;
+    // Velocities follow the coordinates.
+    let (y, _) = state.all();
+    let mut finite = Bits::splat(true);
+    for (row, run) in (start..).zip(runs) {
+        let (mut position, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
+        let mut check = V::zero();
+        for c in 0..COMPONENTS {
+            position[c] = V::load(y[c * rows + row]) * length;
+            velocity[c] = V::load(y[(COMPONENTS + c) * rows + row]) * speed;
+            // As in `record_bodies`.
+            check += V::zero() * position[c] + V::zero() * velocity[c];
+        }
+        finite = finite.and(check.less_equal(V::zero()).or(run.idle));
+        let ([x, y, z], [u, v, w]) = (position, velocity);
+        output.write_points(run, V::interleave(x, y, z), V::interleave(u, v, w));
+    }
+    finite.all()
+}
