@@ -13,7 +13,7 @@ use super::binary::Binary;
 use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
-use super::lanes::{Avx2, Avx2Half, Avx512};
+use super::lanes::{Avx2, Avx512};
 use super::real::Real;
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
@@ -39,8 +39,9 @@ macro_rules! each {
     }};
 }
 
+/// The first half of [`InverseCube::inverse_cubes`]: 1/√s, cut off after 17 bits.
 #[inline(always)]
-fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
+pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let one = S::one();
     let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
     let guess = each!(i => s[i].inverse_root_guess());
@@ -49,7 +50,13 @@ fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let cubic = each!(i => e[i].multiply_add(c3, c2));
     let cubic = each!(i => e[i].multiply_add(cubic[i], c1));
     let cubic = each!(i => e[i].multiply_add(cubic[i], c0));
-    let y = each!(i => (guess[i] * cubic[i]).leading_bits());
+    each!(i => (guess[i] * cubic[i]).leading_bits())
+}
+
+/// The second half: `s^(-3/2)` from `s` and its [`inverse_roots`] `y`, and exactly 0 from `s = y = 0`.
+#[inline(always)]
+pub(crate) fn inverse_cubes_from<S: Binary, const N: usize>(s: [S; N], y: [S; N]) -> [S; N] {
+    let one = S::one();
     let square = each!(i => y[i] * y[i]);
     let e = each!(i => s[i].multiply_subtract_from(square[i], one));
     let cube = each!(i => square[i] * y[i]);
@@ -77,14 +84,14 @@ macro_rules! binary {
         impl InverseCube for $type {
             #[inline(always)]
             fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
-                inverse_cubes(s)
+                inverse_cubes_from(s, inverse_roots(s))
             }
         }
     )+};
 }
 binary!(f64 Lanes);
 #[cfg(target_arch = "x86_64")]
-binary!(Avx2Half Avx2 Avx512);
+binary!(Avx2 Avx512);
 
 impl InverseCube for DoubleDouble {
     fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
