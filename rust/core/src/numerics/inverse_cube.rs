@@ -13,7 +13,7 @@ use super::binary::Binary;
 use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
-use super::lanes::{Avx2, Avx2Half, Avx512};
+use super::lanes::{Avx2, Avx512};
 use super::real::Real;
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
@@ -39,17 +39,9 @@ macro_rules! each {
     }};
 }
 
-/// `1/√s` to 1e-5, for positive `s`; something finite for 0.
+/// The first half of [`InverseCube::inverse_cubes`]: 1/√s, cut off after 17 bits.
 #[inline(always)]
-fn rough_inverse_root<S: Binary>(s: S) -> S {
-    let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
-    let guess = s.inverse_root_guess();
-    let e = (s * guess).multiply_subtract_from(guess, S::one());
-    guess * e.multiply_add(e.multiply_add(e.multiply_add(c3, c2), c1), c0)
-}
-
-#[inline(always)]
-fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
+pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let one = S::one();
     let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
     let guess = each!(i => s[i].inverse_root_guess());
@@ -58,7 +50,13 @@ fn inverse_cubes<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let cubic = each!(i => e[i].multiply_add(c3, c2));
     let cubic = each!(i => e[i].multiply_add(cubic[i], c1));
     let cubic = each!(i => e[i].multiply_add(cubic[i], c0));
-    let y = each!(i => (guess[i] * cubic[i]).leading_bits());
+    each!(i => (guess[i] * cubic[i]).leading_bits())
+}
+
+/// The second half: `s^(-3/2)` from `s` and its [`inverse_roots`] `y`, and exactly 0 from `s = y = 0`.
+#[inline(always)]
+pub(crate) fn inverse_cubes_from<S: Binary, const N: usize>(s: [S; N], y: [S; N]) -> [S; N] {
+    let one = S::one();
     let square = each!(i => y[i] * y[i]);
     let e = each!(i => s[i].multiply_subtract_from(square[i], one));
     let cube = each!(i => square[i] * y[i]);
@@ -79,7 +77,7 @@ pub trait InverseCube: Real {
         let [cube] = Self::inverse_cubes([self]);
         cube
     }
-    /// `1/√self` to 1e-5, for positive `self`, and something finite for 0: for deciding, not for results.
+    /// `1/√self` to 17 bits, for positive `self`, and something finite for 0: for deciding, not for results.
     fn rough_inverse_root(self) -> Self;
 }
 
@@ -88,18 +86,19 @@ macro_rules! binary {
         impl InverseCube for $type {
             #[inline(always)]
             fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
-                inverse_cubes(s)
+                inverse_cubes_from(s, inverse_roots(s))
             }
             #[inline(always)]
             fn rough_inverse_root(self) -> Self {
-                rough_inverse_root(self)
+                let [root] = inverse_roots([self]);
+                root
             }
         }
     )+};
 }
 binary!(f64 Lanes);
 #[cfg(target_arch = "x86_64")]
-binary!(Avx2Half Avx2 Avx512);
+binary!(Avx2 Avx512);
 
 impl InverseCube for DoubleDouble {
     fn inverse_cubes<const N: usize>(s: [Self; N]) -> [Self; N] {
@@ -156,7 +155,7 @@ mod tests {
         fn holds_over_the_exponents(mantissa in 1.0..2.0f64, exponent in -600..600i32) {
             let s = mantissa * 2.0_f64.powi(exponent);
             prop_assert!(error(s) < 0.501);
-            prop_assert!((s.rough_inverse_root() * s.sqrt() - 1.0).abs() < 1e-5);
+            prop_assert!((s.rough_inverse_root() * s.sqrt() - 1.0).abs() < 2e-5);
         }
     }
 }

@@ -54,33 +54,23 @@ impl Bits {
     }
 }
 
-/// Lanes that fill one register of a tier (or what passes for one): all eight, or four of them.
-pub trait Register: Real<Mask = Bits> {
-    /// How many of them make up eight lanes.
-    const COUNT: usize;
-
-    /// A slice of lanes seen as registers.
+/// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
+pub trait Vector8: Real<Mask = Bits> {
+    /// A slice of lanes seen as this tier's.
     #[inline(always)]
     fn view(lanes: &[Lanes]) -> &[Self] {
-        const { assert!(size_of::<Self>() * Self::COUNT == 64 && align_of::<Self>() <= 64) }
-        // SAFETY: `COUNT` of them have the size of `Lanes` and no stricter alignment (checked above); any bits
-        // are valid for both types.
-        unsafe { core::slice::from_raw_parts(lanes.as_ptr().cast(), lanes.len() * Self::COUNT) }
+        const { assert!(size_of::<Self>() == 64 && align_of::<Self>() <= 64) }
+        // SAFETY: it has the size of `Lanes` and no stricter alignment (checked above); any bits are valid for
+        // both types.
+        unsafe { core::slice::from_raw_parts(lanes.as_ptr().cast(), lanes.len()) }
     }
-    /// A mutable slice of lanes seen as registers.
+    /// A mutable slice of lanes seen as this tier's.
     #[inline(always)]
     fn view_mut(lanes: &mut [Lanes]) -> &mut [Self] {
-        const { assert!(size_of::<Self>() * Self::COUNT == 64 && align_of::<Self>() <= 64) }
+        const { assert!(size_of::<Self>() == 64 && align_of::<Self>() <= 64) }
         // SAFETY: as in `view`.
-        unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len() * Self::COUNT) }
+        unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len()) }
     }
-}
-
-/// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
-pub trait Vector8: Register {
-    /// What it is made of.
-    type Register: Register;
-
     /// From memory.
     fn load(lanes: Lanes) -> Self;
     /// To memory.
@@ -255,13 +245,7 @@ impl Real for Lanes {
     }
 }
 
-impl Register for Lanes {
-    const COUNT: usize = 1;
-}
-
 impl Vector8 for Lanes {
-    type Register = Self;
-
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         lanes
@@ -294,7 +278,7 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
-pub use avx2::{Avx2, Avx2Half};
+pub use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
 pub use avx512::Avx512;
 

@@ -1,7 +1,7 @@
 //! Many massive bodies: third-law tiles of eight, in shards that threads share out.
 //!
 //! The one idea: each unordered pair is weighed once.
-//! A group of bodies `i` is held together and streamed past blocks of eight bodies `j > i`;
+//! The eight bodies `i` of a row are held together and the blocks of eight bodies `j > i` streamed past them;
 //! the pull on `i` gathers in eight partial sums (one per lane), the pull on `j` goes back to memory.
 //!
 //! Canonical order: the triangle of tiles is cut into shards by the number of bodies alone. In a shard,
@@ -12,9 +12,10 @@ use super::pair::squared_distance;
 use super::passive::packed_attraction;
 use crate::error::Result;
 use crate::forces::{Force, Phase};
+use crate::numerics::binary::Binary;
 use crate::numerics::element::Shape;
-use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Bits, Lanes, Register, Vector8, WIDTH, as_numbers, as_numbers_mut};
+use crate::numerics::inverse_cube::{InverseCube, inverse_cubes_from, inverse_roots};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::real::Real;
 use crate::parallel::{Ticker, for_chunks};
 use crate::tiered;
@@ -86,158 +87,137 @@ impl Tiles {
     }
 }
 
-/// Bodies of one block row, held together, and the partial sums of the pull on each.
-struct Group<R, const GROUP: usize> {
-    place: [[f64; 3]; GROUP],
-    strength: [f64; GROUP],
-    /// For each body and each register of a block.
-    sum: [[[R; 3]; MOST_REGISTERS]; GROUP],
+/// A body of the row that is held, and the partial sums of the pull on it.
+#[derive(Clone, Copy)]
+struct Held<V> {
+    place: [f64; 3],
+    strength: f64,
+    sum: [V; 3],
 }
 
-/// The most registers that eight lanes fill on any tier.
-const MOST_REGISTERS: usize = 2;
-
-/// A register of a block of eight bodies, and what these are accelerated by, with the sign changed.
-struct Streamed<R> {
-    place: [R; 3],
-    strength: R,
-    pull: [R; 3],
+/// Eight bodies that are streamed past, and what they are accelerated by, with the sign changed.
+struct Streamed<V> {
+    place: [V; 3],
+    strength: V,
+    pull: [V; 3],
 }
 
-/// The pairs of a group with register `part` of a block. On the diagonal, lane `l` of the block has a pair with
-/// body `i` if `l > first + i`.
+/// Bodies that meet a block together: as many as keep both multipliers busy while each waits for its own results.
+/// Changes no bit.
+const GROUP: usize = 4;
+
+/// The pairs of a group with a block. If the block is their own, `first` is the place of the group in it, and a
+/// body has pairs with later ones only.
 #[inline(always)]
-fn tile<
-    R: Register + InverseCube,
-    const GROUP: usize,
-    const PLANAR: bool,
-    const SOFT: bool,
-    const DIAGONAL: bool,
->(
-    group: &mut Group<R, GROUP>,
-    streamed: &mut Streamed<R>,
-    part: usize,
-    softening2: R,
+fn tile<V: Vector8 + Binary, const PLANAR: bool, const SOFT: bool>(
+    held: &mut [Held<V>; GROUP],
+    streamed: &mut Streamed<V>,
+    softening2: V,
+    own: bool,
     first: usize,
 ) {
     let components = if PLANAR { 2 } else { 3 };
-    let mut d = [[R::zero(); 3]; GROUP];
-    let mut r2 = [R::zero(); GROUP];
+    let mut d = [[V::zero(); 3]; GROUP];
+    let mut r2 = [V::zero(); GROUP];
     for i in 0..GROUP {
         for c in 0..components {
-            d[i][c] = streamed.place[c] - R::splat(group.place[i][c]);
+            d[i][c] = streamed.place[c] - V::splat(held[i].place[c]);
         }
-        r2[i] = squared_distance::<R, PLANAR, SOFT>(d[i], softening2);
+        r2[i] = squared_distance::<V, PLANAR, SOFT>(d[i], softening2);
     }
-    let mut w = R::inverse_cubes(r2);
-    for i in 0..GROUP {
-        if DIAGONAL {
-            let later = (0xfe_u32 << (first + i)) as u8 >> (part * WIDTH / R::COUNT);
-            w[i] = R::select(Bits(later), w[i], R::zero());
+    let mut root = inverse_roots(r2);
+    // A branch here, rather than two compiled forms, keeps the compiler from mixing what comes before with what comes
+    // after, one body at a time; the shorter chains of half the work overlap: 15 % on AVX2, whose registers are few.
+    if own {
+        for i in 0..GROUP {
+            let later = Bits((0xfe_u32 << (first + i)) as u8);
+            r2[i] = V::select(later, r2[i], V::zero());
+            root[i] = V::select(later, root[i], V::zero());
         }
-        let on_group = streamed.strength * w[i];
-        let on_streamed = R::splat(group.strength[i]) * w[i];
-        let sum = &mut group.sum[i][part];
+    }
+    let w = inverse_cubes_from(r2, root);
+    for i in 0..GROUP {
+        let on_held = streamed.strength * w[i];
+        let on_streamed = V::splat(held[i].strength) * w[i];
         for c in 0..components {
-            sum[c] = on_group.multiply_add(d[i][c], sum[c]);
+            held[i].sum[c] = on_held.multiply_add(d[i][c], held[i].sum[c]);
             streamed.pull[c] = on_streamed.multiply_add(d[i][c], streamed.pull[c]);
         }
     }
 }
 
-/// Bodies `first…` of row `row`, a group of them, against the blocks from `row` on. The size of the group
-/// changes no bit.
+/// Row `row` of a shard against the blocks from `row` on.
 #[inline(always)]
-fn group<R: Register + InverseCube, const GROUP: usize, const PLANAR: bool, const SOFT: bool>(
+fn meet_blocks<V: Vector8 + Binary, const PLANAR: bool, const SOFT: bool>(
     tiles: &Tiles,
     q: &[Lanes],
     shard_start: usize,
     pull: &mut [Lanes],
     row: usize,
-    first: usize,
 ) {
+    let components = if PLANAR { 2 } else { 3 };
     let rows = tiles.shape.rows;
     let blocks = tiles.active_rows;
     let local = blocks - shard_start;
-    let (q_x, q_y) = (R::view(&q[..blocks]), R::view(&q[rows..rows + blocks]));
-    let q_z = if PLANAR { q_x } else { R::view(&q[2 * rows..2 * rows + blocks]) };
-    let strength = R::view(&tiles.strength[..blocks]);
-    let softening2 = R::splat(tiles.softening2);
     let numbers = as_numbers(q);
     let strengths = as_numbers(&tiles.strength);
-    let body = row * WIDTH + first;
-    let coordinate = |c: usize, i: usize| {
-        if PLANAR && c == 2 { 0.0 } else { numbers[c * rows * WIDTH + body + i] }
-    };
-    let mut held = Group {
-        place: core::array::from_fn(|i| core::array::from_fn(|c| coordinate(c, i))),
-        strength: core::array::from_fn(|i| strengths[body + i]),
-        sum: [[[R::zero(); 3]; MOST_REGISTERS]; GROUP],
-    };
+    // In whole groups: lanes without a body have no strength.
+    let bodies = (tiles.bodies - row * WIDTH).min(WIDTH).next_multiple_of(GROUP);
+    let mut held = [Held { place: [0.0; 3], strength: 0.0, sum: [V::zero(); 3] }; WIDTH];
+    let held = &mut held[..bodies];
+    for i in 0..bodies {
+        let body = row * WIDTH + i;
+        for c in 0..components {
+            held[i].place[c] = numbers[c * rows * WIDTH + body];
+        }
+        held[i].strength = strengths[body];
+    }
 
+    let (q_x, q_y) = (V::view(&q[..blocks]), V::view(&q[rows..rows + blocks]));
+    let q_z = if PLANAR { q_x } else { V::view(&q[2 * rows..2 * rows + blocks]) };
+    let strength = V::view(&tiles.strength[..blocks]);
+    let softening2 = V::splat(tiles.softening2);
     let (p_x, rest) = pull.split_at_mut(local);
     let (p_y, p_z) = rest.split_at_mut(local);
-    let (p_x, p_y) = (R::view_mut(p_x), R::view_mut(p_y));
-    let p_z = if PLANAR { &mut [][..] } else { R::view_mut(&mut p_z[..local]) };
-
-    // A macro and not a closure: a closure would be compiled without the tier's instructions.
-    macro_rules! meet {
-        ($block:expr, $diagonal:literal) => {
-            for part in 0..R::COUNT {
-                let from = $block * R::COUNT + part;
-                let to = from - shard_start * R::COUNT;
-                let mut streamed = Streamed {
-                    place: [q_x[from], q_y[from], q_z[from]],
-                    strength: strength[from],
-                    pull: [p_x[to], p_y[to], if PLANAR { R::zero() } else { p_z[to] }],
-                };
-                tile::<R, GROUP, PLANAR, SOFT, $diagonal>(&mut held, &mut streamed, part, softening2, first);
-                [p_x[to], p_y[to]] = [streamed.pull[0], streamed.pull[1]];
-                if !PLANAR {
-                    p_z[to] = streamed.pull[2];
-                }
-            }
+    let (p_x, p_y) = (V::view_mut(p_x), V::view_mut(p_y));
+    let p_z = if PLANAR { &mut [][..] } else { V::view_mut(&mut p_z[..local]) };
+    for block in row..blocks {
+        let to = block - shard_start;
+        let mut streamed = Streamed {
+            place: [q_x[block], q_y[block], q_z[block]],
+            strength: strength[block],
+            pull: [p_x[to], p_y[to], if PLANAR { V::zero() } else { p_z[to] }],
         };
+        for (group, held) in held.as_chunks_mut().0.iter_mut().enumerate() {
+            tile::<V, PLANAR, SOFT>(held, &mut streamed, softening2, block == row, group * GROUP);
+        }
+        [p_x[to], p_y[to]] = [streamed.pull[0], streamed.pull[1]];
+        if !PLANAR {
+            p_z[to] = streamed.pull[2];
+        }
     }
-    meet!(row, true);
-    for block in row + 1..blocks {
-        meet!(block, false);
-    }
-    for i in 0..GROUP {
-        let at = (row - shard_start) * WIDTH + first + i;
-        for c in 0..tiles.shape.components {
-            let mut sum = [Lanes::zero()];
-            for part in 0..R::COUNT {
-                R::view_mut(&mut sum)[part] = held.sum[i][part][c];
-            }
-            as_numbers_mut(pull)[c * local * WIDTH + at] -= sum[0].horizontal_sum();
+    for i in 0..bodies {
+        let at = (row - shard_start) * WIDTH + i;
+        for c in 0..components {
+            as_numbers_mut(pull)[c * local * WIDTH + at] -= held[i].sum[c].store().horizontal_sum();
         }
     }
 }
 
-/// One block row of a shard: four bodies at a time, as many as the registers of AVX-512 hold.
+/// One block row of a shard, in the plane or in space, softened or not.
 #[inline(always)]
-fn block_row<V: Vector8>(tiles: &Tiles, q: &[Lanes], shard_start: usize, pull: &mut [Lanes], row: usize)
-where
-    V::Register: InverseCube,
-{
-    const GROUP: usize = 4;
-    for first in (0..WIDTH).step_by(GROUP) {
-        let planar = tiles.shape.components == 2;
-        match (planar, tiles.softening2 > 0.0) {
-            (false, false) => {
-                group::<V::Register, GROUP, false, false>(tiles, q, shard_start, pull, row, first);
-            }
-            (false, true) => {
-                group::<V::Register, GROUP, false, true>(tiles, q, shard_start, pull, row, first);
-            }
-            (true, false) => {
-                group::<V::Register, GROUP, true, false>(tiles, q, shard_start, pull, row, first);
-            }
-            (true, true) => {
-                group::<V::Register, GROUP, true, true>(tiles, q, shard_start, pull, row, first);
-            }
-        }
+fn block_row<V: Vector8 + Binary>(
+    tiles: &Tiles,
+    q: &[Lanes],
+    shard_start: usize,
+    pull: &mut [Lanes],
+    row: usize,
+) {
+    match (tiles.shape.components == 2, tiles.softening2 > 0.0) {
+        (false, false) => meet_blocks::<V, false, false>(tiles, q, shard_start, pull, row),
+        (false, true) => meet_blocks::<V, false, true>(tiles, q, shard_start, pull, row),
+        (true, false) => meet_blocks::<V, true, false>(tiles, q, shard_start, pull, row),
+        (true, true) => meet_blocks::<V, true, true>(tiles, q, shard_start, pull, row),
     }
 }
 

@@ -187,7 +187,7 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
             let distance = y[c * rows + row] - reference[c];
             distance2 = distance.multiply_add(distance, distance2);
         }
-        // Rough roots will do: a step is no better for a tolerance kept to more than five digits.
+        // Rough roots will do: a step is no better for a tolerance kept to more than four digits.
         let distance = distance2 * distance2.rough_inverse_root();
         let scale = rtol.multiply_add(distance, atol).min(S::splat(UNLIMITED));
         let inverse_scale = (scale * scale).rough_inverse_root();

@@ -3,7 +3,7 @@
 //! Every method here is `#[inline(always)]` and only ever reached from a function that `tiered!`
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
-use super::{Bits, Lanes, Register, Vector8, WIDTH, scaled_by};
+use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
 use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::Real;
@@ -13,7 +13,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// Four lanes in one 256-bit register; masks use the four low bits.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct Avx2Half(__m256d);
+struct Avx2Half(__m256d);
 
 // SAFETY (all blocks of this file): see the module header.
 operators!(Avx2Half:
@@ -30,10 +30,6 @@ fn spread(mask: Bits) -> __m256i {
         let lane = _mm256_setr_epi64x(1, 2, 4, 8);
         _mm256_cmpeq_epi64(_mm256_and_si256(_mm256_set1_epi64x(i64::from(mask.0)), lane), lane)
     }
-}
-
-impl Register for Avx2Half {
-    const COUNT: usize = 2;
 }
 
 impl Real for Avx2Half {
@@ -120,10 +116,6 @@ operators!(Avx2:
     |a: Avx2, b: Avx2| Avx2(a.0 / b.0, a.1 / b.1),
     |a: Avx2| Avx2(-a.0, -a.1));
 
-impl Register for Avx2 {
-    const COUNT: usize = 1;
-}
-
 /// The mask of both halves.
 #[inline(always)]
 fn join(low: Bits, high: Bits) -> Bits {
@@ -187,8 +179,6 @@ impl Real for Avx2 {
 }
 
 impl Vector8 for Avx2 {
-    type Register = Avx2Half;
-
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         let from = lanes.0.as_ptr();

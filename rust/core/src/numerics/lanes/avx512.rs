@@ -3,7 +3,7 @@
 //! Every method here is `#[inline(always)]` and only ever reached from a function that `tiered!`
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
-use super::{Bits, Lanes, Register, Vector8, WIDTH, scaled_by};
+use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
 use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::Real;
@@ -76,13 +76,7 @@ impl Real for Avx512 {
     }
 }
 
-impl Register for Avx512 {
-    const COUNT: usize = 1;
-}
-
 impl Vector8 for Avx512 {
-    type Register = Self;
-
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         Self(unsafe { _mm512_load_pd(lanes.0.as_ptr()) })
