@@ -37,7 +37,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         let prepared = Prepared::new(&plan, scene, unit);
         let mut dynamics = unit::dynamics(&plan, &[&prepared], threads);
         let shape = dynamics.shape;
-        let mut state = prepared.blank_state();
+        let mut state = prepared.blank_state(1);
         for lane in 0..plan.layout.units() {
             prepared.write(&mut state, lane);
         }

@@ -1,6 +1,6 @@
 //! The doing of an integration: units into lanes, steps, records; a report for each unit.
 //!
-//! Here units are shared out over threads. `fixed` runs eight units in lockstep; `adaptive` runs eight
+//! Here units are shared out over threads. `fixed` runs units in lockstep; `adaptive` runs eight
 //! units each at its own pace. What a unit gives depends on nothing but the unit.
 
 mod adaptive;
@@ -53,11 +53,12 @@ impl Job<'_> {
     }
 
     /// Progress is counted in steps if they are fixed, else in parts of each unit's time.
-    fn total_progress(&self, units: usize) -> u64 {
+    fn total_progress(&self, runs: &[&[Unit]]) -> u64 {
         let span = (self.end() - self.scene.t0).abs();
+        let count = |together: usize| runs.iter().map(|run| run.len().div_ceil(together) as u64).sum::<u64>();
         match self.plan.dt {
-            Some(dt) => units.div_ceil(self.plan.layout.units()) as u64 * (span / dt.abs()) as u64,
-            None => adaptive::PROGRESS_PER_UNIT * units as u64,
+            Some(dt) => count(self.plan.layout.in_lockstep()) * (span / dt.abs()) as u64,
+            None => count(1) * adaptive::PROGRESS_PER_UNIT,
         }
     }
 }
@@ -74,13 +75,16 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     let (over, inside) = job.plan.threads;
     let lanes = job.plan.layout.units();
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
+    // Full states, once there is more than one for every thread.
+    let per_chunk =
+        if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.layout.in_lockstep()) } else { per_chunk };
     let mut runs: Vec<&[Unit]> = Vec::new();
     for run in units.chunk_by(|a, b| {
         job.plan.layout == Layout::Packed || (a.active, a.bodies.len()) == (b.active, b.bodies.len())
     }) {
         runs.extend(run.chunks(per_chunk));
     }
-    ticker.control().set_total(job.total_progress(units.len()));
+    ticker.control().set_total(job.total_progress(&runs));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
         Scheme::Embedded(method) => adaptive::run(job, method, runs[chunk], inside, ticker),
         _ => fixed::run(job, runs[chunk], inside, ticker),

@@ -25,6 +25,15 @@ impl Layout {
         }
     }
 
+    /// Units that go together at a fixed step. Batched, twice as many as there are lanes: a step is a chain of
+    /// operations that wait for each other, and the processor has room for a second one.
+    pub fn in_lockstep(self) -> usize {
+        match self {
+            Self::Packed => 1,
+            Self::Batched => 2 * WIDTH,
+        }
+    }
+
     /// The lanes that move with the unit in `lane`: all of them if packed.
     pub fn mask(self, lane: usize) -> Bits {
         match self {

@@ -91,7 +91,7 @@ where
     let shape = Shape { rows: mass.len(), components: 3 };
     let strength = splat(mass);
     Problem {
-        dynamics: Dynamics::new(shape, vec![Box::new(FewBodies::new(shape, strength, softening))]),
+        dynamics: Dynamics::new(shape, vec![Box::new(FewBodies::new(shape, 1, strength, softening))]),
         state: State::new(shape, &splat(q), &splat(v)),
         mass: mass.iter().copied().cycle().take(shape.len()).collect(),
     }

@@ -1,7 +1,9 @@
 //! Up to eight massive bodies, one trajectory (`f64`, double-double) or eight of them (`Lanes`).
 //!
 //! The loops run over pairs; the lanes, if any, over trajectories. Adds each body's terms in the ring
-//! order of the module header, as [`ring`](super::ring) does with lanes over bodies.
+//! order of the module header, as [`ring`](super::ring) does with lanes over bodies. A state may hold several
+//! systems, one after another in its rows: each pair waits long for its weight, and another system's pairs
+//! can be weighed meanwhile.
 
 use super::pair::squared_distance;
 use super::passive::attraction;
@@ -14,19 +16,21 @@ use crate::numerics::lanes::{Lanes, Vector8};
 use crate::parallel::Ticker;
 use crate::tiered;
 
-/// Gravity among `strength.len()` massive bodies and the massless ones after them.
+/// Gravity among the massive bodies of each system and on the massless ones after them.
 #[derive(Debug)]
 pub struct FewBodies<S> {
     shape: Shape,
-    /// `G·m` of the massive bodies.
+    systems: usize,
+    /// `G·m` of the massive bodies, system after system.
     strength: Vec<S>,
     softening2: f64,
 }
 
 impl<S: Element> FewBodies<S> {
-    /// From `G·m` of the massive bodies, at most [`RING_MAX`](super::RING_MAX), which come first in the state.
-    pub fn new(shape: Shape, strength: Vec<S>, softening: f64) -> Self {
-        Self { shape, strength, softening2: softening * softening }
+    /// From `G·m` of the massive bodies of each of the systems, at most [`RING_MAX`](super::RING_MAX), which come
+    /// first in its rows.
+    pub fn new(shape: Shape, systems: usize, strength: Vec<S>, softening: f64) -> Self {
+        Self { shape, systems, strength, softening2: softening * softening }
     }
 }
 
@@ -60,20 +64,39 @@ fn pulls<S: InverseCube, const M: usize, const PLANAR: bool, const SOFT: bool>(
 #[inline(always)]
 fn kernel<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool, const SOFT: bool>(
     shape: Shape,
+    systems: usize,
     strength: &[S],
     softening2: f64,
     q: &[S],
     a: &mut [S],
     first: bool,
 ) {
-    let rows = shape.rows;
-    let components = if PLANAR { 2 } else { 3 };
     let softening2 = S::splat(softening2);
-    let strength = &strength[..N];
+    for system in 0..systems {
+        let strength = &strength[system * N..][..N];
+        one_system::<S, N, HALF, PLANAR, SOFT>(shape, system, systems, strength, softening2, q, a, first);
+    }
+}
+
+/// As [`kernel`], one of the systems.
+#[inline(always)]
+fn one_system<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool, const SOFT: bool>(
+    shape: Shape,
+    system: usize,
+    systems: usize,
+    strength: &[S],
+    softening2: S,
+    q: &[S],
+    a: &mut [S],
+    first: bool,
+) {
+    let (rows, bodies) = (shape.rows, shape.rows / systems);
+    let start = system * bodies;
+    let components = if PLANAR { 2 } else { 3 };
     let mut position = [[S::zero(); 3]; N];
     for i in 0..N {
         for c in 0..components {
-            position[i][c] = q[c * rows + i];
+            position[i][c] = q[c * rows + start + i];
         }
     }
     let mut sum = [[S::zero(); 3]; N];
@@ -98,18 +121,18 @@ fn kernel<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool,
             }
         }
     }
-    for i in 0..rows {
+    for i in 0..bodies {
         let term = if i < N {
             sum[i]
         } else {
             let mut place = [S::zero(); 3];
             for c in 0..components {
-                place[c] = q[c * rows + i];
+                place[c] = q[c * rows + start + i];
             }
             attraction::<S, PLANAR, SOFT>(place, &position, strength, softening2)
         };
         for c in 0..components {
-            let a = &mut a[c * rows + i];
+            let a = &mut a[c * rows + start + i];
             *a = if first { term[c] } else { *a + term[c] };
         }
     }
@@ -119,6 +142,7 @@ fn kernel<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool,
 #[inline(always)]
 fn select_kernel<S: InverseCube>(
     shape: Shape,
+    systems: usize,
     strength: &[S],
     softening2: f64,
     q: &[S],
@@ -127,7 +151,7 @@ fn select_kernel<S: InverseCube>(
 ) {
     macro_rules! select {
         ($($bodies:literal)+) => {
-            match (strength.len(), shape.components == 2, softening2 > 0.0) {
+            match (strength.len() / systems, shape.components == 2, softening2 > 0.0) {
                 $(
                     ($bodies, false, false) => select!($bodies, false, false),
                     ($bodies, false, true) => select!($bodies, false, true),
@@ -139,7 +163,7 @@ fn select_kernel<S: InverseCube>(
             }
         };
         ($bodies:literal, $planar:literal, $soft:literal) => {
-            kernel::<S, $bodies, { $bodies / 2 }, $planar, $soft>(shape, strength, softening2, q, a, first)
+            kernel::<S, $bodies, { $bodies / 2 }, $planar, $soft>(shape, systems, strength, softening2, q, a, first)
         };
     }
     select!(1 2 3 4 5 6 7 8);
@@ -153,7 +177,8 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
     first: bool,
 ) {
     let strength = V::view(&bodies.strength);
-    select_kernel::<V>(bodies.shape, strength, bodies.softening2, V::view(q), V::view_mut(a), first);
+    let (q, a) = (V::view(q), V::view_mut(a));
+    select_kernel::<V>(bodies.shape, bodies.systems, strength, bodies.softening2, q, a, first);
 }
 
 tiered! {
@@ -183,7 +208,8 @@ macro_rules! plain_force {
                 first: bool,
                 _: &mut Ticker<'_>,
             ) -> Result<()> {
-                select_kernel(self.shape, &self.strength, self.softening2, phase.q, a, first);
+                let (shape, strength) = (self.shape, &self.strength);
+                select_kernel(shape, self.systems, strength, self.softening2, phase.q, a, first);
                 Ok(())
             }
         }

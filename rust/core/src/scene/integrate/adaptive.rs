@@ -94,7 +94,7 @@ impl<'a> Run<'a> {
         let elapsed = |&t: &f64| scale(t - job.scene.t0, -plan.units.time);
         let outputs: Vec<f64> = job.times.iter().map(elapsed).collect();
         let first = job.prepare(&units[0]);
-        let mut state = first.blank_state();
+        let mut state = first.blank_state(1);
         for lane in 0..plan.layout.units() {
             first.write(&mut state, lane);
         }
@@ -261,7 +261,7 @@ impl<'a> Run<'a> {
         }
         let not_begun = |unit| {
             let prepared = self.job.prepare(unit);
-            let mut state = prepared.blank_state();
+            let mut state = prepared.blank_state(1);
             prepared.write(&mut state, 0);
             let t0 = self.job.scene.t0;
             self.job.report(&prepared, &state, 0, t0, Ending::Interrupted, 0, Counts::default())

@@ -1,4 +1,4 @@
-//! Fixed steps: up to eight units in lockstep, each recorded until it is no longer finite.
+//! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
 use super::super::unit::{self, Prepared, Unit};
 use super::report::{Counts, Ending, Report};
@@ -22,7 +22,7 @@ pub(super) fn run(
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
     let mut reports = Vec::with_capacity(units.len());
-    for group in units.chunks(job.plan.layout.units()) {
+    for group in units.chunks(job.plan.layout.in_lockstep()) {
         reports.extend(lockstep(job, group, threads, ticker)?);
     }
     Ok(reports)
@@ -33,8 +33,8 @@ fn lockstep(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'
     let prepared: Vec<Prepared> = units.iter().map(|unit| job.prepare(unit)).collect();
     let views: Vec<&Prepared> = prepared.iter().collect();
     let mut dynamics = unit::dynamics(plan, &views, threads);
-    let mut state = prepared[0].blank_state();
-    for lane in 0..plan.layout.units() {
+    let mut state = prepared[0].blank_state(units.len());
+    for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
         // Lanes without a unit run along with a copy of the last.
         prepared[lane.min(units.len() - 1)].write(&mut state, lane);
     }

@@ -1,7 +1,7 @@
 //! A unit in the lanes of a state: laid in at the start, read off at the output times.
 //!
 //! Packed, the lanes are its bodies, massive ones first, each kind padded to whole blocks. Batched, it has
-//! one lane, and the rows are its bodies.
+//! one lane, and the rows are its bodies; the rows of eight further units may follow those of the first eight.
 
 use super::super::columns::Entry;
 use super::{Layout, Origin, Plan, Prepared, Unit, scale};
@@ -25,25 +25,31 @@ pub(super) fn shape(unit: &Unit, plan: &Plan) -> Shape {
 }
 
 impl Prepared {
-    /// Row and lane of a body, of a unit that lies in `unit_lane` if batched.
+    /// Row and lane of a body, of a unit that has the place `unit_lane` among the units of a state if batched.
     pub(in crate::scene) fn locate(&self, slot: usize, unit_lane: usize) -> (usize, usize) {
         let active = self.unit.active;
         match self.layout {
-            Layout::Batched => (slot, unit_lane),
+            Layout::Batched => (unit_lane / WIDTH * self.shape.rows + slot, unit_lane % WIDTH),
             Layout::Packed if slot < active => (slot / WIDTH, slot % WIDTH),
             Layout::Packed => (active.div_ceil(WIDTH) + (slot - active) / WIDTH, (slot - active) % WIDTH),
         }
     }
 
-    /// A state for units of this make-up, all zeros.
-    pub fn blank_state(&self) -> State<Lanes> {
-        let zeros = vec![Lanes::zero(); self.shape.len()];
-        State::new(self.shape, &zeros, &zeros)
+    /// How the coordinates of so many units of this make-up lie in one state.
+    pub(super) fn state_shape(&self, units: usize) -> Shape {
+        Shape { rows: units.div_ceil(self.layout.units()) * self.shape.rows, ..self.shape }
     }
 
-    /// Lays the unit into a state (into one lane of it if batched).
+    /// A state for so many units of this make-up, all zeros.
+    pub fn blank_state(&self, units: usize) -> State<Lanes> {
+        let shape = self.state_shape(units);
+        let zeros = vec![Lanes::zero(); shape.len()];
+        State::new(shape, &zeros, &zeros)
+    }
+
+    /// Lays the unit into a state (at one place in it if batched).
     pub fn write(&self, state: &mut State<Lanes>, unit_lane: usize) {
-        let Shape { rows, components } = self.shape;
+        let Shape { rows, components } = state.shape;
         let ((q, q_error), (v, v_error)) = state.halves_mut();
         if self.layout == Layout::Packed {
             for c in 0..components {
@@ -67,7 +73,7 @@ impl Prepared {
 
     /// Reads a body off a state, in the scene's units and about its origin.
     pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
-        let Shape { rows, components } = self.shape;
+        let Shape { rows, components } = state.shape;
         let (length, speed) = (self.units.length, -self.units.velocity());
         let (row, lane) = self.locate(slot, unit_lane);
         let mut entry = Entry::default();

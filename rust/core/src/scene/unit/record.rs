@@ -96,7 +96,7 @@ impl Prepared {
         unit_lane: usize,
         [length, speed]: [f64; 2],
     ) -> bool {
-        let stride = self.shape.rows * WIDTH;
+        let stride = state.shape.rows * WIDTH;
         let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
         // Sums of their own, lest each addition wait for the one before.
         let mut check = [[0.0; 2]; COMPONENTS];

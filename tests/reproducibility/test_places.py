@@ -1,0 +1,48 @@
+"""The place of a copy among the others of an ensemble leaves no trace in its bits."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+STEPS: dict[str, Any] = {"method": "kahan_li8", "dt": 0.05}
+"""A method with a fixed step: copies go in lockstep, eight in the lanes and eight more in the rows after."""
+
+
+COPIES = 36
+
+
+def ensemble(mass: list[float], *forces: vv.Force) -> vv.EnsembleScene:
+    """Copies at random places, each with its own masses."""
+    random = np.random.default_rng(1687)
+    masses = np.array(mass) * random.uniform(0.5, 2.0, size=(COPIES, len(mass)))
+    position = 3.0 * random.normal(size=(COPIES, len(mass), 3))
+    velocity = 0.3 * random.normal(size=(COPIES, len(mass), 3))
+    one = vv.Scene(vv.Particles(mass=masses[0], position=position[0], velocity=velocity[0]), *forces)
+    return one.ensemble(mass=masses, position=position, velocity=velocity)
+
+
+GRAVITY = vv.Gravity(G=1.0, softening=0.1)
+ENSEMBLES = {
+    "massless bodies, too": ensemble([1.0, 0.5, 0.0, 0.0], GRAVITY),
+    "a fixed centre": ensemble([1.0, 1.0], GRAVITY, vv.CentralField(vv.potentials.Yukawa(k=-3.0, length=2.0))),
+}
+
+
+@pytest.mark.parametrize("name", ENSEMBLES)
+@pytest.mark.parametrize("copies", [2, 8, 9, 15, 16, 17, 24, COPIES])
+def test_a_copy_is_the_same_alone(name: str, copies: int) -> None:
+    every = ENSEMBLES[name]
+    some = every.scene.ensemble(
+        mass=every.mass[:copies], position=every.position[:copies], velocity=every.velocity[:copies]
+    )
+    together = some.run(t=[0.5, 1.02], threads=1, **STEPS)
+    for copy in sorted({0, 7 % copies, 8 % copies, copies - 1}):
+        bodies = vv.Particles(mass=every.mass[copy], position=every.position[copy], velocity=every.velocity[copy])
+        alone = vv.Scene(bodies, *every.scene.forces).run(t=[0.5, 1.02], threads=1, **STEPS)
+        np.testing.assert_array_equal(together.position[copy], alone.position)
+        np.testing.assert_array_equal(together.velocity[copy], alone.velocity)
