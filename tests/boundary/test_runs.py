@@ -79,12 +79,8 @@ except vv.Interrupted as error:
     assert best < 0.2
 
 
-@pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
-@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4"])
-@pytest.mark.parametrize("delay", [0.1, 0.13])
-def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> None:
-    """A large scene is stopped in the middle of a force evaluation; its last state is still one of the run's."""
-    large = scene(3000)
+def interrupted(delay: float, run: Callable[[], object]) -> vv.Trajectory:
+    """Stop a run after ``delay`` seconds, as Ctrl-C does; what it had computed."""
 
     def handler(number: int, frame: object) -> None:
         raise KeyboardInterrupt
@@ -93,10 +89,19 @@ def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> N
     try:
         signal.setitimer(signal.ITIMER_REAL, delay)
         with pytest.raises(errors.Interrupted) as caught:
-            large.run(1e9, method=method, dt=1e-3)
+            run()
     finally:
         signal.signal(signal.SIGALRM, before)
-    out = caught.value.trajectory
+    return caught.value.trajectory
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4"])
+@pytest.mark.parametrize("delay", [0.1, 0.13])
+def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> None:
+    """A large scene is stopped in the middle of a force evaluation; its last state is still one of the run's."""
+    large = scene(3000)
+    out = interrupted(delay, lambda: large.run(1e9, method=method, dt=1e-3))
     # On a busy machine not even one step may have been whole; the last state is then the first.
     again = large.run(out.final.t0, method=method, dt=1e-3).final if out.stats.steps else large
     assert out.final.particles.position.tobytes() == again.particles.position.tobytes()
@@ -109,18 +114,7 @@ def test_an_interrupted_adaptive_run_says_the_time_of_its_state(delay: float) ->
     """Wherever in a step it is stopped: so many steps lead to that time and to that state, to the bit."""
     large = scene(2000)
     times = [0.0, *np.linspace(1e-4, 1e9, 3)]
-
-    def handler(number: int, frame: object) -> None:
-        raise KeyboardInterrupt
-
-    before = signal.signal(signal.SIGALRM, handler)
-    try:
-        signal.setitimer(signal.ITIMER_REAL, delay)
-        with pytest.raises(errors.Interrupted) as caught:
-            large.run(times, method="dop853", rtol=1e-10)
-    finally:
-        signal.signal(signal.SIGALRM, before)
-    out = caught.value.trajectory
+    out = interrupted(delay, lambda: large.run(times, method="dop853", rtol=1e-10))
     again = large
     if steps := out.stats.steps + out.stats.rejected:
         with pytest.raises(errors.ConvergenceError) as stopped:

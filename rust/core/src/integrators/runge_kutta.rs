@@ -6,7 +6,7 @@ use super::state::State;
 use crate::error::Result;
 use crate::forces::Dynamics;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::Element;
+use crate::numerics::element::{Element, Weighted};
 use crate::parallel::Ticker;
 
 /// The stages of a method and room for their accelerations.
@@ -75,16 +75,11 @@ impl<S: Element> Stages<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let len = self.len();
-        S::combine(
-            &mut self.position,
-            state.position(),
-            (state.v(), &row.fraction),
-            h,
-            &row.position,
-            &self.a,
-        );
+        let stages = |terms| Weighted { h, terms, a: &self.a };
+        let slope = (state.v(), &row.fraction);
+        S::combine(&mut self.position, state.position(), slope, stages(&row.position));
         let velocity = if dynamics.needs_velocity() {
-            S::combine_velocity(&mut self.velocity, state.velocity(), h, &row.velocity, &self.a);
+            S::combine_velocity(&mut self.velocity, state.velocity(), stages(&row.velocity));
             &self.velocity
         } else {
             state.v()
@@ -121,9 +116,10 @@ impl<S: Element> Stages<S> {
     /// Writes the state that the row leads to, compensated.
     pub fn state_at(&self, row: &Row<S>, state: &State<S>, h: &S, into: &mut State<S>) {
         let (q, v) = into.halves_mut();
-        let (from, slope) = (state.position(), (state.v(), &row.fraction));
-        S::combine_compensated(q, from, slope, h, &row.position, &self.a);
-        S::combine_velocity_compensated(v, state.velocity(), h, &row.velocity, &self.a);
+        let stages = |terms| Weighted { h, terms, a: &self.a };
+        let slope = (state.v(), &row.fraction);
+        S::combine_compensated(q, state.position(), slope, stages(&row.position));
+        S::combine_velocity_compensated(v, state.velocity(), stages(&row.velocity));
     }
 }
 

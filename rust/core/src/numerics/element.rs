@@ -36,6 +36,17 @@ pub struct PairTerm<S> {
     pub weights: [S; 2],
 }
 
+/// What stages add to a state: the step, their weights, and their accelerations one after another.
+#[derive(Clone, Copy, Debug)]
+pub struct Weighted<'a, S> {
+    /// The step.
+    pub h: &'a S,
+    /// The weights.
+    pub terms: &'a [Term<S>],
+    /// The accelerations.
+    pub a: &'a [S],
+}
+
 /// A scalar that an integrator's state can be made of.
 pub trait Element: InverseCube {
     /// `v += kick·a`, then `q += drift·v`, both compensated.
@@ -48,34 +59,23 @@ pub trait Element: InverseCube {
     );
     /// `y += step·k`, compensated.
     fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: &Scaled<Self>);
-    /// `out = q + (e + h·slope.1·slope.0 + h² Σ weight·a[stage])`: coordinates within a step, `slope` being the
-    /// velocities at its start and a fraction of it; `a` holds the accelerations of the stages one after another.
-    fn combine(
-        out: &mut [Self],
-        q: (&[Self], &[Self]),
-        slope: (&[Self], &Self),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
-    );
+    /// `out = q + (e + h·slope.1·slope.0 + h² Σ weight·a)`: coordinates within a step, `slope` being the
+    /// velocities at its start and a fraction of it.
+    fn combine(out: &mut [Self], q: (&[Self], &[Self]), slope: (&[Self], &Self), stages: Weighted<'_, Self>);
     /// As [`combine`](Self::combine), compensated, into `(out, out_e)`.
     fn combine_compensated(
         out: (&mut [Self], &mut [Self]),
         q: (&[Self], &[Self]),
         slope: (&[Self], &Self),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
+        stages: Weighted<'_, Self>,
     );
-    /// `out = v + (e + h Σ weight·a[stage])`: velocities within a step.
-    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), h: &Self, terms: &[Term<Self>], a: &[Self]);
+    /// `out = v + (e + h Σ weight·a)`: velocities within a step.
+    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), stages: Weighted<'_, Self>);
     /// As [`combine_velocity`](Self::combine_velocity), compensated, into `(out, out_e)`.
     fn combine_velocity_compensated(
         out: (&mut [Self], &mut [Self]),
         v: (&[Self], &[Self]),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
+        stages: Weighted<'_, Self>,
     );
     /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the
     /// rows (particles), for two sets of weights at once; each row is a vector of `shape.components` components.
@@ -131,39 +131,27 @@ macro_rules! plain_element {
                 out: &mut [Self],
                 q: (&[Self], &[Self]),
                 slope: (&[Self], &Self),
-                h: &Self,
-                terms: &[Term<Self>],
-                a: &[Self],
+                stages: Weighted<'_, Self>,
             ) {
-                loops::combine(out, q, (slope.0, *slope.1), *h, terms, a);
+                loops::combine(out, q, slope, stages);
             }
             fn combine_compensated(
                 out: (&mut [Self], &mut [Self]),
                 q: (&[Self], &[Self]),
                 slope: (&[Self], &Self),
-                h: &Self,
-                terms: &[Term<Self>],
-                a: &[Self],
+                stages: Weighted<'_, Self>,
             ) {
-                loops::combine_compensated(out, q, (slope.0, *slope.1), *h, terms, a);
+                loops::combine_compensated(out, q, slope, stages);
             }
-            fn combine_velocity(
-                out: &mut [Self],
-                v: (&[Self], &[Self]),
-                h: &Self,
-                terms: &[Term<Self>],
-                a: &[Self],
-            ) {
-                loops::combine_velocity(out, v, *h, terms, a);
+            fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), stages: Weighted<'_, Self>) {
+                loops::combine_velocity(out, v, stages);
             }
             fn combine_velocity_compensated(
                 out: (&mut [Self], &mut [Self]),
                 v: (&[Self], &[Self]),
-                h: &Self,
-                terms: &[Term<Self>],
-                a: &[Self],
+                stages: Weighted<'_, Self>,
             ) {
-                loops::combine_velocity_compensated(out, v, *h, terms, a);
+                loops::combine_velocity_compensated(out, v, stages);
             }
             fn largest_errors(
                 shape: Shape,

@@ -1,6 +1,6 @@
 //! The loops over [`Lanes`], compiled for every tier.
 
-use super::{Element, PairTerm, Scaled, Shape, Term, loops};
+use super::{Element, PairTerm, Scaled, Shape, Term, Weighted, loops};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::tiered;
@@ -47,72 +47,61 @@ fn kick_drift_lanes<V: Vector8>(
 fn advance_lanes<V: Vector8>(y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) {
     loops::advance::<V>((V::view_mut(y.0), V::view_mut(y.1)), V::view(k), &load(step));
 }
+/// Weighted stages as the tier's vectors; `h` is their step.
+#[inline(always)]
+fn view_stages<'a, V: Vector8>(h: &'a V, stages: Weighted<'a, Lanes>) -> Weighted<'a, V> {
+    Weighted { h, terms: view_terms(stages.terms), a: V::view(stages.a) }
+}
+
 #[inline(always)]
 fn combine_lanes<V: Vector8>(
     out: &mut [Lanes],
     q: (&[Lanes], &[Lanes]),
     slope: (&[Lanes], &Lanes),
-    h: &Lanes,
-    terms: &[Term<Lanes>],
-    a: &[Lanes],
+    stages: Weighted<'_, Lanes>,
 ) {
-    loops::combine::<V>(
-        V::view_mut(out),
-        (V::view(q.0), V::view(q.1)),
-        (V::view(slope.0), V::load(*slope.1)),
-        V::load(*h),
-        view_terms(terms),
-        V::view(a),
-    );
+    let h = V::load(*stages.h);
+    let y = (V::view(q.0), V::view(q.1));
+    loops::combine::<V>(V::view_mut(out), y, (V::view(slope.0), &V::load(*slope.1)), view_stages(&h, stages));
 }
 #[inline(always)]
 fn combine_compensated_lanes<V: Vector8>(
     out: (&mut [Lanes], &mut [Lanes]),
     q: (&[Lanes], &[Lanes]),
     slope: (&[Lanes], &Lanes),
-    h: &Lanes,
-    terms: &[Term<Lanes>],
-    a: &[Lanes],
+    stages: Weighted<'_, Lanes>,
 ) {
+    let h = V::load(*stages.h);
+    let y = (V::view(q.0), V::view(q.1));
     loops::combine_compensated::<V>(
         (V::view_mut(out.0), V::view_mut(out.1)),
-        (V::view(q.0), V::view(q.1)),
-        (V::view(slope.0), V::load(*slope.1)),
-        V::load(*h),
-        view_terms(terms),
-        V::view(a),
+        y,
+        (V::view(slope.0), &V::load(*slope.1)),
+        view_stages(&h, stages),
     );
 }
 #[inline(always)]
 fn combine_velocity_lanes<V: Vector8>(
     out: &mut [Lanes],
     v: (&[Lanes], &[Lanes]),
-    h: &Lanes,
-    terms: &[Term<Lanes>],
-    a: &[Lanes],
+    stages: Weighted<'_, Lanes>,
 ) {
-    loops::combine_velocity::<V>(
-        V::view_mut(out),
-        (V::view(v.0), V::view(v.1)),
-        V::load(*h),
-        view_terms(terms),
-        V::view(a),
-    );
+    let h = V::load(*stages.h);
+    let y = (V::view(v.0), V::view(v.1));
+    loops::combine_velocity::<V>(V::view_mut(out), y, view_stages(&h, stages));
 }
 #[inline(always)]
 fn combine_velocity_compensated_lanes<V: Vector8>(
     out: (&mut [Lanes], &mut [Lanes]),
     v: (&[Lanes], &[Lanes]),
-    h: &Lanes,
-    terms: &[Term<Lanes>],
-    a: &[Lanes],
+    stages: Weighted<'_, Lanes>,
 ) {
+    let h = V::load(*stages.h);
+    let y = (V::view(v.0), V::view(v.1));
     loops::combine_velocity_compensated::<V>(
         (V::view_mut(out.0), V::view_mut(out.1)),
-        (V::view(v.0), V::view(v.1)),
-        V::load(*h),
-        view_terms(terms),
-        V::view(a),
+        y,
+        view_stages(&h, stages),
     );
 }
 #[inline(always)]
@@ -146,10 +135,10 @@ tiered! {
     fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: &Scaled<Lanes>, drift: &Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) = advance_lanes;
-    fn combine_tier[][](out: &mut [Lanes], q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_lanes;
-    fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_compensated_lanes;
-    fn combine_velocity_tier[][](out: &mut [Lanes], v: (&[Lanes], &[Lanes]), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_velocity_lanes;
-    fn combine_velocity_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), v: (&[Lanes], &[Lanes]), h: &Lanes, terms: &[Term<Lanes>], a: &[Lanes]) = combine_velocity_compensated_lanes;
+    fn combine_tier[][](out: &mut [Lanes], q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), stages: Weighted<'_, Lanes>) = combine_lanes;
+    fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), stages: Weighted<'_, Lanes>) = combine_compensated_lanes;
+    fn combine_velocity_tier[][](out: &mut [Lanes], v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_lanes;
+    fn combine_velocity_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_compensated_lanes;
     fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (&Lanes, &Lanes), h: &Lanes, terms: &[PairTerm<Lanes>], k: &[Lanes]) -> [Lanes; 2] = largest_errors_lanes;
 }
 
@@ -166,37 +155,26 @@ impl Element for Lanes {
     fn advance(y: (&mut [Self], &mut [Self]), k: &[Self], step: &Scaled<Self>) {
         advance_tier(y, k, step);
     }
-    fn combine(
-        out: &mut [Self],
-        q: (&[Self], &[Self]),
-        slope: (&[Self], &Self),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
-    ) {
-        combine_tier(out, q, slope, h, terms, a);
+    fn combine(out: &mut [Self], q: (&[Self], &[Self]), slope: (&[Self], &Self), stages: Weighted<'_, Self>) {
+        combine_tier(out, q, slope, stages);
     }
     fn combine_compensated(
         out: (&mut [Self], &mut [Self]),
         q: (&[Self], &[Self]),
         slope: (&[Self], &Self),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
+        stages: Weighted<'_, Self>,
     ) {
-        combine_compensated_tier(out, q, slope, h, terms, a);
+        combine_compensated_tier(out, q, slope, stages);
     }
-    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), h: &Self, terms: &[Term<Self>], a: &[Self]) {
-        combine_velocity_tier(out, v, h, terms, a);
+    fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), stages: Weighted<'_, Self>) {
+        combine_velocity_tier(out, v, stages);
     }
     fn combine_velocity_compensated(
         out: (&mut [Self], &mut [Self]),
         v: (&[Self], &[Self]),
-        h: &Self,
-        terms: &[Term<Self>],
-        a: &[Self],
+        stages: Weighted<'_, Self>,
     ) {
-        combine_velocity_compensated_tier(out, v, h, terms, a);
+        combine_velocity_compensated_tier(out, v, stages);
     }
     fn largest_errors(
         shape: Shape,

@@ -2,7 +2,7 @@
 //!
 //! No closures: they would be compiled without the tier's instructions.
 
-use super::{PairTerm, Scaled, Shape, Term};
+use super::{PairTerm, Scaled, Shape, Term, Weighted};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::Real;
 
@@ -88,10 +88,8 @@ macro_rules! for_weighted {
 pub(super) fn combine<S: Real>(
     out: &mut [S],
     (q, e): (&[S], &[S]),
-    (slope, fraction): (&[S], S),
-    h: S,
-    terms: &[Term<S>],
-    a: &[S],
+    (slope, &fraction): (&[S], &S),
+    Weighted { h: &h, terms, a }: Weighted<'_, S>,
 ) {
     let n = out.len();
     let (q, e, slope) = (&q[..n], &e[..n], &slope[..n]);
@@ -106,10 +104,8 @@ pub(super) fn combine<S: Real>(
 pub(super) fn combine_compensated<S: Real>(
     (out, out_error): (&mut [S], &mut [S]),
     (q, e): (&[S], &[S]),
-    (slope, fraction): (&[S], S),
-    h: S,
-    terms: &[Term<S>],
-    a: &[S],
+    (slope, &fraction): (&[S], &S),
+    Weighted { h: &h, terms, a }: Weighted<'_, S>,
 ) {
     let n = out.len();
     let (q, e, slope, out_error) = (&q[..n], &e[..n], &slope[..n], &mut out_error[..n]);
@@ -124,9 +120,7 @@ pub(super) fn combine_compensated<S: Real>(
 pub(super) fn combine_velocity<S: Real>(
     out: &mut [S],
     (v, e): (&[S], &[S]),
-    h: S,
-    terms: &[Term<S>],
-    a: &[S],
+    Weighted { h: &h, terms, a }: Weighted<'_, S>,
 ) {
     let n = out.len();
     let (v, e) = (&v[..n], &e[..n]);
@@ -137,9 +131,7 @@ pub(super) fn combine_velocity<S: Real>(
 pub(super) fn combine_velocity_compensated<S: Real>(
     (out, out_error): (&mut [S], &mut [S]),
     (v, e): (&[S], &[S]),
-    h: S,
-    terms: &[Term<S>],
-    a: &[S],
+    Weighted { h: &h, terms, a }: Weighted<'_, S>,
 ) {
     let n = out.len();
     let (v, e, out_error) = (&v[..n], &e[..n], &mut out_error[..n]);
