@@ -16,9 +16,10 @@ use std::sync::{Condvar, Mutex, MutexGuard, PoisonError};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant};
 
-/// How long an idle worker, or a caller that waits, spins before it sleeps. Waking a sleeping thread
-/// takes some 10 to 50 µs, which a force evaluation of 300 µs would feel.
-const SPIN: Duration = Duration::from_micros(50);
+/// How long an idle worker, or a caller that waits, spins before it sleeps. Waking a sleeping thread takes 10 to
+/// 100 µs, which every force evaluation of some thousand bodies would feel; between two of them the calling
+/// thread is alone for a tenth of this.
+const SPIN: Duration = Duration::from_micros(500);
 
 /// What a worker is to do: one run's work and who waits for it. Lives on the caller's stack.
 struct Job<'a> {

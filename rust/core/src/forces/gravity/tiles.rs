@@ -19,7 +19,7 @@ use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers
 use crate::numerics::real::Real;
 use crate::parallel::{Ticker, for_chunks};
 use crate::tiered;
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError, RwLock};
 
 /// Bodies per shard, and the most shards: enough for balance on many threads, few enough that adding
 /// them up stays below one percent.
@@ -31,21 +31,24 @@ const PASSIVE_ROWS: usize = 64;
 /// step need not be able to go back.
 const LONG_ROWS: usize = 128;
 
-/// Rows that one thread works on, and the accelerations that come of them, with the sign changed (which saves an
-/// operation for each pair).
+/// Pieces in which threads add up what the shards leave.
+const PIECES: usize = 8;
+
+/// Rows that one thread works on, and the accelerations that come of them.
 #[derive(Debug)]
 struct Shard {
     start: usize,
     end: usize,
-    /// Component after component, from row `start` to the last that can be reached: the last of the massive bodies
-    /// if the rows are theirs, else the last of these rows.
-    pull: Vec<Lanes>,
+    /// Where the rows end that they act on: behind the massive bodies if the rows are theirs, else where they end.
+    reach: usize,
+    /// With the sign changed, which saves an operation for each pair; component after component, the rows from
+    /// `start` to `reach`.
+    pull: RwLock<Vec<Lanes>>,
 }
 
 impl Shard {
-    /// The rows `start..end`, which act on those up to `reach`.
-    fn new(shape: Shape, start: usize, end: usize, reach: usize) -> Mutex<Self> {
-        Mutex::new(Self { start, end, pull: vec![Lanes::zero(); shape.components * (reach - start)] })
+    fn new(shape: Shape, start: usize, end: usize, reach: usize) -> Self {
+        Self { start, end, reach, pull: RwLock::new(vec![Lanes::zero(); shape.components * (reach - start)]) }
     }
 }
 
@@ -58,7 +61,7 @@ pub struct Tiles {
     bodies: usize,
     softening2: f64,
     /// Those of the massive bodies, then those of the massless ones.
-    shards: Vec<Mutex<Shard>>,
+    shards: Vec<Shard>,
     threads: usize,
 }
 
@@ -67,18 +70,10 @@ impl Tiles {
     pub fn new(shape: Shape, strength: Vec<Lanes>, bodies: usize, softening: f64, threads: usize) -> Self {
         let active_rows = strength.len();
         let count = (bodies / BODIES_PER_SHARD).clamp(1, SHARDS_MAX);
-        let total = active_rows * (active_rows + 1) / 2;
-        let mut shards = Vec::new();
-        let (mut start, mut tiles) = (0, 0);
-        for shard in 1..=count {
-            let mut end = start;
-            while end < active_rows && (tiles < total * shard / count || shard == count) {
-                tiles += active_rows - end;
-                end += 1;
-            }
-            shards.push(Shard::new(shape, start, end, active_rows));
-            start = end;
-        }
+        let bound = |shard: usize| active_rows * shard / count;
+        // Of equal rows, not of equal work, which falls from the first to the last: so threads end at about one time.
+        let mut shards: Vec<Shard> =
+            (0..count).map(|shard| Shard::new(shape, bound(shard), bound(shard + 1), active_rows)).collect();
         for start in (active_rows..shape.rows).step_by(PASSIVE_ROWS) {
             let end = (start + PASSIVE_ROWS).min(shape.rows);
             shards.push(Shard::new(shape, start, end, end));
@@ -276,6 +271,28 @@ tiered! {
     fn subtract_tier[][](into: &mut [Lanes], from: &[Lanes]) = subtract;
 }
 
+impl Tiles {
+    /// Adds up what the shards leave in a piece of the accelerations that begins at its element `from`.
+    fn add_up(&self, from: usize, piece: &mut [Lanes], first: bool) {
+        if first {
+            piece.fill(Lanes::zero());
+        }
+        let (rows, to) = (self.shape.rows, from + piece.len());
+        for shard in &self.shards {
+            let pull = shard.pull.read().unwrap_or_else(PoisonError::into_inner);
+            let reached = shard.reach - shard.start;
+            for component in 0..self.shape.components {
+                let start = component * rows + shard.start;
+                let (low, high) = (from.max(start), to.min(start + reached));
+                if low < high {
+                    let pull = &pull[component * reached..][low - start..high - start];
+                    subtract_tier(&mut piece[low - from..high - from], pull);
+                }
+            }
+        }
+    }
+}
+
 impl Force<Lanes> for Tiles {
     fn apply(
         &mut self,
@@ -285,35 +302,37 @@ impl Force<Lanes> for Tiles {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let (this, q) = (&*self, phase.q);
-        let Shape { rows, components } = this.shape;
         let stops = this.stops_midway();
         let tick = |ticker: &mut Ticker<'_>| if stops { ticker.tick() } else { Ok(()) };
         let _: Vec<()> = for_chunks(this.threads, this.shards.len(), ticker, |index, ticker| {
-            // Each shard is locked once per evaluation, by the one thread that works on it.
-            let mut shard = this.shards[index].lock().unwrap_or_else(PoisonError::into_inner);
-            let Shard { start, end, ref mut pull } = *shard;
+            let Shard { start, end, ref pull, .. } = this.shards[index];
+            // Locked once per evaluation, by the one thread that works on it.
+            let mut pull = pull.write().unwrap_or_else(PoisonError::into_inner);
             if start >= this.active_rows {
-                passive_rows_tier(this, q, start, end, pull);
+                passive_rows_tier(this, q, start, end, &mut pull);
                 return tick(ticker);
             }
             pull.fill(Lanes::zero());
             for row in start..end {
-                block_row_tier(this, q, start, pull, row);
+                block_row_tier(this, q, start, &mut pull, row);
                 tick(ticker)?;
             }
             Ok(())
         })?;
-        if first {
-            a.fill(Lanes::zero());
+        let threads = this.threads.min(this.shards.len());
+        if threads == 1 {
+            this.add_up(0, a, first);
+            return Ok(());
         }
-        for shard in &mut self.shards {
-            let Shard { start, pull, .. } = shard.get_mut().unwrap_or_else(PoisonError::into_inner);
-            let reached = pull.len() / components;
-            for c in 0..components {
-                let into = &mut a[c * rows + *start..][..reached];
-                subtract_tier(into, &pull[c * reached..][..reached]);
-            }
-        }
+        let size = a.len().div_ceil(PIECES);
+        let mut rest = a.chunks_mut(size);
+        let pieces: [Mutex<&mut [Lanes]>; PIECES] =
+            core::array::from_fn(|_| Mutex::new(rest.next().unwrap_or_default()));
+        let _: Vec<()> = for_chunks(threads, PIECES, ticker, |index, _| {
+            let mut piece = pieces[index].lock().unwrap_or_else(PoisonError::into_inner);
+            this.add_up(index * size, &mut piece, first);
+            Ok(())
+        })?;
         Ok(())
     }
 
