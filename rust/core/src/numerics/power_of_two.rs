@@ -1,6 +1,7 @@
 //! Moves by powers of two: exact wherever the result is normal, rounded once where it is subnormal.
 
 /// `2^exponent`, saturating at the ends of the normal range.
+#[inline]
 pub fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((exponent.clamp(-1022, 1023) + 1023) as u64) << 52)
 }
@@ -15,10 +16,14 @@ pub fn exponent(value: f64) -> i32 {
 }
 
 /// `value · 2^exponent`, for every exponent: no overflow on the way, and at most one rounding.
+#[inline]
 pub fn scale(value: f64, exponent: i32) -> f64 {
-    if (-1022..=1023).contains(&exponent) {
-        return value * power_of_two(exponent);
-    }
+    if (-1022..=1023).contains(&exponent) { value * power_of_two(exponent) } else { scale_far(value, exponent) }
+}
+
+/// As [`scale`], by what is no number itself.
+#[cold]
+fn scale_far(value: f64, exponent: i32) -> f64 {
     // From the least number to the greatest is 2^2098. In halves: were the first of them to leave the
     // normal range, the second would leave that of all numbers.
     let exponent = exponent.clamp(-2200, 2200);

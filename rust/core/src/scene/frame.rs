@@ -117,8 +117,9 @@ fn far_mean(mass: &[f64], points: &[[f64; 3]]) -> [f64; 3] {
     let weight = |i: usize| if total > 0.0 { mass[i] / total } else { 1.0 / count };
     let mut mean = [0.0; 3];
     for (i, point) in points.iter().enumerate() {
+        let weight = weight(i);
         for c in 0..3 {
-            mean[c] += weight(i) * point[c];
+            mean[c] += weight * point[c];
         }
     }
     let mut extent = 0.0_f64;
