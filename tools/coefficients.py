@@ -19,6 +19,7 @@ from mpmath import cbrt, mp, mpf
 
 import published_coefficients as published
 from dop853 import dop853
+from multistep import stormer
 from polish import Row, composition_residuals, polish
 
 mp.dps = 80
@@ -73,6 +74,7 @@ METHODS = {
     "leapfrog": leapfrog,
     "yoshida4": yoshida4,
     "kahan_li8": kahan_li8,
+    "stormer13": lambda: stormer(13),
 }
 
 

@@ -96,7 +96,7 @@ def interrupted(delay: float, run: Callable[[], object]) -> vv.Trajectory:
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="no POSIX signals on this system")
-@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4"])
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4", "stormer13"])
 @pytest.mark.parametrize("delay", [0.1, 0.13])
 def test_an_interrupted_run_ends_on_a_whole_step(method: str, delay: float) -> None:
     """A large scene is stopped in the middle of a force evaluation; its last state is still one of the run's."""

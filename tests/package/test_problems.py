@@ -34,6 +34,15 @@ def test_pythagorean_up_to_30() -> None:
     assert problem.scene.invariants().energy == pytest.approx(-769 / 60, rel=1e-15)
 
 
+def test_the_outer_solar_system_at_one_evaluation_per_step() -> None:
+    problem = vv.problems.outer_solar_system("applegate")
+    times = np.linspace(0.0, problem.t_end, 101)
+    out = problem.scene.run(t=times, method="stormer13", dt=20.0, record=("position", "energy"))
+    # Measured 2.4e-11 AU and 3.1e-15: round-off.
+    assert problem.error(out) < 1e-10
+    assert np.abs(out.energy / out.energy[0] - 1.0).max() < 1e-14
+
+
 def test_energies_of_the_literature() -> None:
     energies = {
         "hairer_lubich_wanner": -3.21545318320816356759e-8,

@@ -51,7 +51,7 @@ fn figure_eights(copies: usize) -> Scene {
     let mut position = Vec::new();
     for _ in 0..copies {
         for body in [x, scaled(x, -1.0), [0.0; 3]] {
-            position.push([body[0] + 1e-4 * noise(&mut seed), body[1] + 1e-4 * noise(&mut seed), 0.0]);
+            position.push(body.map(|x| x + 1e-4 * noise(&mut seed)));
         }
     }
     Scene {
@@ -115,7 +115,7 @@ fn main() {
             format!("{:.3} ns per ordered pair", per_step / (particles * (particles - 1)) as f64)
         });
     }
-    for method in ["leapfrog", "yoshida4", "kahan_li8", "rk4"] {
+    for method in ["leapfrog", "yoshida4", "kahan_li8", "rk4", "stormer13"] {
         report(&format!("step/{method}/6"), &|| {
             let scene = cluster(6, true);
             let steps = 100_000.0;
@@ -133,7 +133,7 @@ fn main() {
             format!("{:.3} x", some / none)
         });
     }
-    for (method, dt) in [("kahan_li8", Some(0.0625)), ("dop853", None)] {
+    for (method, dt) in [("kahan_li8", Some(0.0625)), ("stormer13", Some(0.0215)), ("dop853", None)] {
         report(&format!("ensemble/figure_eight/{method}"), &|| {
             let copies = 512;
             let all =

@@ -1,11 +1,17 @@
 //! What the package offers, one line each: methods and potentials.
 
-use crate::integrators::{Method, dop853, kahan_li8, leapfrog, rk4, yoshida4};
+use crate::integrators::{Method, dop853, kahan_li8, leapfrog, rk4, stormer13, yoshida4};
 use crate::potentials::{Declaration, coulomb, lennard_jones, yukawa};
 
 /// Every integration method, in the order of the documentation.
-pub static METHODS: &[&Method] =
-    &[&rk4::METHOD, &dop853::METHOD, &leapfrog::METHOD, &yoshida4::METHOD, &kahan_li8::METHOD];
+pub static METHODS: &[&Method] = &[
+    &rk4::METHOD,
+    &dop853::METHOD,
+    &leapfrog::METHOD,
+    &yoshida4::METHOD,
+    &kahan_li8::METHOD,
+    &stormer13::METHOD,
+];
 
 /// The method of a name.
 pub fn method(name: &str) -> Option<&'static Method> {

@@ -20,7 +20,7 @@ pub static METHOD: Method = Method {
     dense_order: 7,
     reference: "Hairer, Nørsett & Wanner, Solving ODE I, 2nd ed. (1993), II.5, II.6, II.10",
     scheme: Scheme::Embedded(Embedded {
-        tableau: Tableau { a: A, b: B, c: C },
+        tableau: TABLEAU,
         error: ERROR,
         second_error: Some(SECOND_ERROR),
         error_exponent: 8,
@@ -29,6 +29,9 @@ pub static METHOD: Method = Method {
         dense: DENSE,
     }),
 };
+
+/// The method itself; it also starts multistep methods.
+pub const TABLEAU: Tableau = Tableau { a: A, b: B, c: C };
 
 // <coefficients> written by tools/coefficients.py; do not edit
 #[rustfmt::skip]

@@ -1,8 +1,10 @@
 //! Runs with a fixed step: nodes at `t0 + n·h`, outputs that never touch them.
 //!
 //! An output on a node is the node's state, to the bit; one between nodes comes from a sub-step on a
-//! copy, of the method's own order. So does an end that is not a node.
+//! copy, of the method's own order (a multistep method's is of the kind that starts it). So does an end that is
+//! not a node.
 
+use super::multistep::MultistepStep;
 use super::runge_kutta::RungeKuttaStep;
 use super::splitting::SplittingStep;
 use super::state::State;
@@ -20,6 +22,8 @@ pub enum FixedStep<S> {
     Splitting(SplittingStep<S>),
     /// Explicit Runge–Kutta.
     RungeKutta(RungeKuttaStep<S>),
+    /// Störmer's multistep method.
+    Multistep(Box<MultistepStep<S>>),
 }
 
 impl<S: Element> FixedStep<S> {
@@ -28,10 +32,13 @@ impl<S: Element> FixedStep<S> {
     /// # Errors
     /// A method that chooses its own steps.
     pub fn new(method: &Method, h: f64, state: &State<S>) -> Result<Self> {
-        let h = S::splat(h);
+        let step = S::splat(h);
         match &method.scheme {
-            Scheme::Splitting(table) => Ok(Self::Splitting(SplittingStep::new(table, h, state.shape.len()))),
-            Scheme::RungeKutta(tableau) => Ok(Self::RungeKutta(RungeKuttaStep::new(tableau, h, state))),
+            Scheme::Splitting(table) => {
+                Ok(Self::Splitting(SplittingStep::new(table, step, state.shape.len())))
+            }
+            Scheme::RungeKutta(tableau) => Ok(Self::RungeKutta(RungeKuttaStep::new(tableau, step, state))),
+            Scheme::Multistep(table) => Ok(Self::Multistep(Box::new(MultistepStep::new(table, h, state)))),
             Scheme::Embedded(_) => {
                 Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)))
             }
@@ -45,6 +52,7 @@ impl<S: Element> FixedStep<S> {
                 step.follow(table, S::splat(h), other);
             }
             (Self::RungeKutta(step), ..) => step.set_step(S::splat(h)),
+            (Self::Multistep(step), Scheme::Multistep(table), _) => step.follow(table, S::splat(h)),
             _ => {}
         }
     }
@@ -62,6 +70,15 @@ impl<S: Element> FixedStep<S> {
         match self {
             Self::Splitting(step) => step.step(state, dynamics, ticker),
             Self::RungeKutta(step) => step.step(state, dynamics, ticker),
+            Self::Multistep(step) => step.step(state, dynamics, ticker),
+        }
+    }
+
+    /// Completes a state that is to be read: the velocities of a multistep method stay behind otherwise.
+    #[inline]
+    pub fn complete(&mut self, state: &mut State<S>) {
+        if let Self::Multistep(step) = self {
+            step.complete(state);
         }
     }
 }
@@ -106,7 +123,7 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
 /// Returns the number of steps taken; it stops short at `max_steps`. `record` may refuse a state, which ends the run.
 ///
 /// # Errors
-/// What `record` returns, or [`Error::Interrupted`].
+/// What `record` returns, or [`Error::Interrupted`]; a force that looks at velocities, with a multistep method.
 pub fn run<S: Element>(
     method: &Method,
     h: f64,
@@ -119,19 +136,25 @@ pub fn run<S: Element>(
 ) -> (u64, Result<()>) {
     let mut taken = 0;
     let outcome = (|| {
+        if matches!(method.scheme, Scheme::Multistep(_)) && dynamics.needs_velocity() {
+            let message = format!("{} knows no velocities, which a force of this scene needs", method.name);
+            return Err(Error::invalid("method", message));
+        }
         let mut stepper = FixedStep::new(method, h, state)?;
-        let (mut between, mut shadow) = (state.clone(), stepper.clone());
+        let mut shadow = None;
         let mut before = dynamics.stops_midway().then(|| state.clone());
         for (index, place) in places.enumerate() {
             while taken < place.node {
                 if taken == max_steps {
+                    stepper.complete(state);
                     return Ok(());
                 }
                 if let Some(before) = &mut before {
+                    stepper.complete(state);
                     before.copy_from(state);
                 }
                 if let Err(error) = stepper.step(state, dynamics, ticker) {
-                    // Kicks and drifts change the state in place: half a step is taken back.
+                    // Some methods change the state in place: half a step is taken back.
                     if let Some(before) = &before {
                         state.copy_from(before);
                     }
@@ -141,15 +164,20 @@ pub fn run<S: Element>(
                 if taken % PROGRESS_STEPS == 0 {
                     ticker.advance(PROGRESS_STEPS);
                 }
-                ticker.tick()?;
+                if let Err(error) = ticker.tick() {
+                    stepper.complete(state);
+                    return Err(error);
+                }
             }
-            let reached = match place.past {
-                None => &*state,
+            stepper.complete(state);
+            let reached: &State<S> = match place.past {
+                None => state,
                 Some(past) => {
+                    let (between, shadow) = shadow.get_or_insert_with(|| (state.clone(), stepper.clone()));
                     between.copy_from(state);
                     shadow.follow(method, past, &stepper);
-                    shadow.step(&mut between, dynamics, ticker)?;
-                    &between
+                    shadow.step(between, dynamics, ticker)?;
+                    &*between
                 }
             };
             record(index, reached)?;

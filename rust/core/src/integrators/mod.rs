@@ -9,6 +9,7 @@ pub mod dop853;
 pub mod fixed;
 pub mod kahan_li8;
 pub mod leapfrog;
+pub mod multistep;
 pub mod nystrom;
 #[cfg(test)]
 mod order_conditions;
@@ -17,6 +18,7 @@ pub mod runge_kutta;
 pub mod splitting;
 pub mod state;
 pub mod step_control;
+pub mod stormer13;
 pub mod yoshida4;
 
 use crate::numerics::double_double::DoubleDouble;
@@ -53,6 +55,8 @@ pub enum Scheme {
     RungeKutta(Tableau),
     /// Explicit Runge–Kutta with an error estimate and a continuous extension.
     Embedded(Embedded),
+    /// Störmer's multistep method, with what starts it.
+    Multistep(Multistep),
 }
 
 /// `kick[0] drift[0] kick[1] drift[1] … drift[s-1] kick[s]`, coefficients in units of the step.
@@ -95,6 +99,18 @@ pub struct Embedded {
     /// `dense[i]` holds the weight of stage `i` at `y(t + θh) = y + h Σ w_i(θ) k_i` in the nested basis
     /// `w = θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`, which loses no digits at either end.
     pub dense: &'static [&'static [DoubleDouble]],
+}
+
+/// `q[n+1] - 2 q[n] + q[n-1] = h² (a[n] + Σ second_differences[j] ∇²a[n-j])`, with what it takes to start it and to
+/// read it. For forces that depend on positions alone.
+#[derive(Debug)]
+pub struct Multistep {
+    /// Weights of the second differences of the accelerations, from the latest on.
+    pub second_differences: &'static [DoubleDouble],
+    /// `v[n] = (q[n] - q[n-1])/h + h (velocity[0] a[n] + velocity[1] ∇a[n] + Σ velocity[2+j] ∇²a[n-j])`.
+    pub velocity: &'static [DoubleDouble],
+    /// The one-step method of the first steps, and of the steps to times between nodes.
+    pub start: &'static Tableau,
 }
 
 /// A coefficient, as the generated tables write it.

@@ -3,6 +3,7 @@
 //! The one idea: the checks run over [`METHODS`] and know nothing of any method but what it declares. That
 //! they are sharp is shown by changing every coefficient in its twelfth digit: each change must be noticed.
 
+mod multistep;
 mod runge_kutta;
 mod splitting;
 mod trees;
@@ -34,6 +35,8 @@ enum Kind {
     Dense,
     /// The extension joins the nodes with its derivative.
     Ends,
+    /// The order of the velocity at a node.
+    Velocity,
 }
 
 /// A family of conditions, and by how much the worst of them is missed.
@@ -63,10 +66,11 @@ impl Family {
     }
 }
 
-/// A table of either kind, with the orders it is held to.
+/// A table of any kind, with the orders it is held to.
 enum Subject {
     Splitting(splitting::Table, usize),
     RungeKutta(runge_kutta::Table, Orders),
+    Multistep(multistep::Table, usize),
 }
 
 impl Subject {
@@ -82,6 +86,7 @@ impl Subject {
                 let estimates = table.estimate_orders(trees);
                 Self::RungeKutta(table, Orders { step, dense, estimates })
             }
+            Scheme::Multistep(table) => Self::Multistep(table.into(), step),
         }
     }
 
@@ -89,6 +94,7 @@ impl Subject {
         match self {
             Self::Splitting(table, order) => table.misses(*order),
             Self::RungeKutta(table, orders) => table.misses(orders, trees),
+            Self::Multistep(table, order) => table.misses(*order),
         }
     }
 
@@ -111,13 +117,22 @@ impl Subject {
                 let orders = Orders { estimates: orders.estimates.clone(), ..*orders };
                 Some(Self::RungeKutta(table, orders))
             }
+            Self::Multistep(table, order) => {
+                let mut table = table.clone();
+                table.coefficients().into_iter().nth(index).map(change)?;
+                Some(Self::Multistep(table, *order))
+            }
         }
     }
 }
 
-/// All trees that a method's conditions need: one order more than it has.
+/// All trees that a method's conditions need: one order more than it has. Those of a multistep method are on powers
+/// of the time.
 fn trees_of(method: &Method) -> Vec<Tree> {
-    trees_to_order(method.order as usize + 1)
+    match method.scheme {
+        Scheme::Multistep(_) => vec![],
+        _ => trees_to_order(method.order as usize + 1),
+    }
 }
 
 #[test]
@@ -143,6 +158,7 @@ fn no_table_satisfies_the_conditions_of_the_next_order() {
                 let next = Orders { step: orders.step + 1, dense: orders.dense + 1, estimates };
                 table.misses(&next, &trees)
             }
+            Subject::Multistep(table, order) => table.misses(order + 1),
         };
         for family in families.iter().filter(|family| !matches!(family.kind, Kind::Nodes | Kind::Ends)) {
             assert!(family.share > FAILS, "{}: {family:?}", method.name);
@@ -194,6 +210,10 @@ fn a_method_is_what_it_declares() {
             Subject::RungeKutta(table, _) => {
                 assert!(!method.symplectic && !method.reversible, "{name}: no explicit method is");
                 table.stages()
+            }
+            Subject::Multistep(..) => {
+                assert!(!method.symplectic && !method.reversible, "{name}: its start is neither");
+                1
             }
         };
         assert_eq!(stages, method.stages as usize, "{name}");

@@ -137,6 +137,11 @@ impl<S: Element> RungeKuttaStep<S> {
         Self { stages: Stages::new(tableau, 0, state.shape.len()), next: state.clone(), h }
     }
 
+    /// The acceleration at the state before the last step.
+    pub fn first_acceleration(&self) -> &[S] {
+        self.stages.acceleration(0)
+    }
+
     /// Becomes the method with step `h`.
     pub fn set_step(&mut self, h: S) {
         self.h = h;

@@ -9,6 +9,7 @@
 
 mod batch;
 mod loops;
+mod multistep;
 
 use super::double_double::DoubleDouble;
 use super::inverse_cube::InverseCube;
@@ -45,6 +46,22 @@ pub struct Weighted<'a, S> {
     pub terms: &'a [Term<S>],
     /// The accelerations.
     pub a: &'a [S],
+}
+
+/// The accelerations of nodes gone by, as their backward differences; blocks like that of an acceleration.
+///
+/// Differences because they are small: `Σ weight·∇²a` rounds what is some thousandths of `a`, where weights of the
+/// accelerations themselves, up to a hundred, would round hundredfold. And the first of them are exact.
+#[derive(Debug)]
+pub struct Differences<'a, S> {
+    /// The accelerations at the node before.
+    pub last: &'a [S],
+    /// Their first differences there; after a step, here.
+    pub first: &'a mut [S],
+    /// Second differences, a block for each node, in a ring.
+    pub second: &'a mut [S],
+    /// The place of the present node in the ring.
+    pub newest: usize,
 }
 
 /// A scalar that an integrator's state can be made of.
@@ -88,6 +105,26 @@ pub trait Element: InverseCube {
         terms: &[PairTerm<Self>],
         k: &[Self],
     ) -> [Self; 2];
+    /// `d += h²·a + Σ weight·∇²a`, the oldest first, then `q += d`, both compensated: a step of a multistep method.
+    /// The present accelerations join the past.
+    fn multistep(
+        q: (&mut [Self], &mut [Self]),
+        d: (&mut [Self], &mut [Self]),
+        past: Differences<'_, Self>,
+        a: &[Self],
+        h2: &Self,
+        weights: &[Self],
+    );
+    /// `v = d/h + h (weight·a + weight·∇a + weight·∇²a + Σ weight·∇²a)`, in the sum the oldest first: the
+    /// velocities at a node of a multistep method.
+    fn backward_velocity(
+        v: &mut [Self],
+        d: &[Self],
+        past: Differences<'_, Self>,
+        a: &[Self],
+        h: &Self,
+        weights: &[Self],
+    );
     /// `if mask { from } else { into }`, element by element.
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
 }
@@ -163,6 +200,26 @@ macro_rules! plain_element {
                 k: &[Self],
             ) -> [Self; 2] {
                 loops::largest_errors(shape, y, reference, (*tolerance.0, *tolerance.1), *h, terms, k)
+            }
+            fn multistep(
+                q: (&mut [Self], &mut [Self]),
+                d: (&mut [Self], &mut [Self]),
+                past: Differences<'_, Self>,
+                a: &[Self],
+                h2: &Self,
+                weights: &[Self],
+            ) {
+                multistep::step(q, d, past, a, *h2, weights);
+            }
+            fn backward_velocity(
+                v: &mut [Self],
+                d: &[Self],
+                past: Differences<'_, Self>,
+                a: &[Self],
+                h: &Self,
+                weights: &[Self],
+            ) {
+                multistep::backward_velocity(v, d, past, a, *h, weights);
             }
             fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
                 loops::replace(into, from, mask);

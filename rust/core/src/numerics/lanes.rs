@@ -56,6 +56,8 @@ impl Bits {
 
 /// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
 pub trait Vector8: Real<Mask = Bits> {
+    /// How many of them a processor's registers hold.
+    const REGISTERS: usize;
     /// A slice of lanes seen as this tier's.
     #[inline(always)]
     fn view(lanes: &[Lanes]) -> &[Self] {
@@ -246,6 +248,7 @@ impl Real for Lanes {
 }
 
 impl Vector8 for Lanes {
+    const REGISTERS: usize = 4;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         lanes

@@ -18,7 +18,11 @@ pub fn exponent(value: f64) -> i32 {
 /// `value · 2^exponent`, for every exponent: no overflow on the way, and at most one rounding.
 #[inline]
 pub fn scale(value: f64, exponent: i32) -> f64 {
-    if (-1022..=1023).contains(&exponent) { value * power_of_two(exponent) } else { scale_far(value, exponent) }
+    if (-1022..=1023).contains(&exponent) {
+        value * power_of_two(exponent)
+    } else {
+        scale_far(value, exponent)
+    }
 }
 
 /// As [`scale`], by what is no number itself.

@@ -119,6 +119,13 @@ impl<S: Element> Stepper<S> {
             Self::Tableau(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
         }
     }
+
+    /// To be called before the velocities of the state are looked at.
+    pub fn complete(&mut self, state: &mut State<S>) {
+        if let Self::Fixed(stepper) = self {
+            stepper.complete(state);
+        }
+    }
 }
 
 /// Each lane is a trajectory of its own.
@@ -158,6 +165,7 @@ pub fn advance<S: Element>(
     for _ in 0..steps {
         stepper.step(state, dynamics, &mut ticker);
     }
+    stepper.complete(state);
 }
 
 /// Largest difference of any coordinate or velocity, compensations included.

@@ -13,6 +13,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -34,76 +35,107 @@ impl<S: Element> FewBodies<S> {
     }
 }
 
-/// `(x_j - x_i)·r⁻³` of the pairs `j = i + distance` of the first `M` bodies.
+/// `(x_j - x_i)·r⁻³` of the pairs `j = i + distance` in each system of `N` bodies: of all bodies of the systems if
+/// `P` is their number, of the first half of each if it is half of that.
 #[inline(always)]
-fn pulls<S: InverseCube, const M: usize, const PLANAR: bool, const SOFT: bool>(
+fn pulls<S: InverseCube, const N: usize, const P: usize, const PLANAR: bool, const SOFT: bool>(
     position: &[[S; 3]],
     distance: usize,
     softening2: S,
-) -> [[S; 3]; M] {
+) -> [[S; 3]; P] {
     let components = if PLANAR { 2 } else { 3 };
-    let mut pull = [[S::zero(); 3]; M];
-    let mut r2 = [S::zero(); M];
-    for i in 0..M {
-        let j = (i + distance) % position.len();
+    let pairs = P * N / position.len();
+    let mut pull = [[S::zero(); 3]; P];
+    let mut r2 = [S::zero(); P];
+    for p in 0..P {
+        let (system, i) = (p / pairs * N, p % pairs);
+        let j = (i + distance) % N;
         for c in 0..components {
-            pull[i][c] = position[j][c] - position[i][c];
+            pull[p][c] = position[system + j][c] - position[system + i][c];
         }
-        r2[i] = squared_distance::<S, PLANAR, SOFT>(pull[i], softening2);
+        r2[p] = squared_distance::<S, PLANAR, SOFT>(pull[p], softening2);
     }
     let w = S::inverse_cubes(r2);
-    for i in 0..M {
+    for p in 0..P {
         for c in 0..components {
-            pull[i][c] = pull[i][c] * w[i];
+            pull[p][c] = pull[p][c] * w[p];
         }
     }
     pull
 }
 
-/// `N` massive bodies; known when compiled, so that everything about them stays in registers. `HALF` is `N/2`.
-#[inline(always)]
-fn kernel<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool, const SOFT: bool>(
+/// What is the same for all systems of a state.
+struct Systems<'a, S> {
     shape: Shape,
-    systems: usize,
-    strength: &[S],
+    count: usize,
+    strength: &'a [S],
     softening2: f64,
-    q: &[S],
+    q: &'a [S],
+}
+
+/// `N` massive bodies; known when compiled, so that everything about them stays in registers. `HALF` is `N/2`. Two
+/// systems of up to three go together where registers are `MANY`, their pairs waiting side by side; `TWICE` is `2·N`.
+#[inline(always)]
+fn kernel<
+    S: InverseCube,
+    const N: usize,
+    const HALF: usize,
+    const TWICE: usize,
+    const MANY: bool,
+    const PLANAR: bool,
+    const SOFT: bool,
+>(
+    systems: &Systems<'_, S>,
     a: &mut [S],
     first: bool,
 ) {
-    let softening2 = S::splat(softening2);
-    for system in 0..systems {
-        let strength = &strength[system * N..][..N];
-        one_system::<S, N, HALF, PLANAR, SOFT>(shape, system, systems, strength, softening2, q, a, first);
+    let mut system = 0;
+    while MANY && N <= 3 && system + 2 <= systems.count {
+        some_systems::<S, N, TWICE, N, PLANAR, SOFT>(systems, system, a, first);
+        system += 2;
+    }
+    for system in system..systems.count {
+        some_systems::<S, N, N, HALF, PLANAR, SOFT>(systems, system, a, first);
     }
 }
 
-/// As [`kernel`], one of the systems.
+/// As [`kernel`], for the next systems: as many as have `ALL` massive bodies together, half of them `HALF`.
 #[inline(always)]
-fn one_system<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: bool, const SOFT: bool>(
-    shape: Shape,
+fn some_systems<
+    S: InverseCube,
+    const N: usize,
+    const ALL: usize,
+    const HALF: usize,
+    const PLANAR: bool,
+    const SOFT: bool,
+>(
+    systems: &Systems<'_, S>,
     system: usize,
-    systems: usize,
-    strength: &[S],
-    softening2: S,
-    q: &[S],
     a: &mut [S],
     first: bool,
 ) {
-    let (rows, bodies) = (shape.rows, shape.rows / systems);
-    let start = system * bodies;
+    let (rows, bodies) = (systems.shape.rows, systems.shape.rows / systems.count);
+    let (q, softening2) = (systems.q, S::splat(systems.softening2));
+    let strength = &systems.strength[system * N..][..ALL];
     let components = if PLANAR { 2 } else { 3 };
-    let mut position = [[S::zero(); 3]; N];
-    for i in 0..N {
+    // Where the body of that number is: the first of each system are massive.
+    macro_rules! row {
+        ($number:expr) => {
+            (system + $number / N) * bodies + $number % N
+        };
+    }
+    let mut position = [[S::zero(); 3]; ALL];
+    for i in 0..ALL {
         for c in 0..components {
-            position[i][c] = q[c * rows + start + i];
+            position[i][c] = q[c * rows + row!(i)];
         }
     }
-    let mut sum = [[S::zero(); 3]; N];
+    let mut sum = [[S::zero(); 3]; ALL];
     for distance in 1..=(N - 1) / 2 {
-        let pull = pulls::<S, N, PLANAR, SOFT>(&position, distance, softening2);
-        for i in 0..N {
-            let (ahead, behind) = ((i + distance) % N, (i + N - distance) % N);
+        let pull = pulls::<S, N, ALL, PLANAR, SOFT>(&position, distance, softening2);
+        for i in 0..ALL {
+            let (own, place) = (i / N * N, i % N);
+            let (ahead, behind) = (own + (place + distance) % N, own + (place + N - distance) % N);
             for c in 0..components {
                 sum[i][c] = strength[ahead].multiply_add(pull[i][c], sum[i][c]);
                 sum[i][c] = strength[behind].multiply_subtract_from(pull[behind][c], sum[i][c]);
@@ -112,46 +144,48 @@ fn one_system<S: InverseCube, const N: usize, const HALF: usize, const PLANAR: b
     }
     if N.is_multiple_of(2) {
         // Ahead and behind are the same body.
-        let pull = pulls::<S, HALF, PLANAR, SOFT>(&position, HALF, softening2);
-        for i in 0..HALF {
-            let opposite = i + HALF;
+        let pull = pulls::<S, N, HALF, PLANAR, SOFT>(&position, N / 2, softening2);
+        for p in 0..HALF {
+            let i = p / (N / 2) * N + p % (N / 2);
+            let opposite = i + N / 2;
             for c in 0..components {
-                sum[i][c] = strength[opposite].multiply_add(pull[i][c], sum[i][c]);
-                sum[opposite][c] = strength[i].multiply_subtract_from(pull[i][c], sum[opposite][c]);
+                sum[i][c] = strength[opposite].multiply_add(pull[p][c], sum[i][c]);
+                sum[opposite][c] = strength[i].multiply_subtract_from(pull[p][c], sum[opposite][c]);
             }
         }
     }
-    for i in 0..bodies {
-        let term = if i < N {
-            sum[i]
-        } else {
+    for i in 0..ALL {
+        add::<S>(a, row!(i), rows, components, sum[i], first);
+    }
+    for own in (0..ALL).step_by(N) {
+        for massless in N..bodies {
+            let row = row!(own) + massless;
             let mut place = [S::zero(); 3];
             for c in 0..components {
-                place[c] = q[c * rows + start + i];
+                place[c] = q[c * rows + row];
             }
-            attraction::<S, PLANAR, SOFT>(place, &position, strength, softening2)
-        };
-        for c in 0..components {
-            let a = &mut a[c * rows + start + i];
-            *a = if first { term[c] } else { *a + term[c] };
+            let (places, strength) = (&position[own..own + N], &strength[own..own + N]);
+            let term = attraction::<S, PLANAR, SOFT>(place, places, strength, softening2);
+            add::<S>(a, row, rows, components, term, first);
         }
+    }
+}
+
+/// Writes an acceleration, or adds it.
+#[inline(always)]
+fn add<S: Real>(a: &mut [S], row: usize, rows: usize, components: usize, term: [S; 3], first: bool) {
+    for c in 0..components {
+        let a = &mut a[c * rows + row];
+        *a = if first { term[c] } else { *a + term[c] };
     }
 }
 
 /// The kernel for so many massive bodies, in the plane or in space, softened or not.
 #[inline(always)]
-fn select_kernel<S: InverseCube>(
-    shape: Shape,
-    systems: usize,
-    strength: &[S],
-    softening2: f64,
-    q: &[S],
-    a: &mut [S],
-    first: bool,
-) {
+fn select_kernel<S: InverseCube, const MANY: bool>(systems: &Systems<'_, S>, a: &mut [S], first: bool) {
     macro_rules! select {
         ($($bodies:literal)+) => {
-            match (strength.len() / systems, shape.components == 2, softening2 > 0.0) {
+            match (systems.strength.len() / systems.count, systems.shape.components == 2, systems.softening2 > 0.0) {
                 $(
                     ($bodies, false, false) => select!($bodies, false, false),
                     ($bodies, false, true) => select!($bodies, false, true),
@@ -163,7 +197,9 @@ fn select_kernel<S: InverseCube>(
             }
         };
         ($bodies:literal, $planar:literal, $soft:literal) => {
-            kernel::<S, $bodies, { $bodies / 2 }, $planar, $soft>(shape, systems, strength, softening2, q, a, first)
+            kernel::<S, $bodies, { $bodies / 2 }, { 2 * $bodies }, MANY, $planar, $soft>(
+                systems, a, first,
+            )
         };
     }
     select!(1 2 3 4 5 6 7 8);
@@ -176,9 +212,18 @@ fn lanes_kernel<V: Vector8 + InverseCube>(
     a: &mut [Lanes],
     first: bool,
 ) {
-    let strength = V::view(&bodies.strength);
-    let (q, a) = (V::view(q), V::view_mut(a));
-    select_kernel::<V>(bodies.shape, bodies.systems, strength, bodies.softening2, q, a, first);
+    let systems = Systems {
+        shape: bodies.shape,
+        count: bodies.systems,
+        strength: V::view(&bodies.strength),
+        softening2: bodies.softening2,
+        q: V::view(q),
+    };
+    if V::REGISTERS >= 32 {
+        select_kernel::<V, true>(&systems, V::view_mut(a), first);
+    } else {
+        select_kernel::<V, false>(&systems, V::view_mut(a), first);
+    }
 }
 
 tiered! {
@@ -208,8 +253,14 @@ macro_rules! plain_force {
                 first: bool,
                 _: &mut Ticker<'_>,
             ) -> Result<()> {
-                let (shape, strength) = (self.shape, &self.strength);
-                select_kernel(shape, self.systems, strength, self.softening2, phase.q, a, first);
+                let systems = Systems {
+                    shape: self.shape,
+                    count: self.systems,
+                    strength: &self.strength,
+                    softening2: self.softening2,
+                    q: phase.q,
+                };
+                select_kernel::<$type, false>(&systems, a, first);
                 Ok(())
             }
         }

@@ -1,6 +1,6 @@
 //! The loops over [`Lanes`], compiled for every tier.
 
-use super::{Element, PairTerm, Scaled, Shape, Term, Weighted, loops};
+use super::{Differences, Element, PairTerm, Scaled, Shape, Term, Weighted, loops, multistep};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::tiered;
@@ -126,12 +126,55 @@ fn largest_errors_lanes<V: Vector8 + InverseCube>(
     [first.store(), second.store()]
 }
 
+/// The past as the tier's vectors.
+#[inline(always)]
+fn view_past<'a, V: Vector8>(past: Differences<'a, Lanes>) -> Differences<'a, V> {
+    Differences {
+        last: V::view(past.last),
+        first: V::view_mut(past.first),
+        second: V::view_mut(past.second),
+        newest: past.newest,
+    }
+}
+#[inline(always)]
+fn multistep_lanes<V: Vector8>(
+    q: (&mut [Lanes], &mut [Lanes]),
+    d: (&mut [Lanes], &mut [Lanes]),
+    past: Differences<'_, Lanes>,
+    a: &[Lanes],
+    h2: &Lanes,
+    weights: &[Lanes],
+) {
+    multistep::step::<V>(
+        (V::view_mut(q.0), V::view_mut(q.1)),
+        (V::view_mut(d.0), V::view_mut(d.1)),
+        view_past(past),
+        V::view(a),
+        V::load(*h2),
+        V::view(weights),
+    );
+}
+#[inline(always)]
+fn backward_velocity_lanes<V: Vector8>(
+    v: &mut [Lanes],
+    d: &[Lanes],
+    past: Differences<'_, Lanes>,
+    a: &[Lanes],
+    h: &Lanes,
+    weights: &[Lanes],
+) {
+    let (v, d) = (V::view_mut(v), V::view(d));
+    multistep::backward_velocity::<V>(v, d, view_past(past), V::view(a), V::load(*h), V::view(weights));
+}
+
 #[inline(always)]
 fn replace_lanes<V: Vector8>(into: &mut [Lanes], from: &[Lanes], mask: Bits) {
     loops::replace::<V>(V::view_mut(into), V::view(from), mask);
 }
 
 tiered! {
+    fn multistep_tier[][](q: (&mut [Lanes], &mut [Lanes]), d: (&mut [Lanes], &mut [Lanes]), past: Differences<'_, Lanes>, a: &[Lanes], h2: &Lanes, weights: &[Lanes]) = multistep_lanes;
+    fn backward_velocity_tier[][](v: &mut [Lanes], d: &[Lanes], past: Differences<'_, Lanes>, a: &[Lanes], h: &Lanes, weights: &[Lanes]) = backward_velocity_lanes;
     fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: &Scaled<Lanes>, drift: &Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) = advance_lanes;
@@ -186,6 +229,26 @@ impl Element for Lanes {
         k: &[Self],
     ) -> [Self; 2] {
         largest_errors_tier(shape, y, reference, tolerance, h, terms, k)
+    }
+    fn multistep(
+        q: (&mut [Self], &mut [Self]),
+        d: (&mut [Self], &mut [Self]),
+        past: Differences<'_, Self>,
+        a: &[Self],
+        h2: &Self,
+        weights: &[Self],
+    ) {
+        multistep_tier(q, d, past, a, h2, weights);
+    }
+    fn backward_velocity(
+        v: &mut [Self],
+        d: &[Self],
+        past: Differences<'_, Self>,
+        a: &[Self],
+        h: &Self,
+        weights: &[Self],
+    ) {
+        backward_velocity_tier(v, d, past, a, h, weights);
     }
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
         replace_tier(into, from, mask);

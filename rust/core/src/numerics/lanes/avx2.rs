@@ -179,6 +179,7 @@ impl Real for Avx2 {
 }
 
 impl Vector8 for Avx2 {
+    const REGISTERS: usize = 8;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         let from = lanes.0.as_ptr();

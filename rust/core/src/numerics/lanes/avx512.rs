@@ -77,6 +77,7 @@ impl Real for Avx512 {
 }
 
 impl Vector8 for Avx512 {
+    const REGISTERS: usize = 32;
     #[inline(always)]
     fn load(lanes: Lanes) -> Self {
         Self(unsafe { _mm512_load_pd(lanes.0.as_ptr()) })

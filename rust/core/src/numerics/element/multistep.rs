@@ -1,0 +1,144 @@
+//! The loops of a multistep method over the differences of its past, once for every scalar.
+//!
+//! No closures, as in [`loops`](super::loops).
+
+use super::Differences;
+use crate::numerics::real::Real;
+
+/// One operation for all `G` elements of a group before the next one for any: each result waits for the one before
+/// it, and there must be others to compute meanwhile, nearer than a processor looks ahead.
+macro_rules! each {
+    ($g:ident => $value:expr) => {{
+        let mut result = [S::zero(); G];
+        for $g in 0..G {
+            result[$g] = $value;
+        }
+        result
+    }};
+}
+
+/// Calls `$group` for the elements from `$start` on, six at a time while there are six.
+macro_rules! in_groups {
+    ($n:expr, |$start:ident| $group:ident($($argument:expr),*)) => {{
+        let mut $start = 0;
+        in_groups!(@of 6, $n, $start, $group($($argument),*));
+        in_groups!(@of 3, $n, $start, $group($($argument),*));
+        in_groups!(@of 1, $n, $start, $group($($argument),*));
+    }};
+    (@of $size:literal, $n:expr, $start:ident, $group:ident($($argument:expr),*)) => {
+        while $n - $start >= $size {
+            $group::<S, $size>($($argument),*);
+            $start += $size;
+        }
+    };
+}
+
+/// `Σ weight·∇²a` over the past nodes, the oldest first.
+#[inline(always)]
+fn older<S: Real, const G: usize>(past: [&[S]; 2], n: usize, weights: &[S], start: usize) -> [S; G] {
+    let mut sums = [S::zero(); G];
+    let (early, late) = weights.split_at(past[0].len() / n);
+    for (past, weights) in past.into_iter().zip([early, late]) {
+        for (block, &weight) in past.chunks_exact(n).zip(weights) {
+            let block = &block[start..][..G];
+            sums = each!(g => weight.multiply_add(block[g], sums[g]));
+        }
+    }
+    sums
+}
+
+#[inline(always)]
+pub(super) fn step<S: Real>(
+    q: (&mut [S], &mut [S]),
+    d: (&mut [S], &mut [S]),
+    Differences { last, first, second, newest }: Differences<'_, S>,
+    a: &[S],
+    h2: S,
+    weights: &[S],
+) {
+    let (n, count) = (a.len(), weights.len());
+    let (late, rest) = second.split_at_mut(newest * n);
+    let (newest, early) = rest.split_at_mut(n);
+    let past = [&early[..], &late[..]];
+    in_groups!(n, |start| step_group(
+        (&mut q.0[start..], &mut q.1[start..]),
+        (&mut d.0[start..], &mut d.1[start..]),
+        (&last[start..], &mut first[start..], &mut newest[start..]),
+        &a[start..],
+        h2,
+        older(past, n, weights, start),
+        weights[count - 1]
+    ));
+}
+
+#[inline(always)]
+fn step_group<S: Real, const G: usize>(
+    (q, q_error): (&mut [S], &mut [S]),
+    (d, d_error): (&mut [S], &mut [S]),
+    (last, first, second): (&[S], &mut [S], &mut [S]),
+    a: &[S],
+    h2: S,
+    older: [S; G],
+    weight: S,
+) {
+    let (q, q_error, d, d_error) = (&mut q[..G], &mut q_error[..G], &mut d[..G], &mut d_error[..G]);
+    let (last, first, second, a) = (&last[..G], &mut first[..G], &mut second[..G], &a[..G]);
+    let a = each!(g => a[g]);
+    let change = each!(g => a[g] - last[g]);
+    let bend = each!(g => change[g] - first[g]);
+    first.copy_from_slice(&change);
+    second.copy_from_slice(&bend);
+    let sum = each!(g => h2.multiply_add(a[g], weight.multiply_add(bend[g], older[g])));
+    // As `add_compensated`.
+    let (speed, place) = (each!(g => d[g]), each!(g => q[g]));
+    let change = each!(g => sum[g] + d_error[g]);
+    let difference = each!(g => speed[g] + change[g]);
+    let rest = each!(g => change[g] - (difference[g] - speed[g]));
+    let moved = each!(g => difference[g] + (rest[g] + q_error[g]));
+    let reached = each!(g => place[g] + moved[g]);
+    q.copy_from_slice(&reached);
+    d.copy_from_slice(&difference);
+    d_error.copy_from_slice(&rest);
+    q_error.copy_from_slice(&each!(g => moved[g] - (reached[g] - place[g])));
+}
+
+#[inline(always)]
+pub(super) fn backward_velocity<S: Real>(
+    v: &mut [S],
+    d: &[S],
+    Differences { last, first, second, newest }: Differences<'_, S>,
+    a: &[S],
+    h: S,
+    weights: &[S],
+) {
+    let n = a.len();
+    let [present, changed, bent, weights @ ..] = weights else { return };
+    let past = [&second[(newest + 1) * n..], &second[..newest * n]];
+    in_groups!(n, |start| backward_velocity_group(
+        &mut v[start..],
+        &d[start..],
+        (&last[start..], &first[start..]),
+        &a[start..],
+        h,
+        older(past, n, weights, start),
+        [*present, *changed, *bent]
+    ));
+}
+
+#[inline(always)]
+fn backward_velocity_group<S: Real, const G: usize>(
+    v: &mut [S],
+    d: &[S],
+    (last, first): (&[S], &[S]),
+    a: &[S],
+    h: S,
+    older: [S; G],
+    [present, changed, bent]: [S; 3],
+) {
+    for g in 0..G {
+        let change = a[g] - last[g];
+        let sum = bent.multiply_add(change - first[g], older[g]);
+        let sum = present.multiply_add(a[g], changed.multiply_add(change, sum));
+        v[g] = h.multiply_add(sum, d[g] / h);
+    }
+}
