@@ -14,7 +14,7 @@ use super::double_double::DoubleDouble;
 use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
-use super::real::Real;
+use super::real::{Real, each};
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
 const CENTRE: f64 = 1.0 + 1.0 / 131_072.0;
@@ -27,44 +27,32 @@ const INVERSE_ROOT: [f64; 4] = [
     0.313_054_047_425_769_9 * CENTRE,
 ];
 
-/// One operation for all before the next one for any: each result waits for the one before it, and there must be
-/// others to compute meanwhile, nearer than a processor looks ahead.
-macro_rules! each {
-    ($i:ident => $value:expr) => {{
-        let mut result = [S::zero(); N];
-        for $i in 0..N {
-            result[$i] = $value;
-        }
-        result
-    }};
-}
-
 /// The first half of [`InverseCube::inverse_cubes`]: 1/√s, cut off after 17 bits.
 #[inline(always)]
 pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let one = S::one();
     let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
-    let guess = each!(i => s[i].inverse_root_guess());
-    let product = each!(i => s[i] * guess[i]);
-    let e = each!(i => product[i].multiply_subtract_from(guess[i], one));
-    let cubic = each!(i => e[i].multiply_add(c3, c2));
-    let cubic = each!(i => e[i].multiply_add(cubic[i], c1));
-    let cubic = each!(i => e[i].multiply_add(cubic[i], c0));
-    each!(i => (guess[i] * cubic[i]).leading_bits())
+    let guess = each!(i < N => s[i].inverse_root_guess());
+    let product = each!(i < N => s[i] * guess[i]);
+    let e = each!(i < N => product[i].multiply_subtract_from(guess[i], one));
+    let cubic = each!(i < N => e[i].multiply_add(c3, c2));
+    let cubic = each!(i < N => e[i].multiply_add(cubic[i], c1));
+    let cubic = each!(i < N => e[i].multiply_add(cubic[i], c0));
+    each!(i < N => (guess[i] * cubic[i]).leading_bits())
 }
 
 /// The second half: `s^(-3/2)` from `s` and its [`inverse_roots`] `y`, and exactly 0 from `s = y = 0`.
 #[inline(always)]
 pub(crate) fn inverse_cubes_from<S: Binary, const N: usize>(s: [S; N], y: [S; N]) -> [S; N] {
     let one = S::one();
-    let square = each!(i => y[i] * y[i]);
-    let e = each!(i => s[i].multiply_subtract_from(square[i], one));
-    let cube = each!(i => square[i] * y[i]);
+    let square = each!(i < N => y[i] * y[i]);
+    let e = each!(i < N => s[i].multiply_subtract_from(square[i], one));
+    let cube = each!(i < N => square[i] * y[i]);
     // (1 - e)^(-3/2) - 1 = e(3/2 + e(15/8 + e·35/16)) to 2e-19, e being below 1.7e-5.
-    let series = each!(i => e[i].multiply_add(S::splat(35.0 / 16.0), S::splat(15.0 / 8.0)));
-    let part = each!(i => e[i] * cube[i]);
-    let series = each!(i => e[i].multiply_add(series[i], S::splat(1.5)));
-    each!(i => part[i].multiply_add(series[i], cube[i]))
+    let series = each!(i < N => e[i].multiply_add(S::splat(35.0 / 16.0), S::splat(15.0 / 8.0)));
+    let part = each!(i < N => e[i] * cube[i]);
+    let series = each!(i < N => e[i].multiply_add(series[i], S::splat(1.5)));
+    each!(i < N => part[i].multiply_add(series[i], cube[i]))
 }
 
 /// Scalars that have the power -3/2.

@@ -8,6 +8,20 @@ use super::double_double::DoubleDouble;
 use core::fmt::Debug;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
+/// `[value of 0, value of 1, …]`, an array of `$count` numbers `S`: one operation for all of them before the next one
+/// for any. In a kernel each result waits for the one before it, and there must be others to compute meanwhile,
+/// nearer than a processor looks ahead. A macro and not a closure, as everywhere in what tiers compile.
+macro_rules! each {
+    ($i:ident < $count:ident => $value:expr) => {{
+        let mut result = [S::zero(); $count];
+        for $i in 0..$count {
+            result[$i] = $value;
+        }
+        result
+    }};
+}
+pub(crate) use each;
+
 /// A truth value for each lane of a [`Real`].
 pub trait Mask: Copy + Debug {
     /// The same truth value in every lane.

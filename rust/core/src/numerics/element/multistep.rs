@@ -3,19 +3,7 @@
 //! No closures, as in [`loops`](super::loops).
 
 use super::Differences;
-use crate::numerics::real::Real;
-
-/// One operation for all `G` elements of a group before the next one for any: each result waits for the one before
-/// it, and there must be others to compute meanwhile, nearer than a processor looks ahead.
-macro_rules! each {
-    ($g:ident => $value:expr) => {{
-        let mut result = [S::zero(); G];
-        for $g in 0..G {
-            result[$g] = $value;
-        }
-        result
-    }};
-}
+use crate::numerics::real::{Real, each};
 
 /// Calls `$group` for the elements from `$start` on, six at a time while there are six.
 macro_rules! in_groups {
@@ -41,7 +29,7 @@ fn older<S: Real, const G: usize>(past: [&[S]; 2], n: usize, weights: &[S], star
     for (past, weights) in past.into_iter().zip([early, late]) {
         for (block, &weight) in past.chunks_exact(n).zip(weights) {
             let block = &block[start..][..G];
-            sums = each!(g => weight.multiply_add(block[g], sums[g]));
+            sums = each!(g < G => weight.multiply_add(block[g], sums[g]));
         }
     }
     sums
@@ -83,23 +71,23 @@ fn step_group<S: Real, const G: usize>(
 ) {
     let (q, q_error, d, d_error) = (&mut q[..G], &mut q_error[..G], &mut d[..G], &mut d_error[..G]);
     let (last, first, second, a) = (&last[..G], &mut first[..G], &mut second[..G], &a[..G]);
-    let a = each!(g => a[g]);
-    let change = each!(g => a[g] - last[g]);
-    let bend = each!(g => change[g] - first[g]);
+    let a = each!(g < G => a[g]);
+    let change = each!(g < G => a[g] - last[g]);
+    let bend = each!(g < G => change[g] - first[g]);
     first.copy_from_slice(&change);
     second.copy_from_slice(&bend);
-    let sum = each!(g => h2.multiply_add(a[g], weight.multiply_add(bend[g], older[g])));
+    let sum = each!(g < G => h2.multiply_add(a[g], weight.multiply_add(bend[g], older[g])));
     // As `add_compensated`.
-    let (speed, place) = (each!(g => d[g]), each!(g => q[g]));
-    let change = each!(g => sum[g] + d_error[g]);
-    let difference = each!(g => speed[g] + change[g]);
-    let rest = each!(g => change[g] - (difference[g] - speed[g]));
-    let moved = each!(g => difference[g] + (rest[g] + q_error[g]));
-    let reached = each!(g => place[g] + moved[g]);
+    let (speed, place) = (each!(g < G => d[g]), each!(g < G => q[g]));
+    let change = each!(g < G => sum[g] + d_error[g]);
+    let difference = each!(g < G => speed[g] + change[g]);
+    let rest = each!(g < G => change[g] - (difference[g] - speed[g]));
+    let moved = each!(g < G => difference[g] + (rest[g] + q_error[g]));
+    let reached = each!(g < G => place[g] + moved[g]);
     q.copy_from_slice(&reached);
     d.copy_from_slice(&difference);
     d_error.copy_from_slice(&rest);
-    q_error.copy_from_slice(&each!(g => moved[g] - (reached[g] - place[g])));
+    q_error.copy_from_slice(&each!(g < G => moved[g] - (reached[g] - place[g])));
 }
 
 #[inline(always)]
