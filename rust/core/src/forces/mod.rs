@@ -9,7 +9,7 @@ pub mod gravity;
 pub mod uniform_field;
 
 use crate::error::Result;
-use crate::numerics::element::{Element, Shape};
+use crate::numerics::element::{Element, Nodes, Shape};
 use crate::parallel::Ticker;
 
 /// Where the particles are and how they move.
@@ -19,6 +19,15 @@ pub struct Phase<'a, S> {
     pub q: &'a [S],
     /// Velocities, for a force that [needs](Force::needs_velocity) them; for another they may be of any time.
     pub v: &'a [S],
+}
+
+/// Systems of bodies on which nothing acts but their own pulls.
+#[derive(Debug)]
+pub struct ClosedSystems<'a, S> {
+    /// How many, equally large, one after another in the rows of the state.
+    pub count: usize,
+    /// `G·m` of the bodies, system after system.
+    pub strength: &'a [S],
 }
 
 /// One force of a scene, ready to run.
@@ -39,6 +48,17 @@ pub trait Force<S: Element>: Send {
     fn needs_velocity(&self) -> bool {
         false
     }
+
+    /// The closed systems that the state consists of, if the force is what their bodies pull each other with and it
+    /// takes steps of a multistep method for them by itself.
+    fn closed_systems(&self) -> Option<ClosedSystems<'_, S>> {
+        None
+    }
+
+    /// Steps of a multistep method for its [closed systems](Self::closed_systems), in coordinates relative to the first body
+    /// of each: those of the bodies from the second on, system after system, the components of a body together. The
+    /// present accelerations are those of the last node after it.
+    fn multistep(&self, _: Nodes<'_, S>, _steps: u64) {}
 
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
     /// changes a state between evaluations must then be able to take that back.
@@ -73,6 +93,22 @@ impl<S: Element> Dynamics<S> {
     /// Whether any force may be interrupted in the middle of an evaluation.
     pub fn stops_midway(&self) -> bool {
         self.forces.iter().any(|force| force.stops_midway())
+    }
+
+    /// The closed systems that the state consists of, if [`multistep`](Self::multistep) can be asked for.
+    pub fn closed_systems(&self) -> Option<ClosedSystems<'_, S>> {
+        match &self.forces[..] {
+            [force] => force.closed_systems(),
+            _ => None,
+        }
+    }
+
+    /// See [`Force::multistep`].
+    pub fn multistep(&mut self, nodes: Nodes<'_, S>, steps: u64) {
+        if let [force] = &self.forces[..] {
+            self.evaluations += steps;
+            force.multistep(nodes, steps);
+        }
     }
 
     /// The acceleration of every particle.

@@ -16,10 +16,10 @@ use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 
 /// A method with a step, ready to advance a state.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub enum FixedStep<S> {
-    /// Kicks and drifts.
-    Splitting(SplittingStep<S>),
+    /// Kicks and drifts; and what takes steps to times between nodes, from the first of them on.
+    Splitting(SplittingStep<S>, Option<SplittingStep<S>>),
     /// Explicit Runge–Kutta.
     RungeKutta(RungeKuttaStep<S>),
     /// Störmer's multistep method.
@@ -31,11 +31,11 @@ impl<S: Element> FixedStep<S> {
     ///
     /// # Errors
     /// A method that chooses its own steps.
-    pub fn new(method: &Method, h: f64, state: &State<S>) -> Result<Self> {
+    pub fn new(method: &'static Method, h: f64, state: &State<S>) -> Result<Self> {
         let step = S::splat(h);
         match &method.scheme {
             Scheme::Splitting(table) => {
-                Ok(Self::Splitting(SplittingStep::new(table, step, state.shape.len())))
+                Ok(Self::Splitting(SplittingStep::new(table, step, state.shape.len()), None))
             }
             Scheme::RungeKutta(tableau) => Ok(Self::RungeKutta(RungeKuttaStep::new(tableau, step, state))),
             Scheme::Multistep(table) => Ok(Self::Multistep(Box::new(MultistepStep::new(table, h, state)))),
@@ -45,19 +45,39 @@ impl<S: Element> FixedStep<S> {
         }
     }
 
-    /// Becomes the method with step `h`, at the state where `other` stands.
-    fn follow(&mut self, method: &Method, h: f64, other: &Self) {
-        match (self, &method.scheme, other) {
-            (Self::Splitting(step), Scheme::Splitting(table), Self::Splitting(other)) => {
-                step.follow(table, S::splat(h), other);
-            }
-            (Self::RungeKutta(step), ..) => step.set_step(S::splat(h)),
-            (Self::Multistep(step), Scheme::Multistep(table), _) => step.follow(table, S::splat(h)),
-            _ => {}
+    /// Begins anew, at another state of the same shape.
+    pub fn restart(&mut self) {
+        match self {
+            Self::Splitting(step, _) => step.restart(),
+            Self::RungeKutta(_) => {}
+            Self::Multistep(step) => step.restart(),
         }
     }
 
-    /// Advances the state by one step.
+    /// Advances a copy of the state at the present node by a step `h` instead.
+    ///
+    /// # Errors
+    /// As [`Dynamics::acceleration`].
+    fn step_between(
+        &mut self,
+        h: f64,
+        state: &mut State<S>,
+        dynamics: &mut Dynamics<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let h = S::splat(h);
+        match self {
+            Self::Splitting(step, between) => {
+                let between = between.get_or_insert_with(|| step.clone());
+                between.follow(h, step);
+                between.step(state, dynamics, ticker)
+            }
+            Self::RungeKutta(step) => step.step_by(h, state, dynamics, ticker),
+            Self::Multistep(step) => step.starter_mut().step_by(h, state, dynamics, ticker),
+        }
+    }
+
+    /// Advances the state by one step or, where that saves time, by more, up to `at_most`; returns how many.
     ///
     /// # Errors
     /// As [`Dynamics::acceleration`].
@@ -66,15 +86,17 @@ impl<S: Element> FixedStep<S> {
         state: &mut State<S>,
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
+        at_most: u64,
+    ) -> Result<u64> {
         match self {
-            Self::Splitting(step) => step.step(state, dynamics, ticker),
-            Self::RungeKutta(step) => step.step(state, dynamics, ticker),
-            Self::Multistep(step) => step.step(state, dynamics, ticker),
+            Self::Splitting(step, _) => step.step(state, dynamics, ticker)?,
+            Self::RungeKutta(step) => step.step(state, dynamics, ticker)?,
+            Self::Multistep(step) => return step.step(state, dynamics, ticker, at_most),
         }
+        Ok(1)
     }
 
-    /// Completes a state that is to be read: the velocities of a multistep method stay behind otherwise.
+    /// Completes a state that is to be read: that of a multistep method stays behind otherwise.
     #[inline]
     pub fn complete(&mut self, state: &mut State<S>) {
         if let Self::Multistep(step) = self {
@@ -125,8 +147,7 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
 /// # Errors
 /// What `record` returns, or [`Error::Interrupted`]; a force that looks at velocities, with a multistep method.
 pub fn run<S: Element>(
-    method: &Method,
-    h: f64,
+    stepper: &mut FixedStep<S>,
     max_steps: u64,
     state: &mut State<S>,
     dynamics: &mut Dynamics<S>,
@@ -136,12 +157,12 @@ pub fn run<S: Element>(
 ) -> (u64, Result<()>) {
     let mut taken = 0;
     let outcome = (|| {
-        if matches!(method.scheme, Scheme::Multistep(_)) && dynamics.needs_velocity() {
-            let message = format!("{} knows no velocities, which a force of this scene needs", method.name);
+        if matches!(stepper, FixedStep::Multistep(_)) && dynamics.needs_velocity() {
+            let message = "the method knows no velocities, which a force of this scene needs".to_owned();
             return Err(Error::invalid("method", message));
         }
-        let mut stepper = FixedStep::new(method, h, state)?;
-        let mut shadow = None;
+        stepper.restart();
+        let mut between = None;
         let mut before = dynamics.stops_midway().then(|| state.clone());
         for (index, place) in places.enumerate() {
             while taken < place.node {
@@ -153,14 +174,18 @@ pub fn run<S: Element>(
                     stepper.complete(state);
                     before.copy_from(state);
                 }
-                if let Err(error) = stepper.step(state, dynamics, ticker) {
-                    // Some methods change the state in place: half a step is taken back.
-                    if let Some(before) = &before {
-                        state.copy_from(before);
+                let at_most =
+                    (place.node.min(max_steps) - taken).min(PROGRESS_STEPS - taken % PROGRESS_STEPS);
+                taken += match stepper.step(state, dynamics, ticker, at_most) {
+                    Ok(steps) => steps,
+                    Err(error) => {
+                        // Some methods change the state in place: half a step is taken back.
+                        if let Some(before) = &before {
+                            state.copy_from(before);
+                        }
+                        return Err(error);
                     }
-                    return Err(error);
-                }
-                taken += 1;
+                };
                 if taken % PROGRESS_STEPS == 0 {
                     ticker.advance(PROGRESS_STEPS);
                 }
@@ -173,10 +198,9 @@ pub fn run<S: Element>(
             let reached: &State<S> = match place.past {
                 None => state,
                 Some(past) => {
-                    let (between, shadow) = shadow.get_or_insert_with(|| (state.clone(), stepper.clone()));
+                    let between = between.get_or_insert_with(|| state.clone());
                     between.copy_from(state);
-                    shadow.follow(method, past, &stepper);
-                    shadow.step(between, dynamics, ticker)?;
+                    stepper.step_between(past, between, dynamics, ticker)?;
                     &*between
                 }
             };

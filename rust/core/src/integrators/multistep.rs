@@ -6,7 +6,9 @@
 //!
 //! The first nodes come from a one-step method, each from the one before: so a run of a few steps works, and a node is
 //! the same whatever the end of the run. Velocities are no part of the method; [`MultistepStep::complete`] finds them
-//! at a node that is read.
+//! at a node that is read. Where the force can, it takes the steps itself, in [`relative`] coordinates.
+
+mod relative;
 
 use super::Multistep;
 use super::runge_kutta::RungeKuttaStep;
@@ -14,21 +16,13 @@ use super::state::State;
 use crate::error::Result;
 use crate::forces::Dynamics;
 use crate::numerics::double_double::{DoubleDouble, two_product};
-use crate::numerics::element::{Differences, Element};
+use crate::numerics::element::{Differences, Element, Nodes};
 use crate::parallel::Ticker;
+use relative::Relative;
 
-/// A multistep method with its step.
-#[derive(Clone, Debug)]
-pub struct MultistepStep<S> {
-    h: S,
-    h2: S,
-    /// h² times the weights of the second differences, the oldest first.
-    weights: Vec<S>,
-    /// The weights of the velocity, the oldest of the older ones first.
-    velocity: Vec<S>,
-    starter: RungeKuttaStep<S>,
-    /// Nodes that the starter still has to make.
-    to_start: usize,
+/// What the method holds of the present node and those before it, of any coordinates.
+#[derive(Debug)]
+struct Past<S> {
     /// The accelerations at the present node and at the one before.
     acceleration: Vec<S>,
     last: Vec<S>,
@@ -39,15 +33,104 @@ pub struct MultistepStep<S> {
     /// The last difference of the coordinates, compensated.
     d: Vec<S>,
     d_error: Vec<S>,
-    /// Whether the velocities of the state belong to its coordinates.
+}
+
+impl<S: Element> Past<S> {
+    /// Of `len` coordinates and `count` second differences.
+    fn new(len: usize, count: usize) -> Self {
+        let block = || vec![S::zero(); len];
+        Self {
+            acceleration: block(),
+            last: block(),
+            first: block(),
+            second: vec![S::zero(); count * len],
+            newest: 0,
+            d: block(),
+            d_error: block(),
+        }
+    }
+
+    /// The same nodes in other coordinates, `len` of them, which `of` writes; `d` is still to be found.
+    fn map(&self, len: usize, of: impl Fn(&[S], &mut [S])) -> Self {
+        let mut past = Self::new(len, self.second.len() / self.last.len());
+        of(&self.acceleration, &mut past.acceleration);
+        of(&self.last, &mut past.last);
+        of(&self.first, &mut past.first);
+        let blocks = self.second.chunks_exact(self.last.len());
+        blocks.zip(past.second.chunks_exact_mut(len)).for_each(|(block, out)| of(block, out));
+        Self { newest: self.newest, ..past }
+    }
+
+    /// For a step of coordinates `q`.
+    fn nodes<'a>(&'a mut self, q: (&'a mut [S], &'a mut [S]), h2: &'a S, weights: &'a [S]) -> Nodes<'a, S> {
+        let Self { acceleration, last, first, second, newest, d, d_error } = self;
+        let past = Differences { last, first, second, newest: *newest };
+        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights }
+    }
+
+    /// Takes in the accelerations at a further node, which is then the one before.
+    fn take_in(&mut self, acceleration: &[S]) {
+        let len = acceleration.len();
+        for i in 0..len {
+            let change = acceleration[i] - self.last[i];
+            self.second[self.newest * len + i] = change - self.first[i];
+            self.first[i] = change;
+        }
+        self.last.copy_from_slice(acceleration);
+        self.pass(1);
+    }
+
+    /// So many nodes have joined the ring.
+    fn pass(&mut self, nodes: u64) {
+        let count = (self.second.len() / self.last.len()) as u64;
+        self.newest = ((self.newest as u64 + nodes) % count) as usize;
+    }
+
+    /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
+    fn velocity(&mut self, v: &mut [S], h: &S, weights: &[S]) {
+        let Self { acceleration, last, first, second, newest, d, .. } = self;
+        let past = Differences { last, first, second, newest: *newest };
+        S::backward_velocity(v, d, past, acceleration, h, weights);
+    }
+
+    /// The last difference of the coordinates that belongs to the velocities, to twice the digits:
+    /// `d = h v - h² Σ`.
+    fn start(&mut self, (v, v_error): (&[S], &[S]), h: S, h2: S, weights: &[S]) {
+        let mut sum = vec![S::zero(); v.len()];
+        self.d.fill(S::zero());
+        self.velocity(&mut sum, &S::one(), weights);
+        for i in 0..v.len() {
+            (self.d[i], self.d_error[i]) = two_product(h, v[i]);
+            self.d_error[i] += h * v_error[i];
+        }
+        S::advance((&mut self.d, &mut self.d_error), &sum, &(-h2, S::zero()));
+    }
+}
+
+/// A multistep method with its step.
+#[derive(Debug)]
+pub struct MultistepStep<S> {
+    h: S,
+    h2: S,
+    /// h² times the weights of the second differences, the oldest first.
+    weights: Vec<S>,
+    /// The weights of the velocity, the oldest of the older ones first.
+    velocity: Vec<S>,
+    starter: RungeKuttaStep<S>,
+    /// Nodes that the starter has to make, and those that are still to come.
+    nodes_to_start: usize,
+    to_start: usize,
+    past: Past<S>,
+    /// Other coordinates than those of the state, once it has started, and their past.
+    relative: Option<(Relative<S>, Past<S>)>,
+    /// Whether the state belongs to the present node.
     complete: bool,
 }
 
 impl<S: Element> MultistepStep<S> {
     /// The method `table` with step `h`, for states like `state`.
     pub fn new(table: &Multistep, h: f64, state: &State<S>) -> Self {
-        let (len, count) = (state.shape.len(), table.second_differences.len());
-        let block = || vec![S::zero(); len];
+        let count = table.second_differences.len();
         let h2 = DoubleDouble::from(h) * DoubleDouble::from(h);
         let (present, older) = table.velocity.split_at(3);
         let velocity = present.iter().chain(older.iter().rev());
@@ -59,25 +142,29 @@ impl<S: Element> MultistepStep<S> {
             velocity: velocity.map(|&weight| S::from_double_double(weight)).collect(),
             starter: RungeKuttaStep::new(table.start, h, state),
             // Second differences of the ages from 1 on, and two nodes more for the first of them.
+            nodes_to_start: count + 1,
             to_start: count + 1,
-            acceleration: block(),
-            last: block(),
-            first: block(),
-            second: vec![S::zero(); count * len],
-            newest: 0,
-            d: block(),
-            d_error: block(),
+            past: Past::new(state.shape.len(), count),
+            relative: None,
             complete: true,
         }
     }
 
-    /// Becomes a step of `h` from a complete state: one of the starter.
-    pub fn follow(&mut self, table: &Multistep, h: S) {
-        self.to_start = table.second_differences.len() + 1;
-        self.starter.set_step(h);
+    /// The one-step method that starts it, and that takes steps to times between nodes.
+    pub fn starter_mut(&mut self) -> &mut RungeKuttaStep<S> {
+        &mut self.starter
     }
 
-    /// Advances the state by one step; its velocities may stay behind until [`complete`](Self::complete).
+    /// Begins anew, at another state.
+    pub fn restart(&mut self) {
+        self.to_start = self.nodes_to_start;
+        self.past.newest = 0;
+        self.relative = None;
+        self.complete = true;
+    }
+
+    /// Advances the state by one step or, where that saves time, by more, up to `at_most`; returns how many. The
+    /// state may stay behind until [`complete`](Self::complete).
     ///
     /// # Errors
     /// As [`Dynamics::acceleration`].
@@ -86,28 +173,27 @@ impl<S: Element> MultistepStep<S> {
         state: &mut State<S>,
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
+        at_most: u64,
+    ) -> Result<u64> {
         if self.to_start > 0 {
-            return self.start(state, dynamics, ticker);
+            self.start(state, dynamics, ticker)?;
+            return Ok(1);
         }
-        let past = Differences {
-            last: &self.last,
-            first: &mut self.first,
-            second: &mut self.second,
-            newest: self.newest,
-        };
-        let (q, _) = state.halves_mut();
-        S::multistep(q, (&mut self.d, &mut self.d_error), past, &self.acceleration, &self.h2, &self.weights);
-        self.pass_on();
         self.complete = false;
+        if let Some((relative, past)) = &mut self.relative {
+            let nodes = past.nodes(relative.coordinates_mut(), &self.h2, &self.weights);
+            dynamics.multistep(nodes, at_most);
+            relative.pass(at_most);
+            past.pass(at_most);
+            return Ok(at_most);
+        }
+        let (q, _) = state.halves_mut();
+        S::multistep(self.past.nodes(q, &self.h2, &self.weights));
+        core::mem::swap(&mut self.past.acceleration, &mut self.past.last);
+        self.past.pass(1);
         // Here and not before the next step: the velocity at this node needs it.
-        dynamics.acceleration(state.q(), state.v(), &mut self.acceleration, ticker)
-    }
-
-    /// The present node becomes the one before.
-    fn pass_on(&mut self) {
-        core::mem::swap(&mut self.acceleration, &mut self.last);
-        self.newest = if self.newest + 1 == self.weights.len() { 0 } else { self.newest + 1 };
+        dynamics.acceleration(state.q(), state.v(), &mut self.past.acceleration, ticker)?;
+        Ok(1)
     }
 
     /// One of the first steps.
@@ -119,59 +205,42 @@ impl<S: Element> MultistepStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.starter.step(state, dynamics, ticker)?;
-        self.acceleration.copy_from_slice(self.starter.first_acceleration());
-        let len = self.acceleration.len();
-        for i in 0..len {
-            let change = self.acceleration[i] - self.last[i];
-            let second_difference = change - self.first[i];
-            self.first[i] = change;
-            self.second[self.newest * len + i] = second_difference;
-        }
-        self.pass_on();
+        self.past.take_in(self.starter.first_acceleration());
         self.to_start -= 1;
-        if self.to_start == 0 {
-            dynamics.acceleration(state.q(), state.v(), &mut self.acceleration, ticker)?;
-            self.start_difference(state);
+        if self.to_start > 0 {
+            return Ok(());
+        }
+        dynamics.acceleration(state.q(), state.v(), &mut self.past.acceleration, ticker)?;
+        if let Some(closed) = dynamics.closed_systems() {
+            let relative = Relative::new(&closed, self.h, state);
+            let (v, v_error) = relative.of_compensated(state.velocity());
+            let mut past = self.past.map(v.len(), |a, out| relative.of(a, out));
+            past.start((&v, &v_error), self.h, self.h2, &self.velocity);
+            self.relative = Some((relative, past));
+        } else {
+            self.past.start(state.velocity(), self.h, self.h2, &self.velocity);
         }
         Ok(())
     }
 
-    /// The last difference of the coordinates that belongs to the velocities, to twice the digits:
-    /// `d = h v - h² Σ`.
-    fn start_difference(&mut self, state: &State<S>) {
-        let zeros = vec![S::zero(); self.d.len()];
-        let mut sum = zeros.clone();
-        self.backward(&mut sum, &zeros, &S::one());
-        let ((v, v_error), d) = (state.velocity(), (&mut self.d[..], &mut self.d_error[..]));
-        for i in 0..v.len() {
-            (d.0[i], d.1[i]) = two_product(self.h, v[i]);
-            d.1[i] += self.h * v_error[i];
-        }
-        S::advance(d, &sum, &(-self.h2, S::zero()));
-    }
-
-    /// Brings the velocities of the state to its node.
+    /// Brings the state to the present node.
     pub fn complete(&mut self, state: &mut State<S>) {
         if self.complete {
             return;
         }
-        let (_, (v, v_error)) = state.halves_mut();
-        let (d, h) = (core::mem::take(&mut self.d), self.h);
-        self.backward(v, &d, &h);
-        v_error.fill(S::zero());
-        self.d = d;
+        match &mut self.relative {
+            Some((relative, past)) => {
+                let mut v = vec![S::zero(); past.d.len()];
+                past.velocity(&mut v, &self.h, &self.velocity);
+                relative.write(state, &v);
+            }
+            None => {
+                let (_, (v, v_error)) = state.halves_mut();
+                self.past.velocity(v, &self.h, &self.velocity);
+                v_error.fill(S::zero());
+            }
+        }
         self.complete = true;
-    }
-
-    /// `v = d/h + h Σ` over the accelerations up to the present node.
-    fn backward(&mut self, v: &mut [S], d: &[S], h: &S) {
-        let past = Differences {
-            last: &self.last,
-            first: &mut self.first,
-            second: &mut self.second,
-            newest: self.newest,
-        };
-        S::backward_velocity(v, d, past, &self.acceleration, h, &self.velocity);
     }
 }
 
@@ -195,8 +264,8 @@ mod tests {
         let mut step = MultistepStep::new(table, 0.3, &state);
         for _ in 0..12 {
             assert!(step.to_start > 0);
-            step.step(&mut state, &mut dynamics, &mut Ticker::quiet(&control)).unwrap();
+            let _ = step.step(&mut state, &mut dynamics, &mut Ticker::quiet(&control), 1).unwrap();
         }
-        assert_eq!((step.to_start, step.d[0], step.d_error[0]), (0, 0.3, 0.3 * 1e-20));
+        assert_eq!((step.to_start, step.past.d[0], step.past.d_error[0]), (0, 0.3, 0.3 * 1e-20));
     }
 }

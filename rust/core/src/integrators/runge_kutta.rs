@@ -142,11 +142,6 @@ impl<S: Element> RungeKuttaStep<S> {
         self.stages.acceleration(0)
     }
 
-    /// Becomes the method with step `h`.
-    pub fn set_step(&mut self, h: S) {
-        self.h = h;
-    }
-
     /// Advances the state by one step.
     ///
     /// # Errors
@@ -157,9 +152,23 @@ impl<S: Element> RungeKuttaStep<S> {
         dynamics: &mut Dynamics<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
+        self.step_by(self.h, state, dynamics, ticker)
+    }
+
+    /// Advances the state by a step `h`.
+    ///
+    /// # Errors
+    /// As [`Dynamics::acceleration`].
+    pub fn step_by(
+        &mut self,
+        h: S,
+        state: &mut State<S>,
+        dynamics: &mut Dynamics<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
         self.stages.evaluate(0, state, dynamics, ticker)?;
-        self.stages.evaluate_rest(state, &self.h, dynamics, ticker)?;
-        self.stages.finish(state, &self.h, &mut self.next);
+        self.stages.evaluate_rest(state, &h, dynamics, ticker)?;
+        self.stages.finish(state, &h, &mut self.next);
         core::mem::swap(state, &mut self.next);
         Ok(())
     }

@@ -13,6 +13,7 @@ use crate::parallel::Ticker;
 /// A splitting method with its step.
 #[derive(Clone, Debug)]
 pub struct SplittingStep<S> {
+    table: &'static Splitting,
     /// `kick[i]`, then `drift[i]`.
     pairs: Vec<(Scaled<S>, Scaled<S>)>,
     last_kick: Scaled<S>,
@@ -26,10 +27,11 @@ pub struct SplittingStep<S> {
 
 impl<S: Element> SplittingStep<S> {
     /// The method `table` with step `h`, for states of `len` coordinates.
-    pub fn new(table: &Splitting, h: S, len: usize) -> Self {
+    pub fn new(table: &'static Splitting, h: S, len: usize) -> Self {
         let zero = |index: usize| table.kicks[index].to_f64() == 0.0;
         let stages = table.drifts.len();
         Self {
+            table,
             pairs: (0..stages).map(|i| (h.scaled_by(table.kicks[i]), h.scaled_by(table.drifts[i]))).collect(),
             last_kick: h.scaled_by(table.kicks[stages]),
             idle: (0..stages).map(zero).collect(),
@@ -40,13 +42,18 @@ impl<S: Element> SplittingStep<S> {
     }
 
     /// Becomes the method with step `h`, at the state where `other` stands.
-    pub fn follow(&mut self, table: &Splitting, h: S, other: &Self) {
+    pub fn follow(&mut self, h: S, other: &Self) {
         for (i, pair) in self.pairs.iter_mut().enumerate() {
-            *pair = (h.scaled_by(table.kicks[i]), h.scaled_by(table.drifts[i]));
+            *pair = (h.scaled_by(self.table.kicks[i]), h.scaled_by(self.table.drifts[i]));
         }
-        self.last_kick = h.scaled_by(table.kicks[self.pairs.len()]);
+        self.last_kick = h.scaled_by(self.table.kicks[self.pairs.len()]);
         self.acceleration.copy_from_slice(&other.acceleration);
         self.fresh = other.fresh;
+    }
+
+    /// Begins anew, at another state.
+    pub fn restart(&mut self) {
+        self.fresh = false;
     }
 
     /// Advances the state by one step.

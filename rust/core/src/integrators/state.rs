@@ -60,6 +60,11 @@ impl<S: Element> State<S> {
         let (q_error, v_error) = self.error.split_at_mut(n);
         ((q, q_error), (v, v_error))
     }
+    /// Becomes all zeros.
+    pub fn clear(&mut self) {
+        self.y.fill(S::zero());
+        self.error.fill(S::zero());
+    }
     /// Takes over another state of the same shape.
     pub fn copy_from(&mut self, other: &Self) {
         self.y.copy_from_slice(&other.y);

@@ -7,9 +7,10 @@
 //! Updates are compensated (Kahan, Comm. ACM 8 (1965) 40): `y + e` carries the state
 //! with about twice the digits, so that round-off grows like a random walk of the *increments*.
 
-mod batch;
+pub(crate) mod batch;
 mod loops;
-mod multistep;
+pub(crate) mod multistep;
+mod relative;
 
 use super::double_double::DoubleDouble;
 use super::inverse_cube::InverseCube;
@@ -55,13 +56,50 @@ pub struct Weighted<'a, S> {
 #[derive(Debug)]
 pub struct Differences<'a, S> {
     /// The accelerations at the node before.
-    pub last: &'a [S],
+    pub last: &'a mut [S],
     /// Their first differences there; after a step, here.
     pub first: &'a mut [S],
     /// Second differences, a block for each node, in a ring.
     pub second: &'a mut [S],
     /// The place of the present node in the ring.
     pub newest: usize,
+}
+
+/// What a multistep method holds at its present node.
+#[derive(Debug)]
+pub struct Nodes<'a, S> {
+    /// The coordinates, and what they leave out.
+    pub q: (&'a mut [S], &'a mut [S]),
+    /// Their difference from the node before, and what it leaves out.
+    pub d: (&'a mut [S], &'a mut [S]),
+    /// The nodes gone by.
+    pub past: Differences<'a, S>,
+    /// The accelerations at the present node.
+    pub a: &'a mut [S],
+    /// The step, squared.
+    pub h2: &'a S,
+    /// h² times the weights of the second differences, the oldest first.
+    pub weights: &'a [S],
+}
+
+/// Coordinates relative to the first body of each system, with the centre of mass of each. Pairs are numbers and what
+/// they leave out.
+#[derive(Debug)]
+pub struct Relative<'a, S> {
+    /// How the coordinates of all bodies lie, system after system in the rows.
+    pub shape: Shape,
+    /// How many systems.
+    pub systems: usize,
+    /// Of each body but the first of each system, one after another, its components together.
+    pub coordinates: (&'a [S], &'a [S]),
+    /// The share of each such body in the mass of its system.
+    pub shares: (&'a [S], &'a [S]),
+    /// Where the centre of each system was, components together, how it moves, and the time since.
+    pub center: (&'a [S], &'a [S]),
+    /// See `center`.
+    pub drift: (&'a [S], &'a [S]),
+    /// See `center`.
+    pub elapsed: (S, S),
 }
 
 /// A scalar that an integrator's state can be made of.
@@ -106,15 +144,8 @@ pub trait Element: InverseCube {
         k: &[Self],
     ) -> [Self; 2];
     /// `d += h²·a + Σ weight·∇²a`, the oldest first, then `q += d`, both compensated: a step of a multistep method.
-    /// The present accelerations join the past.
-    fn multistep(
-        q: (&mut [Self], &mut [Self]),
-        d: (&mut [Self], &mut [Self]),
-        past: Differences<'_, Self>,
-        a: &[Self],
-        h2: &Self,
-        weights: &[Self],
-    );
+    /// The differences of the present accelerations join the past; that they are then the last is left to the caller.
+    fn multistep(nodes: Nodes<'_, Self>);
     /// `v = d/h + h (weight·a + weight·∇a + weight·∇²a + Σ weight·∇²a)`, in the sum the oldest first: the
     /// velocities at a node of a multistep method.
     fn backward_velocity(
@@ -125,6 +156,8 @@ pub trait Element: InverseCube {
         h: &Self,
         weights: &[Self],
     );
+    /// The coordinates of all bodies.
+    fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>);
     /// `if mask { from } else { into }`, element by element.
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
 }
@@ -201,15 +234,8 @@ macro_rules! plain_element {
             ) -> [Self; 2] {
                 loops::largest_errors(shape, y, reference, (*tolerance.0, *tolerance.1), *h, terms, k)
             }
-            fn multistep(
-                q: (&mut [Self], &mut [Self]),
-                d: (&mut [Self], &mut [Self]),
-                past: Differences<'_, Self>,
-                a: &[Self],
-                h2: &Self,
-                weights: &[Self],
-            ) {
-                multistep::step(q, d, past, a, *h2, weights);
+            fn multistep(nodes: Nodes<'_, Self>) {
+                multistep::step(nodes);
             }
             fn backward_velocity(
                 v: &mut [Self],
@@ -220,6 +246,9 @@ macro_rules! plain_element {
                 weights: &[Self],
             ) {
                 multistep::backward_velocity(v, d, past, a, *h, weights);
+            }
+            fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>) {
+                relative::absolute(x, from);
             }
             fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
                 loops::replace(into, from, mask);

@@ -10,8 +10,8 @@ use super::request::{Checked, Request};
 use super::unit::Unit;
 use super::{ForceSpec, Scene};
 use crate::error::Result;
-use crate::forces::gravity::RING_MAX;
-use crate::integrators::Method;
+use crate::forces::gravity::{CLOSED_MAX, RING_MAX};
+use crate::integrators::{Method, Scheme};
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
@@ -101,11 +101,16 @@ impl Plan {
         let closed =
             !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
         let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
-        let interacting = gravity.is_some();
-        let layout = if interacting && (scene.copies == 1 || scene.particles > RING_MAX) {
-            Layout::Packed
-        } else {
-            Layout::Batched
+        // A copy gives the same alone as among others: so a kernel that has no packed form serves it alone, too.
+        let by_itself = matches!(method.scheme, Scheme::Multistep(_))
+            && closed
+            && passive.is_empty()
+            && active.len() <= CLOSED_MAX;
+        let layout = match (gravity, scene.copies) {
+            (None, _) => Layout::Batched,
+            (Some(_), 1) if !by_itself => Layout::Packed,
+            (Some(_), _) if scene.particles > RING_MAX => Layout::Packed,
+            _ => Layout::Batched,
         };
         let mut plan = Self {
             method,

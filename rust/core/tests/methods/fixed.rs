@@ -2,7 +2,7 @@
 
 use super::support::{Problem, Stepper, advance, distance, exactly, harmonic, three_bodies};
 use visviva_core::integrators::Method;
-use visviva_core::integrators::fixed::{Place, place, run};
+use visviva_core::integrators::fixed::{FixedStep, Place, place, run};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
@@ -37,11 +37,19 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
         let mut seen = Vec::new();
         let places = [(0, None), (3, Some(0.01)), (3, Some(0.02)), (17, None), (25, None)]
             .map(|(node, past)| Place { node, past });
-        let (taken, outcome) =
-            run(method, h, 20, &mut state, &mut dynamics, places.into_iter(), &mut ticker, |index, state| {
+        let mut stepper = FixedStep::new(method, h, &state).unwrap();
+        let (taken, outcome) = run(
+            &mut stepper,
+            20,
+            &mut state,
+            &mut dynamics,
+            places.into_iter(),
+            &mut ticker,
+            |index, state| {
                 seen.push((index, state.clone()));
                 Ok(())
-            });
+            },
+        );
         outcome.unwrap();
         assert_eq!((taken, seen.len()), (20, 4), "{}", method.name);
         // Nodes have the bits of plain steps, whatever was looked at on the way; 17 and 20 lie behind the start of a
@@ -57,7 +65,7 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
 /// How far 1e5 steps in `f64` end from the same steps in double-double: round-off alone.
 ///
 /// The steps are small, so that what each loses of the state weighs more than what its force evaluations lose.
-fn round_off(method: &Method, compensated: bool) -> f64 {
+fn round_off(method: &'static Method, compensated: bool) -> f64 {
     let (h, steps) = (1.0 / 8192.0, 100_000);
     let Problem { mut state, mut dynamics, .. } = harmonic::<DoubleDouble>();
     advance(method, h, steps, &mut state, &mut dynamics);

@@ -3,7 +3,7 @@
 use super::support::{Problem, advance, distance};
 use super::{Make, PROBLEMS, reference};
 use visviva_core::forces::{Dynamics, Force, Phase};
-use visviva_core::integrators::fixed::{Place, run};
+use visviva_core::integrators::fixed::{FixedStep, Place, run};
 use visviva_core::integrators::state::State;
 use visviva_core::integrators::{Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
@@ -66,18 +66,26 @@ fn slack(method: &Method) -> f64 {
 }
 
 /// The error after `steps + 3/8` steps of about `t / steps`, the last part being a shadow sub-step.
-fn error_between_nodes(method: &Method, make: Make, t: f64, steps: usize) -> f64 {
+fn error_between_nodes(method: &'static Method, make: Make, t: f64, steps: usize) -> f64 {
     let Problem { mut state, mut dynamics, .. } = make();
     let h = t / steps as f64;
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
     let mut last = None;
     let places = [Place { node: steps as u64, past: Some(0.375 * h) }];
-    let (taken, outcome) =
-        run(method, h, u64::MAX, &mut state, &mut dynamics, places.into_iter(), &mut ticker, |_, state| {
+    let mut stepper = FixedStep::new(method, h, &state).unwrap();
+    let (taken, outcome) = run(
+        &mut stepper,
+        u64::MAX,
+        &mut state,
+        &mut dynamics,
+        places.into_iter(),
+        &mut ticker,
+        |_, state| {
             last = Some(state.clone());
             Ok(())
-        });
+        },
+    );
     outcome.unwrap();
     assert_eq!(taken, steps as u64);
     distance(&last.unwrap(), &reference(make, t + 0.375 * h, 2048))
@@ -150,16 +158,9 @@ fn a_multistep_method_refuses_a_force_that_looks_at_velocities() {
     let Problem { mut state, mut dynamics, .. } = resisted();
     let control = Control::default();
     let places = [Place { node: 20, past: None }].into_iter();
-    let (taken, outcome) = run(
-        method,
-        0.125,
-        20,
-        &mut state,
-        &mut dynamics,
-        places,
-        &mut Ticker::quiet(&control),
-        |_, _| Ok(()),
-    );
+    let mut stepper = FixedStep::new(method, 0.125, &state).unwrap();
+    let (taken, outcome) =
+        run(&mut stepper, 20, &mut state, &mut dynamics, places, &mut Ticker::quiet(&control), |_, _| Ok(()));
     assert!(matches!(outcome, Err(Error::InvalidInput { .. })), "{outcome:?}");
     assert_eq!((taken, dynamics.evaluations), (0, 0));
 }

@@ -7,7 +7,7 @@ use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::registry::METHODS;
 
 /// `max |Mᵀ J M − J|` of one step of `h`, J weighted by the masses; M by central differences.
-fn symplectic_defect(method: &Method, make: Make, h: f64) -> f64 {
+fn symplectic_defect(method: &'static Method, make: Make, h: f64) -> f64 {
     // The differences are wrong by ε² f''' ~ 1e-20 and by 1e-32 / ε = 1e-22.
     let epsilon = 1e-10;
     let n = make().mass.len();
@@ -106,12 +106,12 @@ fn five_bodies(copy: u32) -> Problem<f64> {
 
 /// Largest drift of `Σ m v` and of `Σ m x × v` over the steps, relative to `Σ m |v|` and `Σ m |x| |v|` (about 1);
 /// rms over eight copies, since rounding is a random walk and one walk may go twice as far as another.
-fn drift(method: &Method, h: f64, steps: usize) -> [f64; 2] {
+fn drift(method: &'static Method, h: f64, steps: usize) -> [f64; 2] {
     let copies: Vec<[f64; 2]> = (0..8).map(|copy| drift_of(five_bodies(copy), method, h, steps)).collect();
     [0, 1].map(|index| (copies.iter().map(|drift| drift[index].powi(2)).sum::<f64>() / 8.0).sqrt())
 }
 
-fn drift_of(problem: Problem<f64>, method: &Method, h: f64, steps: usize) -> [f64; 2] {
+fn drift_of(problem: Problem<f64>, method: &'static Method, h: f64, steps: usize) -> [f64; 2] {
     let Problem { mut state, mut dynamics, mass } = problem;
     let start = momenta(&exactly(&state), &mass);
     let mut worst = [0.0_f64; 2];

@@ -104,7 +104,7 @@ pub enum Stepper<S: Element> {
 }
 
 impl<S: Element> Stepper<S> {
-    pub fn new(method: &Method, h: f64, state: &State<S>) -> Self {
+    pub fn new(method: &'static Method, h: f64, state: &State<S>) -> Self {
         match &method.scheme {
             Scheme::Embedded(embedded) => {
                 Self::Tableau(RungeKuttaStep::new(&embedded.tableau, S::splat(h), state))
@@ -115,7 +115,9 @@ impl<S: Element> Stepper<S> {
 
     pub fn step(&mut self, state: &mut State<S>, dynamics: &mut Dynamics<S>, ticker: &mut Ticker<'_>) {
         match self {
-            Self::Fixed(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
+            Self::Fixed(stepper) => {
+                let _ = stepper.step(state, dynamics, ticker, 1).unwrap();
+            }
             Self::Tableau(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
         }
     }
@@ -153,7 +155,7 @@ pub fn adaptive<S: Controlled>(
 
 /// Takes `steps` steps of `h`.
 pub fn advance<S: Element>(
-    method: &Method,
+    method: &'static Method,
     h: f64,
     steps: usize,
     state: &mut State<S>,

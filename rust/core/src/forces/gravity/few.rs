@@ -5,12 +5,13 @@
 //! systems, one after another in its rows: each pair waits long for its weight, and another system's pairs
 //! can be weighed meanwhile.
 
+use super::closed;
 use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
-use crate::forces::{Force, Phase};
+use crate::forces::{ClosedSystems, Force, Phase};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Shape};
+use crate::numerics::element::{Element, Nodes, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::real::Real;
@@ -20,11 +21,11 @@ use crate::tiered;
 /// Gravity among the massive bodies of each system and on the massless ones after them.
 #[derive(Debug)]
 pub struct FewBodies<S> {
-    shape: Shape,
-    systems: usize,
+    pub(super) shape: Shape,
+    pub(super) systems: usize,
     /// `G·m` of the massive bodies, system after system.
-    strength: Vec<S>,
-    softening2: f64,
+    pub(super) strength: Vec<S>,
+    pub(super) softening2: f64,
 }
 
 impl<S: Element> FewBodies<S> {
@@ -32,6 +33,10 @@ impl<S: Element> FewBodies<S> {
     /// first in its rows.
     pub fn new(shape: Shape, systems: usize, strength: Vec<S>, softening: f64) -> Self {
         Self { shape, systems, strength, softening2: softening * softening }
+    }
+    /// Bodies of each system.
+    pub(super) fn bodies(&self) -> usize {
+        self.shape.rows / self.systems
     }
 }
 
@@ -62,6 +67,49 @@ fn pulls<S: InverseCube, const N: usize, const P: usize, const PLANAR: bool, con
         }
     }
     pull
+}
+
+/// The accelerations of the bodies at `position`, of all systems: `N` bodies each, `ALL` together, half of them `HALF`.
+#[inline(always)]
+pub(super) fn sums<
+    S: InverseCube,
+    const N: usize,
+    const ALL: usize,
+    const HALF: usize,
+    const PLANAR: bool,
+    const SOFT: bool,
+>(
+    position: &[[S; 3]; ALL],
+    strength: &[S],
+    softening2: S,
+) -> [[S; 3]; ALL] {
+    let components = if PLANAR { 2 } else { 3 };
+    let strength = &strength[..ALL];
+    let mut sum = [[S::zero(); 3]; ALL];
+    for distance in 1..=(N - 1) / 2 {
+        let pull = pulls::<S, N, ALL, PLANAR, SOFT>(position, distance, softening2);
+        for i in 0..ALL {
+            let (own, place) = (i / N * N, i % N);
+            let (ahead, behind) = (own + (place + distance) % N, own + (place + N - distance) % N);
+            for c in 0..components {
+                sum[i][c] = strength[ahead].multiply_add(pull[i][c], sum[i][c]);
+                sum[i][c] = strength[behind].multiply_subtract_from(pull[behind][c], sum[i][c]);
+            }
+        }
+    }
+    if N.is_multiple_of(2) {
+        // Ahead and behind are the same body.
+        let pull = pulls::<S, N, HALF, PLANAR, SOFT>(position, N / 2, softening2);
+        for p in 0..HALF {
+            let i = p / (N / 2) * N + p % (N / 2);
+            let opposite = i + N / 2;
+            for c in 0..components {
+                sum[i][c] = strength[opposite].multiply_add(pull[p][c], sum[i][c]);
+                sum[opposite][c] = strength[i].multiply_subtract_from(pull[p][c], sum[opposite][c]);
+            }
+        }
+    }
+    sum
 }
 
 /// What is the same for all systems of a state.
@@ -130,30 +178,7 @@ fn some_systems<
             position[i][c] = q[c * rows + row!(i)];
         }
     }
-    let mut sum = [[S::zero(); 3]; ALL];
-    for distance in 1..=(N - 1) / 2 {
-        let pull = pulls::<S, N, ALL, PLANAR, SOFT>(&position, distance, softening2);
-        for i in 0..ALL {
-            let (own, place) = (i / N * N, i % N);
-            let (ahead, behind) = (own + (place + distance) % N, own + (place + N - distance) % N);
-            for c in 0..components {
-                sum[i][c] = strength[ahead].multiply_add(pull[i][c], sum[i][c]);
-                sum[i][c] = strength[behind].multiply_subtract_from(pull[behind][c], sum[i][c]);
-            }
-        }
-    }
-    if N.is_multiple_of(2) {
-        // Ahead and behind are the same body.
-        let pull = pulls::<S, N, HALF, PLANAR, SOFT>(&position, N / 2, softening2);
-        for p in 0..HALF {
-            let i = p / (N / 2) * N + p % (N / 2);
-            let opposite = i + N / 2;
-            for c in 0..components {
-                sum[i][c] = strength[opposite].multiply_add(pull[p][c], sum[i][c]);
-                sum[opposite][c] = strength[i].multiply_subtract_from(pull[p][c], sum[opposite][c]);
-            }
-        }
-    }
+    let sum = sums::<S, N, ALL, HALF, PLANAR, SOFT>(&position, strength, softening2);
     for i in 0..ALL {
         add::<S>(a, row!(i), rows, components, sum[i], first);
     }
@@ -241,6 +266,12 @@ impl Force<Lanes> for FewBodies<Lanes> {
         lanes_tier(self, phase.q, a, first);
         Ok(())
     }
+    fn closed_systems(&self) -> Option<ClosedSystems<'_, Lanes>> {
+        closed::systems(self)
+    }
+    fn multistep(&self, nodes: Nodes<'_, Lanes>, steps: u64) {
+        closed::lanes_multistep(self, nodes, steps);
+    }
 }
 
 macro_rules! plain_force {
@@ -262,6 +293,12 @@ macro_rules! plain_force {
                 };
                 select_kernel::<$type, false>(&systems, a, first);
                 Ok(())
+            }
+            fn closed_systems(&self) -> Option<ClosedSystems<'_, $type>> {
+                closed::systems(self)
+            }
+            fn multistep(&self, nodes: Nodes<'_, $type>, steps: u64) {
+                closed::multistep(self, nodes, steps);
             }
         }
     };

@@ -11,6 +11,7 @@
 //!
 //! A massless body exerts nothing, so pairs of them are never formed.
 
+mod closed;
 pub mod few;
 mod pair;
 mod passive;
@@ -23,3 +24,6 @@ pub use tiles::Tiles;
 
 /// The most massive bodies that the ring order serves.
 pub const RING_MAX: usize = 8;
+
+/// The most bodies whose coordinates stay in registers over a step of a multistep method.
+pub const CLOSED_MAX: usize = 3;

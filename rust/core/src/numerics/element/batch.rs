@@ -1,6 +1,9 @@
 //! The loops over [`Lanes`], compiled for every tier.
 
-use super::{Differences, Element, PairTerm, Scaled, Shape, Term, Weighted, loops, multistep};
+use super::{
+    Differences, Element, Nodes, PairTerm, Relative, Scaled, Shape, Term, Weighted, loops, multistep,
+    relative,
+};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::tiered;
@@ -130,29 +133,28 @@ fn largest_errors_lanes<V: Vector8 + InverseCube>(
 #[inline(always)]
 fn view_past<'a, V: Vector8>(past: Differences<'a, Lanes>) -> Differences<'a, V> {
     Differences {
-        last: V::view(past.last),
+        last: V::view_mut(past.last),
         first: V::view_mut(past.first),
         second: V::view_mut(past.second),
         newest: past.newest,
     }
 }
+/// What a multistep method holds, as the tier's vectors; `h2` is the square of the step.
 #[inline(always)]
-fn multistep_lanes<V: Vector8>(
-    q: (&mut [Lanes], &mut [Lanes]),
-    d: (&mut [Lanes], &mut [Lanes]),
-    past: Differences<'_, Lanes>,
-    a: &[Lanes],
-    h2: &Lanes,
-    weights: &[Lanes],
-) {
-    multistep::step::<V>(
-        (V::view_mut(q.0), V::view_mut(q.1)),
-        (V::view_mut(d.0), V::view_mut(d.1)),
-        view_past(past),
-        V::view(a),
-        V::load(*h2),
-        V::view(weights),
-    );
+pub(crate) fn view_nodes<'a, V: Vector8>(h2: &'a V, nodes: Nodes<'a, Lanes>) -> Nodes<'a, V> {
+    Nodes {
+        q: (V::view_mut(nodes.q.0), V::view_mut(nodes.q.1)),
+        d: (V::view_mut(nodes.d.0), V::view_mut(nodes.d.1)),
+        past: view_past(nodes.past),
+        a: V::view_mut(nodes.a),
+        h2,
+        weights: V::view(nodes.weights),
+    }
+}
+#[inline(always)]
+fn multistep_lanes<V: Vector8>(nodes: Nodes<'_, Lanes>) {
+    let h2 = V::load(*nodes.h2);
+    multistep::step::<V>(view_nodes(&h2, nodes));
 }
 #[inline(always)]
 fn backward_velocity_lanes<V: Vector8>(
@@ -168,13 +170,33 @@ fn backward_velocity_lanes<V: Vector8>(
 }
 
 #[inline(always)]
+fn absolute_lanes<V: Vector8>(x: (&mut [Lanes], &mut [Lanes]), from: &Relative<'_, Lanes>) {
+    let from = Relative {
+        shape: from.shape,
+        systems: from.systems,
+        coordinates: view_pair(from.coordinates),
+        shares: view_pair(from.shares),
+        center: view_pair(from.center),
+        drift: view_pair(from.drift),
+        elapsed: load(&from.elapsed),
+    };
+    relative::absolute::<V>((V::view_mut(x.0), V::view_mut(x.1)), &from);
+}
+
+#[inline(always)]
+fn view_pair<'a, V: Vector8>(pair: (&'a [Lanes], &'a [Lanes])) -> (&'a [V], &'a [V]) {
+    (V::view(pair.0), V::view(pair.1))
+}
+
+#[inline(always)]
 fn replace_lanes<V: Vector8>(into: &mut [Lanes], from: &[Lanes], mask: Bits) {
     loops::replace::<V>(V::view_mut(into), V::view(from), mask);
 }
 
 tiered! {
-    fn multistep_tier[][](q: (&mut [Lanes], &mut [Lanes]), d: (&mut [Lanes], &mut [Lanes]), past: Differences<'_, Lanes>, a: &[Lanes], h2: &Lanes, weights: &[Lanes]) = multistep_lanes;
+    fn multistep_tier[][](nodes: Nodes<'_, Lanes>) = multistep_lanes;
     fn backward_velocity_tier[][](v: &mut [Lanes], d: &[Lanes], past: Differences<'_, Lanes>, a: &[Lanes], h: &Lanes, weights: &[Lanes]) = backward_velocity_lanes;
+    fn absolute_tier[][](x: (&mut [Lanes], &mut [Lanes]), from: &Relative<'_, Lanes>) = absolute_lanes;
     fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: &Scaled<Lanes>, drift: &Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) = advance_lanes;
@@ -230,15 +252,8 @@ impl Element for Lanes {
     ) -> [Self; 2] {
         largest_errors_tier(shape, y, reference, tolerance, h, terms, k)
     }
-    fn multistep(
-        q: (&mut [Self], &mut [Self]),
-        d: (&mut [Self], &mut [Self]),
-        past: Differences<'_, Self>,
-        a: &[Self],
-        h2: &Self,
-        weights: &[Self],
-    ) {
-        multistep_tier(q, d, past, a, h2, weights);
+    fn multistep(nodes: Nodes<'_, Self>) {
+        multistep_tier(nodes);
     }
     fn backward_velocity(
         v: &mut [Self],
@@ -249,6 +264,9 @@ impl Element for Lanes {
         weights: &[Self],
     ) {
         backward_velocity_tier(v, d, past, a, h, weights);
+    }
+    fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>) {
+        absolute_tier(x, from);
     }
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
         replace_tier(into, from, mask);

@@ -2,7 +2,7 @@
 //!
 //! No closures, as in [`loops`](super::loops).
 
-use super::Differences;
+use super::{Differences, Nodes};
 use crate::numerics::real::{Real, each};
 
 /// Calls `$group` for the elements from `$start` on, six at a time while there are six.
@@ -36,42 +36,30 @@ fn older<S: Real, const G: usize>(past: [&[S]; 2], n: usize, weights: &[S], star
 }
 
 #[inline(always)]
-pub(super) fn step<S: Real>(
-    q: (&mut [S], &mut [S]),
-    d: (&mut [S], &mut [S]),
-    Differences { last, first, second, newest }: Differences<'_, S>,
-    a: &[S],
-    h2: S,
-    weights: &[S],
-) {
-    let (n, count) = (a.len(), weights.len());
-    let (late, rest) = second.split_at_mut(newest * n);
-    let (newest, early) = rest.split_at_mut(n);
-    let past = [&early[..], &late[..]];
-    in_groups!(n, |start| step_group(
-        (&mut q.0[start..], &mut q.1[start..]),
-        (&mut d.0[start..], &mut d.1[start..]),
-        (&last[start..], &mut first[start..], &mut newest[start..]),
-        &a[start..],
-        h2,
-        older(past, n, weights, start),
-        weights[count - 1]
-    ));
+pub(super) fn step<S: Real>(mut nodes: Nodes<'_, S>) {
+    in_groups!(nodes.a.len(), |start| step_loaded(&mut nodes, start));
 }
 
 #[inline(always)]
-fn step_group<S: Real, const G: usize>(
-    (q, q_error): (&mut [S], &mut [S]),
-    (d, d_error): (&mut [S], &mut [S]),
-    (last, first, second): (&[S], &mut [S], &mut [S]),
-    a: &[S],
-    h2: S,
-    older: [S; G],
-    weight: S,
-) {
-    let (q, q_error, d, d_error) = (&mut q[..G], &mut q_error[..G], &mut d[..G], &mut d_error[..G]);
-    let (last, first, second, a) = (&last[..G], &mut first[..G], &mut second[..G], &a[..G]);
+fn step_loaded<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize) {
+    let a = &nodes.a[start..][..G];
     let a = each!(g < G => a[g]);
+    step_group(nodes, start, a);
+}
+
+/// [`Element::multistep`](super::Element::multistep) of `G` coordinates from `start` on, whose accelerations are `a`.
+#[inline(always)]
+pub(crate) fn step_group<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize, a: [S; G]) {
+    let Nodes { q, d, past: Differences { last, first, second, newest }, h2, weights, .. } = nodes;
+    let (n, count) = (last.len(), weights.len());
+    let (late, rest) = second.split_at_mut(*newest * n);
+    let (present, early) = rest.split_at_mut(n);
+    let older: [S; G] = older([&early[..], &late[..]], n, weights, start);
+    let ((q, q_error), (d, d_error)) = (q, d);
+    let (q, q_error) = (&mut q[start..][..G], &mut q_error[start..][..G]);
+    let (d, d_error) = (&mut d[start..][..G], &mut d_error[start..][..G]);
+    let (last, first, second) = (&last[start..][..G], &mut first[start..][..G], &mut present[start..][..G]);
+    let (h2, weight) = (**h2, weights[count - 1]);
     let change = each!(g < G => a[g] - last[g]);
     let bend = each!(g < G => change[g] - first[g]);
     first.copy_from_slice(&change);

@@ -4,7 +4,7 @@ use super::super::unit::{self, Prepared, Unit};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
-use crate::integrators::fixed::{self, Place};
+use crate::integrators::fixed::{self, FixedStep, Place};
 use crate::integrators::state::State;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
@@ -22,29 +22,44 @@ pub(super) fn run(
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
     let mut reports = Vec::with_capacity(units.len());
+    let mut room = None;
     for group in units.chunks(job.plan.layout.in_lockstep()) {
-        reports.extend(lockstep(job, group, threads, ticker)?);
+        reports.extend(lockstep(job, group, threads, &mut room, ticker)?);
     }
     Ok(reports)
 }
 
-fn lockstep(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+/// A state and what advances it, for one group of units after another.
+type Room = (State<Lanes>, FixedStep<Lanes>);
+
+fn lockstep(
+    job: &Job<'_>,
+    units: &[Unit],
+    threads: usize,
+    room: &mut Option<Room>,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Report>> {
     let (plan, t0) = (job.plan, job.scene.t0);
     let prepared: Vec<Prepared> = units.iter().map(|unit| job.prepare(unit)).collect();
     let views: Vec<&Prepared> = prepared.iter().collect();
     let mut dynamics = unit::dynamics(plan, &views, threads);
-    let mut state = prepared[0].blank_state(units.len());
+    let dt = plan.dt.unwrap_or(plan.direction);
+    if room.as_ref().is_none_or(|(state, _)| state.shape != dynamics.shape) {
+        let state = prepared[0].blank_state(units.len());
+        let stepper = FixedStep::new(plan.method, scale(dt, -plan.units.time), &state)?;
+        *room = Some((state, stepper));
+    }
+    let Some((state, stepper)) = room else { return Ok(Vec::new()) };
+    state.clear();
     for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
         // Lanes without a unit run along with a copy of the last.
-        prepared[lane.min(units.len() - 1)].write(&mut state, lane);
+        prepared[lane.min(units.len() - 1)].write(state, lane);
     }
-    let dt = plan.dt.unwrap_or(plan.direction);
     let unit_of_time = plan.units.time;
     let places = job.times.iter().map(move |&t| {
         let place = fixed::place(t - t0, dt, Real::max(t.abs(), t0.abs()));
         Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
     });
-    let h = scale(dt, -plan.units.time);
     let mut records = Records {
         job,
         failed: vec![None; units.len()],
@@ -53,23 +68,17 @@ fn lockstep(job: &Job<'_>, units: &[Unit], threads: usize, ticker: &mut Ticker<'
         rows: 0,
         last: None,
     };
-    let (steps, outcome) = fixed::run(
-        plan.method,
-        h,
-        job.max_steps,
-        &mut state,
-        &mut dynamics,
-        places,
-        ticker,
-        |index, state| records.take(index, state),
-    );
+    let (steps, outcome) =
+        fixed::run(stepper, job.max_steps, state, &mut dynamics, places, ticker, |index, state| {
+            records.take(index, state)
+        });
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
         Err(Error::Interrupted) => Ending::Interrupted,
         Err(other) => return Err(other),
     };
     let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations };
-    Ok(records.reports(&state, t0 + steps as f64 * dt, &short, counts))
+    Ok(records.reports(state, t0 + steps as f64 * dt, &short, counts))
 }
 
 /// What has been recorded of units in lockstep.
