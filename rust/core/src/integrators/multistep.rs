@@ -189,7 +189,6 @@ impl<S: Element> MultistepStep<S> {
         }
         let (q, _) = state.halves_mut();
         S::multistep(self.past.nodes(q, &self.h2, &self.weights));
-        core::mem::swap(&mut self.past.acceleration, &mut self.past.last);
         self.past.pass(1);
         // Here and not before the next step: the velocity at this node needs it.
         dynamics.acceleration(state.q(), state.v(), &mut self.past.acceleration, ticker)?;

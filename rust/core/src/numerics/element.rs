@@ -55,9 +55,9 @@ pub struct Weighted<'a, S> {
 /// accelerations themselves, up to a hundred, would round hundredfold. And the first of them are exact.
 #[derive(Debug)]
 pub struct Differences<'a, S> {
-    /// The accelerations at the node before.
+    /// The accelerations at the node before; after a step, here.
     pub last: &'a mut [S],
-    /// Their first differences there; after a step, here.
+    /// Their first differences there, too.
     pub first: &'a mut [S],
     /// Second differences, a block for each node, in a ring.
     pub second: &'a mut [S],
@@ -144,7 +144,7 @@ pub trait Element: InverseCube {
         k: &[Self],
     ) -> [Self; 2];
     /// `d += h²·a + Σ weight·∇²a`, the oldest first, then `q += d`, both compensated: a step of a multistep method.
-    /// The differences of the present accelerations join the past; that they are then the last is left to the caller.
+    /// The present accelerations join the past.
     fn multistep(nodes: Nodes<'_, Self>);
     /// `v = d/h + h (weight·a + weight·∇a + weight·∇²a + Σ weight·∇²a)`, in the sum the oldest first: the
     /// velocities at a node of a multistep method.

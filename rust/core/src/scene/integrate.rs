@@ -20,7 +20,7 @@ use crate::numerics::lanes::WIDTH;
 use crate::parallel::{Ticker, for_chunks};
 
 /// Units that one thread takes at a time: enough that lanes seldom run dry, few enough for balance.
-const UNITS_PER_CHUNK: usize = 256;
+const UNITS_PER_CHUNK: usize = 128;
 
 /// What all units of a run share.
 pub struct Job<'a> {

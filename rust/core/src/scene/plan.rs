@@ -12,6 +12,8 @@ use super::{ForceSpec, Scene};
 use crate::error::Result;
 use crate::forces::gravity::{CLOSED_MAX, RING_MAX};
 use crate::integrators::{Method, Scheme};
+use core::ops::Range;
+use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
@@ -158,26 +160,32 @@ impl Plan {
 
     /// The units of the integration, in the order in which they are begun.
     pub fn unit_list(&self) -> Vec<Unit> {
-        let mut units = Vec::new();
-        for copy in 0..self.copies {
-            let active = self.active.len();
-            if self.gravity.is_none() {
-                let lone = |&i: &usize| Unit { copy, bodies: vec![i], active: 0, recorded: 0..1 };
-                units.extend(self.passive.iter().map(lone));
-            } else if self.passive_apart() {
-                units.push(Unit { copy, bodies: self.active.clone(), active, recorded: 0..active });
-                for run in self.passive.chunks(PASSIVE_PER_UNIT) {
-                    let bodies: Vec<usize> = self.active.iter().chain(run).copied().collect();
-                    let recorded = active..bodies.len();
-                    units.push(Unit { copy, bodies, active, recorded });
-                }
-            } else {
-                let bodies: Vec<usize> = self.active.iter().chain(&self.passive).copied().collect();
-                let recorded = 0..bodies.len();
-                units.push(Unit { copy, bodies, active, recorded });
-            }
-        }
-        units
+        let active = self.active.len();
+        // What each copy is made of: bodies, how many of them attract, which are recorded.
+        let kinds: Vec<(Arc<[usize]>, usize, Range<usize>)> = if self.gravity.is_none() {
+            self.passive.iter().map(|&i| (Arc::from([i]), 0, 0..1)).collect()
+        } else if self.passive_apart() {
+            let with_active = |run: &[usize]| {
+                let bodies: Arc<[usize]> = self.active.iter().chain(run).copied().collect();
+                let recorded = active..bodies.len();
+                (bodies, active, recorded)
+            };
+            let massive = (Arc::from(&self.active[..]), active, 0..active);
+            core::iter::once(massive).chain(self.passive.chunks(PASSIVE_PER_UNIT).map(with_active)).collect()
+        } else {
+            let bodies: Arc<[usize]> = self.active.iter().chain(&self.passive).copied().collect();
+            let recorded = 0..bodies.len();
+            vec![(bodies, active, recorded)]
+        };
+        (0..self.copies)
+            .flat_map(|copy| kinds.iter().map(move |kind| (copy, kind)))
+            .map(|(copy, (bodies, active, recorded))| Unit {
+                copy,
+                bodies: Arc::clone(bodies),
+                active: *active,
+                recorded: recorded.clone(),
+            })
+            .collect()
     }
 
     /// Pairs that one force evaluation of one copy forms.

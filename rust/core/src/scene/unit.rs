@@ -18,14 +18,15 @@ use super::plan::Plan;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
 use record::Reading;
+use std::sync::Arc;
 
 /// Bodies that are integrated together: massive ones first.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Which copy of the scene.
     pub copy: usize,
-    /// Their indices in the scene.
-    pub bodies: Vec<usize>,
+    /// Their indices in the scene; shared, as the units of all copies have the same.
+    pub bodies: Arc<[usize]>,
     /// How many of them attract.
     pub active: usize,
     /// Which of them, by their place in `bodies`, are recorded from this unit.

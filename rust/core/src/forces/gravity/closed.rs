@@ -79,7 +79,6 @@ fn kernel<
                 );
             }
             step_group(&mut nodes, start, a);
-            nodes.past.last[start..][..G].copy_from_slice(&a);
         }
         nodes.past.newest =
             if nodes.past.newest + 1 == nodes.weights.len() { 0 } else { nodes.past.newest + 1 };

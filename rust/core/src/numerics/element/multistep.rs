@@ -21,13 +21,19 @@ macro_rules! in_groups {
     };
 }
 
-/// `Σ weight·∇²a` over the past nodes, the oldest first.
+/// `Σ weight·∇²a` over the nodes in the ring but the one at `newest`, the oldest first.
 #[inline(always)]
-fn older<S: Real, const G: usize>(past: [&[S]; 2], n: usize, weights: &[S], start: usize) -> [S; G] {
+fn older<S: Real, const G: usize>(
+    second: &[S],
+    n: usize,
+    newest: usize,
+    weights: &[S],
+    start: usize,
+) -> [S; G] {
     let mut sums = [S::zero(); G];
-    let (early, late) = weights.split_at(past[0].len() / n);
-    for (past, weights) in past.into_iter().zip([early, late]) {
-        for (block, &weight) in past.chunks_exact(n).zip(weights) {
+    let (early, late) = weights.split_at(weights.len() - newest);
+    for (first, weights) in [(newest + 1, early), (0, late)] {
+        for (block, &weight) in second[first * n..].chunks(n).zip(weights) {
             let block = &block[start..][..G];
             sums = each!(g < G => weight.multiply_add(block[g], sums[g]));
         }
@@ -51,17 +57,17 @@ fn step_loaded<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize) 
 #[inline(always)]
 pub(crate) fn step_group<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize, a: [S; G]) {
     let Nodes { q, d, past: Differences { last, first, second, newest }, h2, weights, .. } = nodes;
-    let (n, count) = (last.len(), weights.len());
-    let (late, rest) = second.split_at_mut(*newest * n);
-    let (present, early) = rest.split_at_mut(n);
-    let older: [S; G] = older([&early[..], &late[..]], n, weights, start);
+    let n = last.len();
+    let [weights @ .., weight] = weights else { return };
+    let older: [S; G] = older(second, n, *newest, weights, start);
     let ((q, q_error), (d, d_error)) = (q, d);
     let (q, q_error) = (&mut q[start..][..G], &mut q_error[start..][..G]);
     let (d, d_error) = (&mut d[start..][..G], &mut d_error[start..][..G]);
-    let (last, first, second) = (&last[start..][..G], &mut first[start..][..G], &mut present[start..][..G]);
-    let (h2, weight) = (**h2, weights[count - 1]);
+    let (last, first) = (&mut last[start..][..G], &mut first[start..][..G]);
+    let second = &mut second[*newest * n + start..][..G];
     let change = each!(g < G => a[g] - last[g]);
     let bend = each!(g < G => change[g] - first[g]);
+    last.copy_from_slice(&a);
     first.copy_from_slice(&change);
     second.copy_from_slice(&bend);
     let sum = each!(g < G => h2.multiply_add(a[g], weight.multiply_add(bend[g], older[g])));
@@ -89,14 +95,13 @@ pub(super) fn backward_velocity<S: Real>(
 ) {
     let n = a.len();
     let [present, changed, bent, weights @ ..] = weights else { return };
-    let past = [&second[(newest + 1) * n..], &second[..newest * n]];
     in_groups!(n, |start| backward_velocity_group(
         &mut v[start..],
         &d[start..],
         (&last[start..], &first[start..]),
         &a[start..],
         h,
-        older(past, n, weights, start),
+        older(second, n, newest, weights, start),
         [*present, *changed, *bent]
     ));
 }

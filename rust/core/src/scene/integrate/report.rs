@@ -77,8 +77,14 @@ impl Job<'_> {
         counts: Counts,
     ) -> Report {
         let elapsed = time - self.scene.t0;
-        let bodies = unit.unit.recorded.clone().map(|slot| unit.read(slot, state, lane, elapsed));
-        let (position, velocity) = bodies.map(|entry| (entry.position, entry.velocity)).unzip();
+        let recorded = unit.unit.recorded.clone();
+        let (mut position, mut velocity) =
+            (Vec::with_capacity(recorded.len()), Vec::with_capacity(recorded.len()));
+        for slot in recorded {
+            let entry = unit.read(slot, state, lane, elapsed);
+            position.push(entry.position);
+            velocity.push(entry.velocity);
+        }
         Report { unit: unit.unit.clone(), ending, rows, counts, time, position, velocity }
     }
 }

@@ -17,14 +17,13 @@ pub(super) fn run_by_pattern(
     request: &Request,
     ticker: &mut Ticker<'_>,
 ) -> Result<Option<Output>> {
-    let pattern = |copy: usize| -> Vec<bool> { scene.masses(copy).iter().map(|&m| m > 0.0).collect() };
-    let first = pattern(0);
-    if (1..scene.copies).all(|copy| pattern(copy) == first) {
+    let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
+    if (1..scene.copies).all(|copy| pattern(copy).eq(pattern(0))) {
         return Ok(None);
     }
     let mut groups: BTreeMap<Vec<bool>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
-        groups.entry(pattern(copy)).or_default().push(copy);
+        groups.entry(pattern(copy).collect()).or_default().push(copy);
     }
     let times = request.times.len();
     let mut whole: Option<Output> = None;
