@@ -66,19 +66,15 @@ fn kernel<
     let (systems, softening2) = (strength.len() / N, S::splat(softening2));
     for step in 0..steps {
         for system in 0..systems {
-            let start = system * G;
-            let mut a = [S::zero(); G];
+            let (start, strength) = (system * G, &strength[system * N..][..N]);
+            let (mut place, mut a) = ([S::zero(); G], [S::zero(); G]);
+            place.copy_from_slice(&nodes.q.0[start..][..G]);
             if step == 0 {
                 a.copy_from_slice(&nodes.a[start..][..G]);
             } else {
-                let strength = &strength[system * N..][..N];
-                a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(
-                    &nodes.q.0[start..][..G],
-                    strength,
-                    softening2,
-                );
+                a = accelerations::<S, N, HALF, G, PLANAR, SOFT>(&place, strength, softening2);
             }
-            step_group(&mut nodes, start, a);
+            step_group(&mut nodes, start, a, place);
         }
         nodes.past.newest =
             if nodes.past.newest + 1 == nodes.weights.len() { 0 } else { nodes.past.newest + 1 };

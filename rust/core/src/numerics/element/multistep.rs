@@ -48,14 +48,18 @@ pub(super) fn step<S: Real>(mut nodes: Nodes<'_, S>) {
 
 #[inline(always)]
 fn step_loaded<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize) {
-    let a = &nodes.a[start..][..G];
-    let a = each!(g < G => a[g]);
-    step_group(nodes, start, a);
+    let (a, q) = (&nodes.a[start..][..G], &nodes.q.0[start..][..G]);
+    step_group(nodes, start, each!(g < G => a[g]), each!(g < G => q[g]));
 }
 
-/// [`Element::multistep`](super::Element::multistep) of `G` coordinates from `start` on, whose accelerations are `a`.
+/// [`Element::multistep`](super::Element::multistep) of `G` coordinates from `start` on: `place`, whose accelerations are `a`.
 #[inline(always)]
-pub(crate) fn step_group<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, start: usize, a: [S; G]) {
+pub(crate) fn step_group<S: Real, const G: usize>(
+    nodes: &mut Nodes<'_, S>,
+    start: usize,
+    a: [S; G],
+    place: [S; G],
+) {
     let Nodes { q, d, past: Differences { last, first, second, newest }, h2, weights, .. } = nodes;
     let n = last.len();
     let [weights @ .., weight] = weights else { return };
@@ -72,7 +76,7 @@ pub(crate) fn step_group<S: Real, const G: usize>(nodes: &mut Nodes<'_, S>, star
     second.copy_from_slice(&bend);
     let sum = each!(g < G => h2.multiply_add(a[g], weight.multiply_add(bend[g], older[g])));
     // As `add_compensated`.
-    let (speed, place) = (each!(g < G => d[g]), each!(g < G => q[g]));
+    let speed = each!(g < G => d[g]);
     let change = each!(g < G => sum[g] + d_error[g]);
     let difference = each!(g < G => speed[g] + change[g]);
     let rest = each!(g < G => change[g] - (difference[g] - speed[g]));
