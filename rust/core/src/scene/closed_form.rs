@@ -6,7 +6,7 @@
 use super::Scene;
 use super::columns::{Entry, Writer};
 use super::plan::{Plan, Solution};
-use super::run::Outcome;
+use super::run::Reached;
 use crate::error::Result;
 use crate::nbody::kepler::KeplerOrbit;
 use crate::nbody::two_body::{ExactState, TwoBody};
@@ -122,8 +122,8 @@ pub fn run(
     times: &[f64],
     writer: &Writer<'_>,
     ticker: &mut Ticker<'_>,
-) -> Result<Vec<Outcome>> {
-    let mut outcomes = Vec::with_capacity(scene.copies);
+) -> Result<Reached> {
+    let mut reached = Reached { position: Vec::new(), velocity: Vec::new() };
     for copy in 0..scene.copies {
         let motion = motion(scene, plan, copy)?;
         let (mut states, mut last) = (Vec::new(), Vec::new());
@@ -137,9 +137,10 @@ pub fn run(
             }
             ticker.tick()?;
         }
-        outcomes.push(Outcome::closed_form(times.len(), times[times.len() - 1], &last));
+        reached.position.extend(last.iter().map(|entry| entry.position));
+        reached.velocity.extend(last.iter().map(|entry| entry.velocity));
     }
-    Ok(outcomes)
+    Ok(reached)
 }
 
 fn entry(scene: &Scene, copy: usize, particle: usize, (position, velocity): ExactState, t: f64) -> Entry {

@@ -5,7 +5,7 @@ mod patterns;
 
 pub use derived::Derived;
 
-use super::columns::{Columns, Entry, Missing};
+use super::columns::{Columns, Missing};
 use super::integrate::{self, Counts, Ending, Job, Report};
 use super::plan::{Plan, Solution};
 use super::request::Request;
@@ -27,9 +27,14 @@ pub struct Outcome {
     pub counts: Counts,
     /// The time reached.
     pub time: f64,
-    /// Final positions.
+}
+
+/// The states that the copies reached, particle after particle, copy after copy.
+#[derive(Clone, Debug)]
+pub struct Reached {
+    /// Positions.
     pub position: Vec<[f64; 3]>,
-    /// Final velocities.
+    /// Velocities.
     pub velocity: Vec<[f64; 3]>,
 }
 
@@ -44,6 +49,8 @@ pub struct Output {
     pub derived: Vec<Derived>,
     /// What became of each copy.
     pub outcomes: Vec<Outcome>,
+    /// The states reached.
+    pub reached: Reached,
 }
 
 /// Runs a scene.
@@ -63,7 +70,7 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
         request.records("velocity"),
         plan.derived(),
     );
-    let outcomes = if plan.solution == Solution::Integration {
+    let (outcomes, reached) = if plan.solution == Solution::Integration {
         let writer = columns.writer();
         let job = Job {
             scene,
@@ -93,10 +100,11 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
         unsafe { columns.finish(scene.copies, &missing) };
         gather(scene, request, &reports)
     } else {
-        let outcomes = closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?;
+        let reached = closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?;
         // SAFETY: a closed form that succeeds has written every particle at every time.
         unsafe { columns.finish(scene.copies, &[]) };
-        outcomes
+        // It cannot fail.
+        (vec![Outcome::finished(request); scene.copies], reached)
     };
     let derived = derive(scene, request, &plan, &columns, &outcomes, ticker)?;
     if !request.records("position") {
@@ -107,21 +115,13 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     }
     give_back(core::mem::take(&mut columns.position_rest));
     give_back(core::mem::take(&mut columns.velocity_rest));
-    Ok(Output { plan, columns, derived, outcomes })
+    Ok(Output { plan, columns, derived, outcomes, reached })
 }
 
 /// Puts the units' reports together, copy by copy.
-fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> {
-    let mut outcomes: Vec<Outcome> = (0..scene.copies)
-        .map(|copy| Outcome {
-            ending: Ending::Finished,
-            rows: request.times.len(),
-            counts: Counts::default(),
-            time: request.times[request.times.len() - 1],
-            position: scene.positions(copy).to_vec(),
-            velocity: scene.velocities(copy).to_vec(),
-        })
-        .collect();
+fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> (Vec<Outcome>, Reached) {
+    let mut outcomes = vec![Outcome::finished(request); scene.copies];
+    let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
     for report in reports {
         let outcome = &mut outcomes[report.unit.copy];
         if outcome.ending == Ending::Finished && report.ending != Ending::Finished {
@@ -130,25 +130,24 @@ fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> Vec<Outcome> 
         }
         outcome.rows = outcome.rows.min(report.rows);
         outcome.counts += report.counts;
-        for (index, slot) in report.unit.recorded.clone().enumerate() {
-            let body = report.unit.bodies[slot];
-            outcome.position[body] = report.position[index];
-            outcome.velocity[body] = report.velocity[index];
+        for (&[position, velocity], slot) in report.states.iter().zip(report.unit.recorded.clone()) {
+            let particle = report.unit.copy * scene.particles + report.unit.bodies[slot];
+            reached.position[particle] = position;
+            reached.velocity[particle] = velocity;
         }
     }
-    outcomes
+    (outcomes, reached)
 }
 
 impl Outcome {
-    /// Of a closed form: it cannot fail.
-    pub(super) fn closed_form(times: usize, time: f64, entries: &[Entry]) -> Self {
+    /// Of a copy that comes to the end at no cost.
+    fn finished(request: &Request) -> Self {
+        let times = &request.times;
         Self {
             ending: Ending::Finished,
-            rows: times,
+            rows: times.len(),
             counts: Counts::default(),
-            time,
-            position: entries.iter().map(|entry| entry.position).collect(),
-            velocity: entries.iter().map(|entry| entry.velocity).collect(),
+            time: times[times.len() - 1],
         }
     }
 }

@@ -86,18 +86,14 @@ pub(super) fn output_dict<'py>(
     dict.set_item("stats", totals)?;
     dict.set_item("per_trajectory", each)?;
 
-    let flat = |of: fn(&Outcome) -> &Vec<[f64; 3]>| {
-        let values: Vec<f64> =
-            outcomes.iter().flat_map(|outcome| of(outcome).as_flattened()).copied().collect();
-        moved(py, values, &[copies, particles, 3])
-    };
+    let flat = |points: Vec<[f64; 3]>| moved(py, points.into_flattened(), &[copies, particles, 3]);
     let last = PyDict::new(py);
     last.set_item(
         "t",
         moved(py, outcomes.iter().map(|outcome| outcome.time).collect::<Vec<f64>>(), &[copies])?,
     )?;
-    last.set_item("position", flat(|outcome| &outcome.position)?)?;
-    last.set_item("velocity", flat(|outcome| &outcome.velocity)?)?;
+    last.set_item("position", flat(output.reached.position)?)?;
+    last.set_item("velocity", flat(output.reached.velocity)?)?;
     dict.set_item("final", last)?;
     let error = if ensemble { None } else { failure(&outcomes[0]) };
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;

@@ -58,10 +58,8 @@ pub struct Report {
     pub counts: Counts,
     /// The time reached.
     pub time: f64,
-    /// Final positions of the recorded bodies.
-    pub position: Vec<[f64; 3]>,
-    /// Final velocities of the recorded bodies.
-    pub velocity: Vec<[f64; 3]>,
+    /// Final positions and velocities of the recorded bodies.
+    pub states: Vec<[[f64; 3]; 2]>,
 }
 
 impl Job<'_> {
@@ -77,14 +75,11 @@ impl Job<'_> {
         counts: Counts,
     ) -> Report {
         let elapsed = time - self.scene.t0;
-        let recorded = unit.unit.recorded.clone();
-        let (mut position, mut velocity) =
-            (Vec::with_capacity(recorded.len()), Vec::with_capacity(recorded.len()));
-        for slot in recorded {
+        let mut states = Vec::with_capacity(unit.unit.recorded.len());
+        for slot in unit.unit.recorded.clone() {
             let entry = unit.read(slot, state, lane, elapsed);
-            position.push(entry.position);
-            velocity.push(entry.velocity);
+            states.push([entry.position, entry.velocity]);
         }
-        Report { unit: unit.unit.clone(), ending, rows, counts, time, position, velocity }
+        Report { unit: unit.unit.clone(), ending, rows, counts, time, states }
     }
 }

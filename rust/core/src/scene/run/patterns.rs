@@ -3,7 +3,7 @@
 use super::super::Scene;
 use super::super::columns::Columns;
 use super::super::request::Request;
-use super::{Derived, Output, run};
+use super::{Derived, Output, Reached, run};
 use crate::error::Result;
 use crate::parallel::Ticker;
 use std::collections::BTreeMap;
@@ -58,19 +58,25 @@ pub(super) fn run_by_pattern(
                 })
                 .collect(),
             outcomes: vec![part.outcomes[0].clone(); scene.copies],
+            reached: Reached { position: scene.position.clone(), velocity: scene.velocity.clone() },
         });
         for (index, &copy) in members.iter().enumerate() {
-            let scatter = |into: &mut Vec<f64>, from: &Vec<f64>| {
-                let size = from.len() / members.len();
-                into[copy * size..(copy + 1) * size].copy_from_slice(&from[index * size..(index + 1) * size]);
-            };
-            scatter(&mut whole.columns.position, &part.columns.position);
-            scatter(&mut whole.columns.velocity, &part.columns.velocity);
+            let places = (copy, index, members.len());
+            scatter(&mut whole.columns.position, &part.columns.position, places);
+            scatter(&mut whole.columns.velocity, &part.columns.velocity, places);
             for (into, from) in whole.derived.iter_mut().zip(&part.derived) {
-                scatter(&mut into.values, &from.values);
+                scatter(&mut into.values, &from.values, places);
             }
+            scatter(&mut whole.reached.position, &part.reached.position, places);
+            scatter(&mut whole.reached.velocity, &part.reached.velocity, places);
             whole.outcomes[copy] = part.outcomes[index].clone();
         }
     }
     Ok(whole)
+}
+
+/// Copies what belongs to one copy: its place in the whole, its place among the `members` of the part, their number.
+fn scatter<T: Copy>(into: &mut [T], from: &[T], (copy, index, members): (usize, usize, usize)) {
+    let size = from.len() / members;
+    into[copy * size..][..size].copy_from_slice(&from[index * size..][..size]);
 }
