@@ -82,7 +82,7 @@ def rows() -> Iterator[Row]:
     ensemble = perturbed(vv.problems.figure_eight().scene)
     reference = Reference(ensemble.scene)
     truth = np.array([reference.positions(END, ensemble.position[i], ensemble.velocity[i]) for i in range(SUBSET)])
-    tolerances = 10.0 ** -np.arange(9.5, 13.0, 0.25)
+    tolerances = 10.0 ** -np.arange(9.2, 13.0, 0.05)
     candidates = {
         **{
             f"heyoka batch of {batch}": loosest(lambda x, b=batch: heyoka_batch(ensemble, b, x), tolerances, truth)

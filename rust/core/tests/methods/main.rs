@@ -7,6 +7,7 @@
 mod support;
 
 mod adaptive;
+mod closed;
 mod fixed;
 mod golden;
 mod order;
