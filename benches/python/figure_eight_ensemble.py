@@ -112,7 +112,7 @@ def rows() -> Iterator[Row]:
             f"{seconds[mine]:.3f} s",
             f"{seconds[theirs]:.3f} s",
             seconds[theirs] / seconds[mine],
-            15.0 if recommended else None,
+            15.0,
         )
 
 

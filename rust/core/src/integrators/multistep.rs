@@ -16,7 +16,7 @@ use super::state::State;
 use crate::error::Result;
 use crate::forces::Dynamics;
 use crate::numerics::double_double::{DoubleDouble, two_product};
-use crate::numerics::element::{Differences, Element, Nodes};
+use crate::numerics::element::{Differences, Element, Nodes, Scaled};
 use crate::parallel::Ticker;
 use relative::Relative;
 
@@ -87,7 +87,7 @@ impl<S: Element> Past<S> {
     }
 
     /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
-    fn velocity(&mut self, v: &mut [S], h: &S, weights: &[S]) {
+    fn velocity(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
         let Self { acceleration, last, first, second, newest, d, .. } = self;
         let past = Differences { last, first, second, newest: *newest };
         S::backward_velocity(v, d, past, acceleration, h, weights);
@@ -98,7 +98,7 @@ impl<S: Element> Past<S> {
     fn start(&mut self, (v, v_error): (&[S], &[S]), h: S, h2: S, weights: &[S]) {
         let mut sum = vec![S::zero(); v.len()];
         self.d.fill(S::zero());
-        self.velocity(&mut sum, &S::one(), weights);
+        self.velocity(&mut sum, (&S::one(), &(S::one(), S::zero())), weights);
         for i in 0..v.len() {
             (self.d[i], self.d_error[i]) = two_product(h, v[i]);
             self.d_error[i] += h * v_error[i];
@@ -111,6 +111,7 @@ impl<S: Element> Past<S> {
 #[derive(Debug)]
 pub struct MultistepStep<S> {
     h: S,
+    h_inverse: Scaled<S>,
     h2: S,
     /// h² times the weights of the second differences, the oldest first.
     weights: Vec<S>,
@@ -123,6 +124,8 @@ pub struct MultistepStep<S> {
     past: Past<S>,
     /// Other coordinates than those of the state, once it has started, and their past.
     relative: Option<(Relative<S>, Past<S>)>,
+    /// Room for velocities in them.
+    relative_velocity: Vec<S>,
     /// Whether the state belongs to the present node.
     complete: bool,
 }
@@ -134,9 +137,11 @@ impl<S: Element> MultistepStep<S> {
         let h2 = DoubleDouble::from(h) * DoubleDouble::from(h);
         let (present, older) = table.velocity.split_at(3);
         let velocity = present.iter().chain(older.iter().rev());
+        let h_inverse = DoubleDouble::from(1.0) / DoubleDouble::from(h);
         let h = S::splat(h);
         Self {
             h,
+            h_inverse: S::one().scaled_by(h_inverse),
             h2: S::from_double_double(h2),
             weights: table.second_differences.iter().rev().map(|&w| S::from_double_double(h2 * w)).collect(),
             velocity: velocity.map(|&weight| S::from_double_double(weight)).collect(),
@@ -146,6 +151,7 @@ impl<S: Element> MultistepStep<S> {
             to_start: count + 1,
             past: Past::new(state.shape.len(), count),
             relative: None,
+            relative_velocity: Vec::new(),
             complete: true,
         }
     }
@@ -229,13 +235,15 @@ impl<S: Element> MultistepStep<S> {
         }
         match &mut self.relative {
             Some((relative, past)) => {
-                let mut v = vec![S::zero(); past.d.len()];
-                past.velocity(&mut v, &self.h, &self.velocity);
+                let mut v = core::mem::take(&mut self.relative_velocity);
+                v.resize(past.d.len(), S::zero());
+                past.velocity(&mut v, (&self.h, &self.h_inverse), &self.velocity);
                 relative.write(state, &v);
+                self.relative_velocity = v;
             }
             None => {
                 let (_, (v, v_error)) = state.halves_mut();
-                self.past.velocity(v, &self.h, &self.velocity);
+                self.past.velocity(v, (&self.h, &self.h_inverse), &self.velocity);
                 v_error.fill(S::zero());
             }
         }

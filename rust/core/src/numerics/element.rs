@@ -82,24 +82,28 @@ pub struct Nodes<'a, S> {
     pub weights: &'a [S],
 }
 
-/// Coordinates relative to the first body of each system, with the centre of mass of each. Pairs are numbers and what
-/// they leave out.
+/// A state relative to the first body of each system, with the centre of mass of each. Pairs are numbers and what they
+/// leave out.
 #[derive(Debug)]
 pub struct Relative<'a, S> {
     /// How the coordinates of all bodies lie, system after system in the rows.
     pub shape: Shape,
     /// How many systems.
     pub systems: usize,
-    /// Of each body but the first of each system, one after another, its components together.
-    pub coordinates: (&'a [S], &'a [S]),
+    /// Coordinates of each body but the first of each system, one after another, its components together.
+    pub q: (&'a [S], &'a [S]),
+    /// Velocities, likewise.
+    pub v: &'a [S],
     /// The share of each such body in the mass of its system.
     pub shares: (&'a [S], &'a [S]),
-    /// Where the centre of each system was, components together, how it moves, and the time since.
+    /// Where the centre of each system was at node 0, its components together.
     pub center: (&'a [S], &'a [S]),
-    /// See `center`.
+    /// How it moves.
     pub drift: (&'a [S], &'a [S]),
-    /// See `center`.
-    pub elapsed: (S, S),
+    /// The step.
+    pub h: S,
+    /// The present node.
+    pub node: S,
 }
 
 /// A scalar that an integrator's state can be made of.
@@ -147,17 +151,17 @@ pub trait Element: InverseCube {
     /// The present accelerations join the past.
     fn multistep(nodes: Nodes<'_, Self>);
     /// `v = d/h + h (weight·a + weight·∇a + weight·∇²a + Σ weight·∇²a)`, in the sum the oldest first: the
-    /// velocities at a node of a multistep method.
+    /// velocities at a node of a multistep method. The step comes with its reciprocal, as divisions take long.
     fn backward_velocity(
         v: &mut [Self],
         d: &[Self],
         past: Differences<'_, Self>,
         a: &[Self],
-        h: &Self,
+        h: (&Self, &Scaled<Self>),
         weights: &[Self],
     );
-    /// The coordinates of all bodies.
-    fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>);
+    /// The coordinates, compensated, and the velocities of all bodies.
+    fn absolute(q: (&mut [Self], &mut [Self]), v: &mut [Self], from: &Relative<'_, Self>);
     /// `if mask { from } else { into }`, element by element.
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask);
 }
@@ -242,13 +246,13 @@ macro_rules! plain_element {
                 d: &[Self],
                 past: Differences<'_, Self>,
                 a: &[Self],
-                h: &Self,
+                h: (&Self, &Scaled<Self>),
                 weights: &[Self],
             ) {
-                multistep::backward_velocity(v, d, past, a, *h, weights);
+                multistep::backward_velocity(v, d, past, a, (*h.0, *h.1), weights);
             }
-            fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>) {
-                relative::absolute(x, from);
+            fn absolute(q: (&mut [Self], &mut [Self]), v: &mut [Self], from: &Relative<'_, Self>) {
+                relative::absolute(q, v, from);
             }
             fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
                 loops::replace(into, from, mask);

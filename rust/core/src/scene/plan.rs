@@ -69,6 +69,8 @@ pub struct Plan {
     pub units: Units,
     /// Its origin, for each copy.
     pub origins: Vec<Origin>,
+    /// Whether the method moves the massive bodies relative to the first one.
+    pub relative: bool,
     /// How units lie in lanes.
     pub layout: Layout,
     /// Threads over units, and inside one force evaluation.
@@ -103,17 +105,12 @@ impl Plan {
         let closed =
             !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
         let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
-        // A copy gives the same alone as among others: so a kernel that has no packed form serves it alone, too.
-        let by_itself = matches!(method.scheme, Scheme::Multistep(_))
+        let relative = matches!(method.scheme, Scheme::Multistep(_))
             && closed
-            && passive.is_empty()
-            && active.len() <= CLOSED_MAX;
-        let layout = match (gravity, scene.copies) {
-            (None, _) => Layout::Batched,
-            (Some(_), 1) if !by_itself => Layout::Packed,
-            (Some(_), _) if scene.particles > RING_MAX => Layout::Packed,
-            _ => Layout::Batched,
-        };
+            && (2..=CLOSED_MAX).contains(&active.len());
+        // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
+        let batched = gravity.is_none() || relative || (scene.copies > 1 && scene.particles <= RING_MAX);
+        let layout = if batched { Layout::Batched } else { Layout::Packed };
         let mut plan = Self {
             method,
             dt,
@@ -126,6 +123,7 @@ impl Plan {
             active,
             passive,
             origins,
+            relative,
             layout,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
@@ -155,7 +153,7 @@ impl Plan {
 
     /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
     pub fn passive_apart(&self) -> bool {
-        self.method.adaptive() && !self.active.is_empty() && !self.passive.is_empty()
+        (self.method.adaptive() || self.relative) && !self.active.is_empty() && !self.passive.is_empty()
     }
 
     /// The units of the integration, in the order in which they are begun.

@@ -29,7 +29,6 @@ pub(super) struct Relative<S> {
     h: S,
     /// The present node.
     node: u64,
-    zeros: Vec<S>,
 }
 
 impl<S: Element> Relative<S> {
@@ -45,7 +44,6 @@ impl<S: Element> Relative<S> {
             drift: (Vec::new(), Vec::new()),
             h,
             node: 0,
-            zeros: vec![S::zero(); (shape.rows - systems) * shape.components],
         };
         let velocity = relative.of_compensated(state.velocity());
         relative.coordinates = relative.of_compensated(state.position());
@@ -70,7 +68,8 @@ impl<S: Element> Relative<S> {
     pub(super) fn of_compensated(&self, (x, x_error): (&[S], &[S])) -> Pairs<S> {
         let Shape { rows, components } = self.shape;
         let bodies = rows / self.systems;
-        let mut out = (self.zeros.clone(), self.zeros.clone());
+        let zeros = vec![S::zero(); (rows - self.systems) * components];
+        let mut out = (zeros.clone(), zeros);
         let others = (0..rows).filter(|row| row % bodies != 0);
         let numbers = others.flat_map(|row| (0..components).map(move |c| (row, c)));
         for (index, (row, c)) in numbers.enumerate() {
@@ -115,24 +114,20 @@ impl<S: Element> Relative<S> {
 
     /// Writes coordinates and velocities of all bodies, from relative velocities.
     pub(super) fn write(&self, state: &mut State<S>, velocity: &[S]) {
-        let (q, v) = state.halves_mut();
+        let (q, (v, v_error)) = state.halves_mut();
         let from = element::Relative {
             shape: self.shape,
             systems: self.systems,
-            coordinates: (&self.coordinates.0, &self.coordinates.1),
+            q: (&self.coordinates.0, &self.coordinates.1),
+            v: velocity,
             shares: (&self.shares.0, &self.shares.1),
             center: (&self.center.0, &self.center.1),
             drift: (&self.drift.0, &self.drift.1),
-            elapsed: two_product(self.h, S::splat(self.node as f64)),
+            h: self.h,
+            node: S::splat(self.node as f64),
         };
-        S::absolute(q, &from);
-        let from = element::Relative {
-            coordinates: (velocity, &self.zeros),
-            center: from.drift,
-            elapsed: (S::zero(), S::zero()),
-            ..from
-        };
-        S::absolute(v, &from);
+        S::absolute(q, v, &from);
+        v_error.fill(S::zero());
     }
 }
 

@@ -162,25 +162,34 @@ fn backward_velocity_lanes<V: Vector8>(
     d: &[Lanes],
     past: Differences<'_, Lanes>,
     a: &[Lanes],
-    h: &Lanes,
+    h: (&Lanes, &Scaled<Lanes>),
     weights: &[Lanes],
 ) {
     let (v, d) = (V::view_mut(v), V::view(d));
-    multistep::backward_velocity::<V>(v, d, view_past(past), V::view(a), V::load(*h), V::view(weights));
+    multistep::backward_velocity::<V>(
+        v,
+        d,
+        view_past(past),
+        V::view(a),
+        (V::load(*h.0), load(h.1)),
+        V::view(weights),
+    );
 }
 
 #[inline(always)]
-fn absolute_lanes<V: Vector8>(x: (&mut [Lanes], &mut [Lanes]), from: &Relative<'_, Lanes>) {
+fn absolute_lanes<V: Vector8>(q: (&mut [Lanes], &mut [Lanes]), v: &mut [Lanes], from: &Relative<'_, Lanes>) {
     let from = Relative {
         shape: from.shape,
         systems: from.systems,
-        coordinates: view_pair(from.coordinates),
+        q: view_pair(from.q),
+        v: V::view(from.v),
         shares: view_pair(from.shares),
         center: view_pair(from.center),
         drift: view_pair(from.drift),
-        elapsed: load(&from.elapsed),
+        h: V::load(from.h),
+        node: V::load(from.node),
     };
-    relative::absolute::<V>((V::view_mut(x.0), V::view_mut(x.1)), &from);
+    relative::absolute::<V>((V::view_mut(q.0), V::view_mut(q.1)), V::view_mut(v), &from);
 }
 
 #[inline(always)]
@@ -195,8 +204,8 @@ fn replace_lanes<V: Vector8>(into: &mut [Lanes], from: &[Lanes], mask: Bits) {
 
 tiered! {
     fn multistep_tier[][](nodes: Nodes<'_, Lanes>) = multistep_lanes;
-    fn backward_velocity_tier[][](v: &mut [Lanes], d: &[Lanes], past: Differences<'_, Lanes>, a: &[Lanes], h: &Lanes, weights: &[Lanes]) = backward_velocity_lanes;
-    fn absolute_tier[][](x: (&mut [Lanes], &mut [Lanes]), from: &Relative<'_, Lanes>) = absolute_lanes;
+    fn backward_velocity_tier[][](v: &mut [Lanes], d: &[Lanes], past: Differences<'_, Lanes>, a: &[Lanes], h: (&Lanes, &Scaled<Lanes>), weights: &[Lanes]) = backward_velocity_lanes;
+    fn absolute_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: &mut [Lanes], from: &Relative<'_, Lanes>) = absolute_lanes;
     fn replace_tier[][](into: &mut [Lanes], from: &[Lanes], mask: Bits) = replace_lanes;
     fn kick_drift_tier[][](q: (&mut [Lanes], &mut [Lanes]), v: (&mut [Lanes], &mut [Lanes]), a: &[Lanes], kick: &Scaled<Lanes>, drift: &Scaled<Lanes>) = kick_drift_lanes;
     fn advance_tier[][](y: (&mut [Lanes], &mut [Lanes]), k: &[Lanes], step: &Scaled<Lanes>) = advance_lanes;
@@ -260,13 +269,13 @@ impl Element for Lanes {
         d: &[Self],
         past: Differences<'_, Self>,
         a: &[Self],
-        h: &Self,
+        h: (&Self, &Scaled<Self>),
         weights: &[Self],
     ) {
         backward_velocity_tier(v, d, past, a, h, weights);
     }
-    fn absolute(x: (&mut [Self], &mut [Self]), from: &Relative<'_, Self>) {
-        absolute_tier(x, from);
+    fn absolute(q: (&mut [Self], &mut [Self]), v: &mut [Self], from: &Relative<'_, Self>) {
+        absolute_tier(q, v, from);
     }
     fn replace(into: &mut [Self], from: &[Self], mask: Self::Mask) {
         replace_tier(into, from, mask);

@@ -2,7 +2,7 @@
 //!
 //! No closures, as in [`loops`](super::loops).
 
-use super::{Differences, Nodes};
+use super::{Differences, Nodes, Scaled};
 use crate::numerics::real::{Real, each};
 
 /// Calls `$group` for the elements from `$start` on, six at a time while there are six.
@@ -94,7 +94,7 @@ pub(super) fn backward_velocity<S: Real>(
     d: &[S],
     Differences { last, first, second, newest }: Differences<'_, S>,
     a: &[S],
-    h: S,
+    (h, h_inverse): (S, Scaled<S>),
     weights: &[S],
 ) {
     let n = a.len();
@@ -104,7 +104,7 @@ pub(super) fn backward_velocity<S: Real>(
         &d[start..],
         (&last[start..], &first[start..]),
         &a[start..],
-        h,
+        (h, h_inverse),
         older(second, n, newest, weights, start),
         [*present, *changed, *bent]
     ));
@@ -116,7 +116,7 @@ fn backward_velocity_group<S: Real, const G: usize>(
     d: &[S],
     (last, first): (&[S], &[S]),
     a: &[S],
-    h: S,
+    (h, h_inverse): (S, Scaled<S>),
     older: [S; G],
     [present, changed, bent]: [S; 3],
 ) {
@@ -124,6 +124,7 @@ fn backward_velocity_group<S: Real, const G: usize>(
         let change = a[g] - last[g];
         let sum = bent.multiply_add(change - first[g], older[g]);
         let sum = present.multiply_add(a[g], changed.multiply_add(change, sum));
-        v[g] = h.multiply_add(sum, d[g] / h);
+        let mean = d[g].multiply_add(h_inverse.0, d[g] * h_inverse.1);
+        v[g] = h.multiply_add(sum, mean);
     }
 }

@@ -46,6 +46,9 @@ impl Plan {
             }
             let reason = match (self.layout, self.gravity.is_some()) {
                 (Layout::Packed, _) => "one system at a time",
+                (Layout::Batched, true) if self.copies == 1 => {
+                    "one small system, in the first of eight lanes"
+                }
                 (Layout::Batched, true) => "small systems, each with its own steps",
                 (Layout::Batched, false) => "they do not interact: each has its own steps",
             };
@@ -84,6 +87,10 @@ impl Plan {
         } else {
             if self.planar {
                 skip("the z components", "z and v_z are zero and no force acts along z".to_owned());
+            }
+            if self.relative {
+                let why = "the others tell where it is, as the centre of mass moves uniformly";
+                skip("steps of the first massive body", why.to_owned());
             }
             if matches!(self.gravity, Some((_, softening)) if softening == 0.0) {
                 skip("softening terms", "softening is 0".to_owned());
