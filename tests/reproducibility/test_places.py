@@ -49,3 +49,20 @@ def test_a_copy_is_the_same_alone(name: str, copies: int, method: str) -> None:
         alone = vv.Scene(bodies, *every.scene.forces).run(threads=1, **run)
         np.testing.assert_array_equal(together.position[copy], alone.position)
         np.testing.assert_array_equal(together.velocity[copy], alone.velocity)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4", "stormer13"])
+def test_a_group_of_copies_leaves_nothing_to_the_next(method: str) -> None:
+    """Groups of sixteen use the same memory, one after another; here the first of them goes wild."""
+    calm = ENSEMBLES["three bodies"]
+    position = np.resize(calm.position, (300, 3, 3))
+    velocity = np.resize(calm.velocity, (300, 3, 3))
+    velocity[:16] *= 1e6
+    run: dict[str, Any] = {"t": [0.013, 1.0], "method": method, "dt": 0.025, "threads": 1}
+    scene = vv.Scene(calm.scene.particles, vv.Gravity(G=1.0, softening=0.1))
+    together = scene.ensemble(position=position, velocity=velocity).run(**run)
+    for copy in (16, 40, 299):
+        bodies = vv.Particles(mass=scene.particles.mass, position=position[copy], velocity=velocity[copy])
+        alone = vv.Scene(bodies, *scene.forces).run(**run)
+        np.testing.assert_array_equal(together.position[copy], alone.position)
+        np.testing.assert_array_equal(together.velocity[copy], alone.velocity)

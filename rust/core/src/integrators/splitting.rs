@@ -60,6 +60,7 @@ impl<S: Element> SplittingStep<S> {
     ///
     /// # Errors
     /// As [`Dynamics::acceleration`].
+    #[inline(always)]
     pub fn step(
         &mut self,
         state: &mut State<S>,

@@ -1,0 +1,104 @@
+//! What a multistep method holds of its past: differences of accelerations, and the last difference of the coordinates.
+//!
+//! The one idea: its loops go over numbers, each by itself. So the numbers may be coordinates of the state or any others
+//! that depend on them linearly.
+
+use crate::numerics::double_double::two_product;
+use crate::numerics::element::{Differences, Element, Nodes, Scaled};
+
+/// What the method holds of the present node and those before it, of any coordinates.
+#[derive(Debug)]
+pub(super) struct Past<S> {
+    /// The accelerations at the present node and at the one before.
+    pub(super) acceleration: Vec<S>,
+    last: Vec<S>,
+    /// See [`Differences`].
+    first: Vec<S>,
+    second: Vec<S>,
+    newest: usize,
+    /// The last difference of the coordinates, compensated.
+    pub(super) d: Vec<S>,
+    pub(super) d_error: Vec<S>,
+}
+
+impl<S: Element> Past<S> {
+    /// Of `len` coordinates and `count` second differences.
+    pub(super) fn new(len: usize, count: usize) -> Self {
+        let block = || vec![S::zero(); len];
+        Self {
+            acceleration: block(),
+            last: block(),
+            first: block(),
+            second: vec![S::zero(); count * len],
+            newest: 0,
+            d: block(),
+            d_error: block(),
+        }
+    }
+
+    /// Begins anew.
+    pub(super) fn restart(&mut self) {
+        self.newest = 0;
+    }
+
+    /// The same nodes in other coordinates, `len` of them, which `of` writes; `d` is still to be found.
+    pub(super) fn map(&self, len: usize, of: impl Fn(&[S], &mut [S])) -> Self {
+        let mut past = Self::new(len, self.second.len() / self.last.len());
+        of(&self.acceleration, &mut past.acceleration);
+        of(&self.last, &mut past.last);
+        of(&self.first, &mut past.first);
+        let blocks = self.second.chunks_exact(self.last.len());
+        blocks.zip(past.second.chunks_exact_mut(len)).for_each(|(block, out)| of(block, out));
+        Self { newest: self.newest, ..past }
+    }
+
+    /// For a step of coordinates `q`.
+    pub(super) fn nodes<'a>(
+        &'a mut self,
+        q: (&'a mut [S], &'a mut [S]),
+        h2: &'a S,
+        weights: &'a [S],
+    ) -> Nodes<'a, S> {
+        let Self { acceleration, last, first, second, newest, d, d_error } = self;
+        let past = Differences { last, first, second, newest: *newest };
+        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights }
+    }
+
+    /// Takes in the accelerations at a further node, which is then the one before.
+    pub(super) fn take_in(&mut self, acceleration: &[S]) {
+        let len = acceleration.len();
+        for i in 0..len {
+            let change = acceleration[i] - self.last[i];
+            self.second[self.newest * len + i] = change - self.first[i];
+            self.first[i] = change;
+        }
+        self.last.copy_from_slice(acceleration);
+        self.pass(1);
+    }
+
+    /// So many nodes have joined the ring.
+    pub(super) fn pass(&mut self, nodes: u64) {
+        let count = (self.second.len() / self.last.len()) as u64;
+        self.newest = ((self.newest as u64 + nodes) % count) as usize;
+    }
+
+    /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
+    pub(super) fn velocity(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
+        let Self { acceleration, last, first, second, newest, d, .. } = self;
+        let past = Differences { last, first, second, newest: *newest };
+        S::backward_velocity(v, d, past, acceleration, h, weights);
+    }
+
+    /// The last difference of the coordinates that belongs to the velocities, to twice the digits:
+    /// `d = h v - h² Σ`.
+    pub(super) fn start(&mut self, (v, v_error): (&[S], &[S]), h: S, h2: S, weights: &[S]) {
+        let mut sum = vec![S::zero(); v.len()];
+        self.d.fill(S::zero());
+        self.velocity(&mut sum, (&S::one(), &(S::one(), S::zero())), weights);
+        for i in 0..v.len() {
+            (self.d[i], self.d_error[i]) = two_product(h, v[i]);
+            self.d_error[i] += h * v_error[i];
+        }
+        S::advance((&mut self.d, &mut self.d_error), &sum, &(-h2, S::zero()));
+    }
+}
