@@ -49,7 +49,7 @@ def rows_of(steps: int) -> Iterator[Row]:
         ("2 steps per output, between nodes", np.append(STEP * (np.arange(0, steps, 2) + 0.3), end), None),
     ]
     without, *with_outputs = minima(
-        lambda: run(end), *(lambda times=times: run(times) for _, times, _ in cases), repeats=40
+        lambda: run(end), *(lambda times=times: run(times) for _, times, _ in cases), repeats=400
     )
     theirs = minima(
         lambda: by_rebound(np.array([end])),
