@@ -6,9 +6,9 @@
 pub mod conservation;
 pub mod error;
 pub mod forces;
-pub mod integrators;
 pub mod nbody;
 pub mod numerics;
+pub mod ode;
 pub mod parallel;
 pub mod potentials;
 pub mod registry;

@@ -2,7 +2,7 @@
 
 use super::Scene;
 use crate::error::{Error, Result};
-use crate::integrators::Method;
+use crate::ode::Method;
 use crate::registry;
 use crate::words::{number, unknown};
 

@@ -6,10 +6,10 @@
 use super::super::columns::{Output, Run, Writer};
 use super::super::frame::Units;
 use super::{Layout, Origin, Prepared, Unit};
-use crate::integrators::state::State;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::Mask;
+use crate::ode::state::State;
 use crate::tiered;
 
 /// How a unit is read off.
@@ -96,7 +96,7 @@ impl Prepared {
         unit_lane: usize,
         [length, speed]: [f64; 2],
     ) -> bool {
-        let stride = state.shape.rows * WIDTH;
+        let stride = state.q().len() / COMPONENTS * WIDTH;
         let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
         // Sums of their own, lest each addition wait for the one before.
         let mut check = [[0.0; 2]; COMPONENTS];
@@ -147,7 +147,7 @@ fn rows_as_points<V: Vector8, const COMPONENTS: usize>(
     output: &Output<'_>,
 ) -> bool {
     let (length, speed) = (V::splat(length), V::splat(speed));
-    let rows = state.shape.rows;
+    let rows = state.q().len() / COMPONENTS;
     // Velocities follow the coordinates.
     let (y, _) = state.all();
     let mut finite = Bits::splat(true);
