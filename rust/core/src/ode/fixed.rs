@@ -9,11 +9,14 @@ use super::stepper::Stepper;
 use super::system::System;
 use crate::error::Result;
 use crate::numerics::element::Element;
+use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::numerics::real::Real;
 use crate::parallel::Ticker;
 
 /// Steps between two counts of progress.
 const PROGRESS_STEPS: u64 = 64;
+/// Steps between two looks at whether the run is worth going on with: a multistep method has to settle its state for it.
+const WATCH_STEPS: u64 = 1024;
 
 /// Where a time lies among the nodes.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,10 +27,16 @@ pub struct Place {
     pub past: Option<f64>,
 }
 
+/// The distance between numbers of this magnitude.
+fn spacing(magnitude: f64) -> f64 {
+    power_of_two(exponent(magnitude) - 52)
+}
+
 /// Finds the place of `elapsed = t - t0` among the nodes `n·h`.
 ///
 /// Within two units in the last place of the time itself (`magnitude` is the larger of |t|, |t0|) a time
-/// is on the node: it cannot be told from it, and a grid such as `linspace` hits nodes only that closely.
+/// is on the node: it cannot be told from it, and a grid such as `linspace` hits nodes only that closely. But not an
+/// eighth of a step off: where times are that coarse, each is meant.
 pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
     let ratio = elapsed / h;
     // Adding 1.5·2^52 leaves a number below 2^51 as an integer in the last bits, without a call.
@@ -39,7 +48,8 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
         (ratio.round(), ratio.round() as u64)
     };
     let distance = elapsed.abs();
-    if (elapsed - nearest * h).abs() <= 2.0 * f64::EPSILON * Real::max(magnitude, distance) {
+    let off = (elapsed - nearest * h).abs();
+    if off <= 2.0 * spacing(Real::max(magnitude, distance)) && off <= 0.124 * h.abs() {
         return Place { node, past: None };
     }
     let (nearest, node) =
@@ -47,12 +57,29 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
     Place { node, past: Some(elapsed - nearest * h) }
 }
 
-/// Advances `state` through the places of the outputs, in order, and hands each state to `record`.
-///
-/// Returns the number of steps taken; it stops short at `max_steps`. `record` may refuse a state, which ends the run.
-///
-/// # Errors
-/// What `record` returns, or [`Error::Interrupted`](crate::Error::Interrupted).
+/// Who looks at the states of a run.
+pub trait Recorder<S> {
+    /// Takes the state at an output time; to refuse it ends the run.
+    ///
+    /// # Errors
+    /// Whatever ends the run.
+    fn record(&mut self, index: usize, state: &State<S>) -> Result<()>;
+
+    /// Whether the run is worth going on with; asked every few steps.
+    fn goes_on(&mut self, state: &State<S>) -> bool;
+}
+
+/// How a run ended.
+#[derive(Debug)]
+pub struct Ended {
+    /// Steps taken.
+    pub steps: u64,
+    /// `Ok` at the last output time, or where the most steps were taken or the recorder gave up; else what ended it.
+    pub outcome: Result<()>,
+}
+
+/// Advances `state` through the places of the outputs, in order, and hands each state to the recorder; stops short at
+/// `max_steps`.
 pub fn run<S: Element>(
     stepper: &mut dyn Stepper<S>,
     max_steps: u64,
@@ -60,8 +87,8 @@ pub fn run<S: Element>(
     system: &mut dyn System<S>,
     places: impl Iterator<Item = Place>,
     ticker: &mut Ticker<'_>,
-    mut record: impl FnMut(usize, &State<S>) -> Result<()>,
-) -> (u64, Result<()>) {
+    recorder: &mut impl Recorder<S>,
+) -> Ended {
     let mut taken = 0;
     let outcome = (|| {
         stepper.restart();
@@ -92,6 +119,12 @@ pub fn run<S: Element>(
                 if taken % PROGRESS_STEPS == 0 {
                     ticker.advance(PROGRESS_STEPS);
                 }
+                if taken % WATCH_STEPS == 0 {
+                    stepper.settle(state);
+                    if !recorder.goes_on(state) {
+                        return Ok(());
+                    }
+                }
                 if let Err(error) = ticker.tick() {
                     stepper.settle(state);
                     return Err(error);
@@ -107,10 +140,10 @@ pub fn run<S: Element>(
                     &*between
                 }
             };
-            record(index, reached)?;
+            recorder.record(index, reached)?;
         }
         ticker.advance(taken % PROGRESS_STEPS);
         Ok(())
     })();
-    (taken, outcome)
+    Ended { steps: taken, outcome }
 }

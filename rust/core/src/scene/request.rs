@@ -9,6 +9,9 @@ use crate::words::{number, unknown};
 /// The smallest relative tolerance that double precision can honour (a hundred units in the last place).
 pub const RTOL_MIN: f64 = 2.3e-14;
 
+/// The most steps that a run can count: 2^53, the largest number to which every whole number is one of float64.
+const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
+
 /// What may be recorded.
 pub const COLUMNS: [&str; 6] =
     ["position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass"];
@@ -71,6 +74,9 @@ impl Request {
         }
         let direction = self.direction(scene)?;
         self.check_tolerances(method)?;
+        if let Some(step) = self.max_step {
+            self.refuse_lost("max_step", step, scene.t0)?;
+        }
         match self.max_steps {
             Some(steps) if steps < 1 => {
                 return Err(Error::invalid("max_steps", format!("expected at least 1 or None, got {steps}")));
@@ -201,7 +207,31 @@ impl Request {
                     number(dt)
                 ),
             )),
-            Some(dt) => Ok(Some(dt.abs() * direction)),
+            Some(dt) => {
+                self.refuse_lost("dt", dt.abs(), scene.t0)?;
+                Ok(Some(dt.abs() * direction))
+            }
         }
+    }
+
+    /// Refuses a step so short that adding it does not change the time, or that there are more of them than can be counted.
+    fn refuse_lost(&self, argument: &str, step: f64, t0: f64) -> Result<()> {
+        let end = self.times.last().copied().unwrap_or(t0);
+        let latest = t0.abs().max(end.abs());
+        let steps = (end - t0).abs() / step;
+        if latest + step != latest && steps < MOST_STEPS {
+            return Ok(());
+        }
+        Err(Error::invalid(
+            argument,
+            format!(
+                "expected a step that changes the time at {}, at most {} times, got {}: the run would take {:.1e} steps; \
+                 give a longer one",
+                number(latest),
+                number(MOST_STEPS),
+                number(step),
+                steps
+            ),
+        ))
     }
 }

@@ -1,9 +1,9 @@
 //! Runs with a fixed step: their nodes, their limit, their round-off.
 
-use super::support::{Problem, advance, distance, exactly, fixed_stepper, harmonic, three_bodies};
+use super::support::{Keep, Problem, advance, distance, exactly, fixed_stepper, harmonic, three_bodies};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::Method;
-use visviva_core::ode::fixed::{Place, place, run};
+use visviva_core::ode::fixed::{Ended, Place, place, run};
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
@@ -23,6 +23,11 @@ fn times_find_their_place_among_the_nodes() {
     assert_eq!(place(0.3_f64.next_up(), 0.1, 0.3), on(3));
     // Far from zero the time itself is coarser.
     assert_eq!(place(0.3 + 1e-10, 0.1, 1e6), on(3));
+    // Where times are an eighth of a step apart each is meant; where they are a quarter, too.
+    for spacing in [0.125, 0.25] {
+        let place = place(spacing, 1.0, spacing * 8e15);
+        assert_eq!(place, Place { node: 0, past: Some(spacing) });
+    }
     // Beyond 2^51 steps.
     assert_eq!(place(3e15, 1.0, 3e15), on(3_000_000_000_000_000));
 }
@@ -34,24 +39,15 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
         let mut ticker = Ticker::quiet(&control);
         let h = 1.0 / 32.0;
         let Problem { mut state, mut dynamics, .. } = three_bodies::<f64>();
-        let mut seen = Vec::new();
+        let mut seen = Keep(Vec::new());
         let places = [(0, None), (3, Some(0.01)), (3, Some(0.02)), (17, None), (25, None)]
             .map(|(node, past)| Place { node, past });
         let mut stepper = fixed_stepper(method, h, &dynamics, &state);
-        let (taken, outcome) = run(
-            &mut *stepper,
-            20,
-            &mut state,
-            &mut dynamics,
-            places.into_iter(),
-            &mut ticker,
-            |index, state| {
-                seen.push((index, state.clone()));
-                Ok(())
-            },
-        );
+        let Ended { steps, outcome } =
+            run(&mut *stepper, 20, &mut state, &mut dynamics, places.into_iter(), &mut ticker, &mut seen);
         outcome.unwrap();
-        assert_eq!((taken, seen.len()), (20, 4), "{}", method.name);
+        let seen = seen.0;
+        assert_eq!((steps, seen.len()), (20, 4), "{}", method.name);
         // Nodes have the bits of plain steps, whatever was looked at on the way; 17 and 20 lie behind the start of a
         // multistep method.
         for (steps, state) in [(17, &seen[3].1), (20, &state)] {

@@ -1,6 +1,6 @@
 //! The order of each method, measured on nonlinear problems in double-double.
 
-use super::support::{Problem, advance, distance, fixed_stepper};
+use super::support::{Keep, Problem, advance, distance, fixed_stepper};
 use super::{Make, PROBLEMS, reference};
 use visviva_core::Result;
 use visviva_core::forces::{Dynamics, Force, Phase};
@@ -72,24 +72,14 @@ fn error_between_nodes(method: &'static Method, make: Make, t: f64, steps: usize
     let h = t / steps as f64;
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
-    let mut last = None;
+    let mut seen = Keep(Vec::new());
     let places = [Place { node: steps as u64, past: Some(0.375 * h) }];
     let mut stepper = fixed_stepper(method, h, &dynamics, &state);
-    let (taken, outcome) = run(
-        &mut *stepper,
-        u64::MAX,
-        &mut state,
-        &mut dynamics,
-        places.into_iter(),
-        &mut ticker,
-        |_, state| {
-            last = Some(state.clone());
-            Ok(())
-        },
-    );
-    outcome.unwrap();
-    assert_eq!(taken, steps as u64);
-    distance(&last.unwrap(), &reference(make, t + 0.375 * h, 2048))
+    let ended =
+        run(&mut *stepper, u64::MAX, &mut state, &mut dynamics, places.into_iter(), &mut ticker, &mut seen);
+    ended.outcome.unwrap();
+    assert_eq!(ended.steps, steps as u64);
+    distance(&seen.0[0].1, &reference(make, t + 0.375 * h, 2048))
 }
 
 #[test]

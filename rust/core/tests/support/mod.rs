@@ -8,6 +8,7 @@ use visviva_core::forces::{Dynamics, Force, Phase};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::{Element, Shape};
 use visviva_core::numerics::lanes::Lanes;
+use visviva_core::ode::fixed::Recorder;
 use visviva_core::ode::norm::Norm;
 use visviva_core::ode::runge_kutta::RungeKuttaStep;
 use visviva_core::ode::state::State;
@@ -199,5 +200,18 @@ pub fn five_lanes() -> Problem<Lanes> {
         ),
         state: State::new(&q.map(lanes), &still),
         mass: vec![],
+    }
+}
+
+/// Keeps every state that is recorded.
+pub struct Keep<S>(pub Vec<(usize, State<S>)>);
+
+impl<S: Element> Recorder<S> for Keep<S> {
+    fn record(&mut self, index: usize, state: &State<S>) -> Result<()> {
+        self.0.push((index, state.clone()));
+        Ok(())
+    }
+    fn goes_on(&mut self, _: &State<S>) -> bool {
+        true
     }
 }

@@ -8,7 +8,7 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
-use crate::ode::fixed::{self, Place};
+use crate::ode::fixed::{self, Ended, Place, Recorder};
 use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
 use crate::ode::system::System;
@@ -74,10 +74,8 @@ fn lockstep(
         rows: 0,
         last: None,
     };
-    let (steps, outcome) =
-        fixed::run(&mut **stepper, job.max_steps, state, &mut dynamics, places, ticker, |index, state| {
-            records.take(index, state)
-        });
+    let Ended { steps, outcome } =
+        fixed::run(&mut **stepper, job.max_steps, state, &mut dynamics, places, ticker, &mut records);
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
         Err(Error::Interrupted) => Ending::Interrupted,
@@ -101,13 +99,10 @@ struct Records<'a> {
     last: Option<State<Lanes>>,
 }
 
-impl Records<'_> {
-    /// Records an output time.
-    ///
-    /// # Errors
+impl Recorder<Lanes> for Records<'_> {
     /// [`Error::Convergence`] when no unit is finite any more.
     #[inline(always)]
-    fn take(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
+    fn record(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
         let job = self.job;
         let t = job.times[index];
         let elapsed = t - job.scene.t0;
@@ -127,6 +122,18 @@ impl Records<'_> {
         Ok(())
     }
 
+    fn goes_on(&mut self, state: &State<Lanes>) -> bool {
+        for (lane, unit) in self.units.iter().enumerate() {
+            if self.failed[lane].is_none() && !unit.is_finite(state, lane) {
+                self.failed[lane] = Some(self.rows);
+                self.running -= 1;
+            }
+        }
+        self.running > 0
+    }
+}
+
+impl Records<'_> {
     /// The reports of a run that has come to `reached` at `time`; `short` says why, if that is not the end.
     fn reports(&self, reached: &State<Lanes>, time: f64, short: &Ending, counts: Counts) -> Vec<Report> {
         let (state, time, otherwise) = match &self.last {

@@ -72,6 +72,15 @@ impl Prepared {
         }
     }
 
+    /// Whether all coordinates of the unit are finite in a state.
+    pub fn is_finite(&self, state: &State<Lanes>, unit_lane: usize) -> bool {
+        let rows = state.q().len() / self.shape.components;
+        (0..self.position.len()).all(|slot| {
+            let (row, lane) = self.locate(slot, unit_lane);
+            (0..self.shape.components).all(|c| state.q()[c * rows + row].0[lane].is_finite())
+        })
+    }
+
     /// Reads a body off a state, in the scene's units and about its origin.
     pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
         let components = self.shape.components;
