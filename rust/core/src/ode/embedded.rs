@@ -8,6 +8,9 @@
 use super::Embedded;
 use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
+use super::passes::errors::PairTerm;
+use super::passes::stages::Term;
+use super::passes::updates::Replace;
 use super::runge_kutta::Stages;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Outcome, Rule, root};
@@ -15,7 +18,7 @@ use super::system::{Form, System};
 use super::trial::{Cost, Trial};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, PairTerm, Term};
+use crate::numerics::element::Element;
 use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;
 
@@ -99,7 +102,7 @@ impl<S: Controlled> EmbeddedStep<S> {
     fn begin_with_end(&mut self, lanes: S::Mask) {
         let (len, end_stage) = (self.stages.len(), self.end_stage());
         let (before, after) = self.stages.k.split_at_mut(end_stage * len);
-        S::replace(&mut before[..len], &after[..len], lanes);
+        S::pass(Replace { into: &mut before[..len], from: &after[..len], mask: lanes });
     }
 }
 
@@ -212,8 +215,8 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
         let (y, compensation) = state.all_mut();
         let (next, next_compensation) = self.next.all();
-        S::replace(y, next, accepted);
-        S::replace(compensation, next_compensation, accepted);
+        S::pass(Replace { into: y, from: next, mask: accepted });
+        S::pass(Replace { into: compensation, from: next_compensation, mask: accepted });
         self.begin_with_end(accepted);
     }
 

@@ -15,6 +15,7 @@ pub mod norm;
 pub mod nystrom;
 #[cfg(test)]
 mod order_conditions;
+pub mod passes;
 pub mod runge_kutta;
 pub mod splitting;
 pub mod state;

@@ -141,7 +141,7 @@ impl<S: Element> Stepper<S> for MultistepStep<S> {
         }
         self.settled = false;
         let (q, _) = state.halves_mut();
-        S::multistep(self.past.nodes(q, &self.weights));
+        S::pass(self.past.nodes(q, &self.weights));
         self.past.pass(1);
         // Here and not before the next step: the velocity at this node needs it.
         let t = self.nodes.time(node + 1);

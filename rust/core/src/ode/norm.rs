@@ -4,10 +4,11 @@
 //! is cut into blocks of such vectors, and the largest of all decides. Sizes are distances from a reference that moves
 //! uniformly, so that a system that is far away, or drifts, is held to the same error.
 
+use super::passes::errors::{LargestErrors, PairTerm};
 use super::state::State;
 use super::step_control::Controlled;
 use super::system::Form;
-use crate::numerics::element::{PairTerm, Shape};
+use crate::numerics::element::Shape;
 
 /// Vectors of one kind in a state, held to one tolerance.
 #[derive(Clone, Debug)]
@@ -79,15 +80,17 @@ impl<S: Controlled> Norm<S> {
             };
             let change = changes[usize::from(block.velocity)];
             let place: [S; 4] = core::array::from_fn(|c| block.reference[c] + block.drift[c] * elapsed);
-            let sizes = S::largest_errors(
-                block.shape,
-                &y[block.start..],
-                &place,
-                (&block.atol, &self.rtol),
-                &change.factor,
-                change.terms,
-                (&change.k[block.start..], change.stride),
-            );
+            let sizes = S::pass(LargestErrors {
+                shape: block.shape,
+                y: &y[block.start..],
+                reference: &place,
+                atol: &block.atol,
+                rtol: &self.rtol,
+                h: &change.factor,
+                terms: change.terms,
+                k: &change.k[block.start..],
+                stride: change.stride,
+            });
             largest = [largest[0].max(sizes[0]), largest[1].max(sizes[1])];
         }
         if self.together { largest.map(S::largest_lane) } else { largest }

@@ -5,8 +5,10 @@
 //! are kept and summed, and velocities of stages are formed for forces that ask for them and no others
 //! (Hairer, Nørsett & Wanner, *Solving ODE I*, II.14, eq. 14.3).
 
+use super::passes::errors::PairTerm;
+use super::passes::stages::Term;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, PairTerm, Term};
+use crate::numerics::element::Element;
 use crate::numerics::real::Real;
 
 /// Rows of coefficients, one for each stage that they weigh.

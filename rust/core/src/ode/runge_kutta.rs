@@ -5,12 +5,13 @@
 
 use super::Tableau;
 use super::nystrom::Row;
+use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
 use super::state::State;
 use super::stepper::{Nodes, Stepper};
 use super::system::{Form, Needs, System};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Weighted};
+use crate::numerics::element::Element;
 use crate::parallel::Ticker;
 
 /// The stages of a method and room for their derivatives: accelerations, or rates of a system of the first order.
@@ -94,16 +95,21 @@ impl<S: Element> Stages<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let len = self.len();
-        let stages = |terms| Weighted { h, terms, a: &self.k };
+        let stages = |terms| Weighted { h, terms, k: &self.k };
         let t = if self.needs.time { t + *h * row.fraction } else { t };
         if matches!(self.form, Form::FirstOrder(_)) {
-            S::combine_velocity(&mut self.position, state.all(), stages(&row.velocity));
+            S::pass(Rates { out: &mut self.position, y: state.all(), stages: stages(&row.velocity) });
             return system.rate(t, &self.position, &mut self.k[stage * len..][..len], ticker);
         }
         let slope = (state.v(), &row.fraction);
-        S::combine(&mut self.position, state.position(), slope, stages(&row.position));
+        S::pass(Positions {
+            out: &mut self.position,
+            q: state.position(),
+            slope,
+            stages: stages(&row.position),
+        });
         let velocity = if self.needs.velocity {
-            S::combine_velocity(&mut self.velocity, state.velocity(), stages(&row.velocity));
+            S::pass(Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) });
             &self.velocity
         } else {
             state.v()
@@ -139,15 +145,15 @@ impl<S: Element> Stages<S> {
 
     /// Writes the state that the row leads to, compensated.
     pub fn state_at(&self, row: &Row<S>, state: &State<S>, h: &S, into: &mut State<S>) {
-        let stages = |terms| Weighted { h, terms, a: &self.k };
+        let stages = |terms| Weighted { h, terms, k: &self.k };
         if matches!(self.form, Form::FirstOrder(_)) {
-            S::combine_velocity_compensated(into.all_mut(), state.all(), stages(&row.velocity));
+            S::pass(CompensatedRates { out: into.all_mut(), y: state.all(), stages: stages(&row.velocity) });
             return;
         }
         let (q, v) = into.halves_mut();
         let slope = (state.v(), &row.fraction);
-        S::combine_compensated(q, state.position(), slope, stages(&row.position));
-        S::combine_velocity_compensated(v, state.velocity(), stages(&row.velocity));
+        S::pass(CompensatedPositions { out: q, q: state.position(), slope, stages: stages(&row.position) });
+        S::pass(CompensatedRates { out: v, y: state.velocity(), stages: stages(&row.velocity) });
     }
 }
 

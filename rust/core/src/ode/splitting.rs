@@ -4,6 +4,7 @@
 //! acceleration is evaluated once and kept.
 
 use super::Splitting;
+use super::passes::updates::{Advance, KickDrift};
 use super::state::State;
 use super::stepper::{Nodes, Stepper};
 use super::system::System;
@@ -69,13 +70,13 @@ impl<S: Element> Force<S> {
         for (index, (kick, drift, time)) in moves.pairs.iter().enumerate() {
             if self.idle[index] {
                 let (q, (v, _)) = state.halves_mut();
-                S::advance(q, v, drift);
+                S::pass(Advance { y: q, k: v, step: *drift });
             } else {
                 if !self.fresh {
                     system.acceleration(t + *time, state.q(), state.v(), &mut self.acceleration, ticker)?;
                 }
                 let (q, v) = state.halves_mut();
-                S::kick_drift(q, v, &self.acceleration, kick, drift);
+                S::pass(KickDrift { q, v, a: &self.acceleration, kick: *kick, drift: *drift });
             }
             self.fresh = false;
         }
@@ -83,7 +84,7 @@ impl<S: Element> Force<S> {
             system.acceleration(t + moves.h, state.q(), state.v(), &mut self.acceleration, ticker)?;
             self.fresh = true;
             let (_, v) = state.halves_mut();
-            S::advance(v, &self.acceleration, &moves.last_kick);
+            S::pass(Advance { y: v, k: &self.acceleration, step: moves.last_kick });
         }
         Ok(())
     }

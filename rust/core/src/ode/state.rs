@@ -1,7 +1,7 @@
 //! The state that an integrator advances: numbers, each with its compensation.
 
 use super::system::Form;
-use crate::numerics::element::Element;
+use crate::numerics::element::{Element, PairMut};
 
 /// `y + compensation` carries the state with about twice the digits of the scalar.
 #[derive(Clone, Debug)]
@@ -11,9 +11,6 @@ pub struct State<S> {
     /// How many of the first numbers are coordinates, whose velocities follow; 0 of a system of the first order.
     coordinates: usize,
 }
-
-/// Numbers and their compensations, to be changed.
-pub type PairMut<'a, S> = (&'a mut [S], &'a mut [S]);
 
 impl<S: Element> State<S> {
     /// Of a system of the second order, from coordinates and velocities.

@@ -9,12 +9,11 @@ use super::relative::Relative;
 use super::{CLOSED_MAX, FewBodies};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::batch::view_nodes;
-use crate::numerics::element::multistep::step_group;
-use crate::numerics::element::{Element, Nodes, Shape};
+use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::ode::multistep::{MultistepStep, Past};
+use crate::ode::passes::multistep::{Nodes, step_group};
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
 use crate::ode::system::System;
@@ -118,9 +117,8 @@ fn select_kernel<S: InverseCube>(
 
 #[inline(always)]
 fn lanes_kernel<V: Vector8 + InverseCube>(few: &FewBodies<Lanes>, nodes: Nodes<'_, Lanes>, steps: u64) {
-    let h2 = V::load(*nodes.h2);
-    let (nodes, strength) = (view_nodes(&h2, nodes), V::view(&few.strength));
-    select_kernel::<V>(few.bodies(), few.shape, strength, few.softening2, nodes, steps);
+    let strength = Vector8::view(&few.strength);
+    select_kernel::<V>(few.bodies(), few.shape, strength, few.softening2, nodes.view::<V>(), steps);
 }
 
 tiered! {

@@ -6,7 +6,8 @@
 
 use super::FewBodies;
 use crate::numerics::double_double::{two_product, two_sum};
-use crate::numerics::element::{self, Element, Shape};
+use crate::numerics::element::{Element, Pair, PairMut, Pass, Shape, View};
+use crate::numerics::real::Real;
 use crate::ode::state::State;
 
 /// Numbers, and what they leave out.
@@ -114,20 +115,122 @@ impl<S: Element> Relative<S> {
 
     /// Writes coordinates and velocities of all bodies, from relative velocities.
     pub(super) fn write(&self, state: &mut State<S>, velocity: &[S]) {
-        let (q, (v, v_error)) = state.halves_mut();
-        let from = element::Relative {
-            shape: self.shape,
-            systems: self.systems,
-            q: (&self.coordinates.0, &self.coordinates.1),
-            v: velocity,
-            shares: (&self.shares.0, &self.shares.1),
-            center: (&self.center.0, &self.center.1),
-            drift: (&self.drift.0, &self.drift.1),
+        let (q, (v, v_compensation)) = state.halves_mut();
+        S::pass(Absolute {
+            q,
+            v,
+            relative: Coordinates {
+                shape: self.shape,
+                systems: self.systems,
+                q: (&self.coordinates.0, &self.coordinates.1),
+                v: velocity,
+                shares: (&self.shares.0, &self.shares.1),
+                center: (&self.center.0, &self.center.1),
+                drift: (&self.drift.0, &self.drift.1),
+            },
             h: self.h,
             node: S::splat(self.node as f64),
+        });
+        v_compensation.fill(S::zero());
+    }
+}
+
+/// A state relative to the first body of each system, with the center of mass of each. Pairs are numbers and what they
+/// leave out.
+#[derive(Clone, Copy, Debug)]
+struct Coordinates<'a, S> {
+    /// How the coordinates of all bodies lie, system after system in the rows.
+    shape: Shape,
+    systems: usize,
+    /// Coordinates of each body but the first of each system, one after another, its components together.
+    q: Pair<'a, S>,
+    /// Velocities, likewise.
+    v: &'a [S],
+    /// The share of each such body in the mass of its system.
+    shares: Pair<'a, S>,
+    /// Where the center of each system was at node 0, its components together.
+    center: Pair<'a, S>,
+    /// How it moves.
+    drift: Pair<'a, S>,
+}
+
+/// The coordinates, compensated, and the velocities of all bodies, from those relative to the first of each system.
+struct Absolute<'a, S> {
+    q: PairMut<'a, S>,
+    v: &'a mut [S],
+    relative: Coordinates<'a, S>,
+    h: S,
+    /// The present node.
+    node: S,
+}
+
+impl<S: Element> Pass<S> for Absolute<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let Coordinates { shape, systems, q, v, shares, center, drift } = self.relative;
+        let from = Coordinates::<V> {
+            shape,
+            systems,
+            q: V::pair(q),
+            v: V::view(v),
+            shares: V::pair(shares),
+            center: V::pair(center),
+            drift: V::pair(drift),
         };
-        S::absolute(q, v, &from);
-        v_error.fill(S::zero());
+        let elapsed = product((V::load(self.h), V::zero()), (V::load(self.node), V::zero()));
+        absolute(V::pair_mut(self.q), V::view_mut(self.v), &from, elapsed);
+    }
+}
+
+/// `a·b` to twice the digits, both with what they leave out.
+#[inline(always)]
+fn product<S: Real>(a: (S, S), b: (S, S)) -> (S, S) {
+    let product = a.0 * b.0;
+    let error = a.0.multiply_add(b.0, -product);
+    (product, a.0.multiply_add(b.1, a.1.multiply_add(b.0, error)))
+}
+
+#[inline(always)]
+fn at<S: Real>(values: (&[S], &[S]), index: usize) -> (S, S) {
+    (values.0[index], values.1[index])
+}
+
+#[inline(always)]
+fn absolute<S: Real>((q, q_error): PairMut<'_, S>, v: &mut [S], from: &Coordinates<'_, S>, elapsed: (S, S)) {
+    let components = from.shape.components;
+    let bodies = from.shape.rows / from.systems;
+    for system in 0..from.systems {
+        for c in 0..components {
+            let center = system * components + c;
+            let row = c * from.shape.rows + system * bodies;
+            let drift = at(from.drift, center);
+            let (place, place_error) = at(from.center, center);
+            let (moved, moved_error) = product(drift, elapsed);
+            let (mut place, error) = two_sum(place, moved);
+            let mut rest = error + (place_error + moved_error);
+            let mut speed = drift.0;
+            for body in 0..bodies - 1 {
+                let index = system * (bodies - 1) + body;
+                let share = at(from.shares, index);
+                let (part, part_error) = product(share, at(from.q, index * components + c));
+                let (difference, error) = two_sum(place, -part);
+                (place, rest) = (difference, rest + (error - part_error));
+                speed = share.0.multiply_subtract_from(from.v[index * components + c], speed);
+            }
+            q[row] = place + rest;
+            q_error[row] = rest - (q[row] - place);
+            v[row] = speed;
+            for body in 0..bodies - 1 {
+                let index = (system * (bodies - 1) + body) * components + c;
+                let (own, own_error) = at(from.q, index);
+                let (sum, error) = two_sum(place, own);
+                let rest = error + (rest + own_error);
+                let reached = sum + rest;
+                (q[row + 1 + body], q_error[row + 1 + body]) = (reached, rest - (reached - sum));
+                v[row + 1 + body] = speed + from.v[index];
+            }
+        }
     }
 }
 

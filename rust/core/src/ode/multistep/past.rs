@@ -3,9 +3,11 @@
 //! The one idea: its loops go over numbers, each by itself. So the numbers may be coordinates of the state or any others
 //! that depend on them linearly.
 
+use super::super::passes::multistep::{BackwardVelocity, Differences, Nodes};
+use super::super::passes::updates::Advance;
 use super::Weights;
 use crate::numerics::double_double::two_product;
-use crate::numerics::element::{Differences, Element, Nodes, Scaled};
+use crate::numerics::element::{Element, PairMut, Scaled};
 
 /// What the method holds of the present node and those before it, of any coordinates.
 #[derive(Debug)]
@@ -57,12 +59,12 @@ impl<S: Element> Past<S> {
     /// For a step of coordinates `q`.
     pub fn nodes<'a>(
         &'a mut self,
-        q: (&'a mut [S], &'a mut [S]),
+        q: PairMut<'a, S>,
         Weights { h2, second_differences, .. }: &'a Weights<S>,
     ) -> Nodes<'a, S> {
         let Self { acceleration, last, first, second, newest, d, d_error } = self;
         let past = Differences { last, first, second, newest: *newest };
-        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights: second_differences }
+        Nodes { q, d: (d, d_error), past, a: acceleration, h2: *h2, weights: second_differences }
     }
 
     /// Takes in the accelerations at a further node, which is then the one before.
@@ -85,13 +87,13 @@ impl<S: Element> Past<S> {
 
     /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
     pub fn velocity(&mut self, v: &mut [S], weights: &Weights<S>) {
-        self.backward(v, (&weights.h, &weights.h_inverse), &weights.velocity);
+        self.backward(v, (weights.h, weights.h_inverse), &weights.velocity);
     }
 
-    fn backward(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
+    fn backward(&mut self, v: &mut [S], h: (S, Scaled<S>), weights: &[S]) {
         let Self { acceleration, last, first, second, newest, d, .. } = self;
         let past = Differences { last, first, second, newest: *newest };
-        S::backward_velocity(v, d, past, acceleration, h, weights);
+        S::pass(BackwardVelocity { v, d, past, a: acceleration, h, weights });
     }
 
     /// Finds the last difference of the coordinates that belongs to the velocities, to twice the digits:
@@ -99,11 +101,12 @@ impl<S: Element> Past<S> {
     pub fn start(&mut self, (v, v_compensation): (&[S], &[S]), weights: &Weights<S>) {
         let mut sum = vec![S::zero(); v.len()];
         self.d.fill(S::zero());
-        self.backward(&mut sum, (&S::one(), &(S::one(), S::zero())), &weights.velocity);
+        self.backward(&mut sum, (S::one(), (S::one(), S::zero())), &weights.velocity);
         for i in 0..v.len() {
             (self.d[i], self.d_error[i]) = two_product(weights.h, v[i]);
             self.d_error[i] += weights.h * v_compensation[i];
         }
-        S::advance((&mut self.d, &mut self.d_error), &sum, &(-weights.h2, S::zero()));
+        let step = (-weights.h2, S::zero());
+        S::pass(Advance { y: (&mut self.d, &mut self.d_error), k: &sum, step });
     }
 }

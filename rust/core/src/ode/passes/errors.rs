@@ -1,0 +1,118 @@
+//! How large the error of a step is, against what is allowed.
+
+use crate::numerics::element::{Element, Pass, Shape, View};
+use crate::numerics::inverse_cube::InverseCube;
+
+/// One term of two weighted sums of stages.
+#[derive(Clone, Copy, Debug)]
+#[repr(C)]
+pub struct PairTerm<S> {
+    /// Which stage.
+    pub stage: usize,
+    /// Its weights.
+    pub weights: [S; 2],
+}
+
+/// Terms seen as those of the tier's vectors.
+#[inline(always)]
+fn view_terms<S, V: View<S>>(terms: &[PairTerm<S>]) -> &[PairTerm<V>] {
+    const { assert!(size_of::<PairTerm<V>>() == size_of::<PairTerm<S>>() && align_of::<V>() <= align_of::<S>()) }
+    // SAFETY: a `V` is a view of an `S`, of its size and validity; `PairTerm` is `repr(C)`, so the two have the same layout
+    // (the sizes are checked above).
+    unsafe { core::slice::from_raw_parts(terms.as_ptr().cast(), terms.len()) }
+}
+
+/// An error that is allowed to be this large, or infinite, is no error: its square still is a number.
+const UNLIMITED: f64 = 1e150;
+
+/// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
+const HUGE: f64 = 1e300;
+
+/// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the rows, for two sets of
+/// weights at once; each row is a vector of one to four components.
+#[derive(Debug)]
+pub struct LargestErrors<'a, S> {
+    /// How the vectors lie.
+    pub shape: Shape,
+    /// The state.
+    pub y: &'a [S],
+    /// What sizes are measured from.
+    pub reference: &'a [S; 4],
+    /// Absolute tolerance.
+    pub atol: &'a S,
+    /// Tolerance relative to the distance from the reference.
+    pub rtol: &'a S,
+    /// What the sum is multiplied with.
+    pub h: &'a S,
+    /// The weights.
+    pub terms: &'a [PairTerm<S>],
+    /// The derivatives, stage after stage.
+    pub k: &'a [S],
+    /// Numbers from one stage to the next.
+    pub stride: usize,
+}
+
+impl<S: Element> Pass<S> for LargestErrors<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> [S; 2] {
+        let Self { shape, reference, .. } = self;
+        let y = V::view(self.y);
+        let [r0, r1, r2, r3] = *reference;
+        let reference = [V::load(r0), V::load(r1), V::load(r2), V::load(r3)];
+        let tolerance = (V::load(*self.atol), V::load(*self.rtol));
+        let (h, terms, k) =
+            (V::load(*self.h), view_terms::<S, V>(self.terms), (V::view(self.k), self.stride));
+        let [first, second] = match shape.components {
+            1 => largest_vector_errors::<V, 1>(shape.rows, y, &reference, tolerance, h, terms, k),
+            2 => largest_vector_errors::<V, 2>(shape.rows, y, &reference, tolerance, h, terms, k),
+            3 => largest_vector_errors::<V, 3>(shape.rows, y, &reference, tolerance, h, terms, k),
+            _ => largest_vector_errors::<V, 4>(shape.rows, y, &reference, tolerance, h, terms, k),
+        };
+        [first.store(), second.store()]
+    }
+}
+
+/// [`LargestErrors`], the number of components known when compiled.
+#[inline(always)]
+fn largest_vector_errors<S: InverseCube, const C: usize>(
+    rows: usize,
+    y: &[S],
+    reference: &[S; 4],
+    (atol, rtol): (S, S),
+    h: S,
+    terms: &[PairTerm<S>],
+    (k, stride): (&[S], usize),
+) -> [S; 2] {
+    let mut largest = [S::zero(); 2];
+    for row in 0..rows {
+        let mut distance2 = S::zero();
+        for c in 0..C {
+            let distance = y[c * rows + row] - reference[c];
+            distance2 = distance.multiply_add(distance, distance2);
+        }
+        // Rough roots will do: a step is no better for a tolerance kept to more than four digits.
+        let distance = distance2 * distance2.rough_inverse_root();
+        let scale = rtol.multiply_add(distance, atol).min(S::splat(UNLIMITED));
+        let inverse_scale = (scale * scale).rough_inverse_root();
+        let mut sums = [[S::zero(); C]; 2];
+        for &PairTerm { stage, weights } in terms {
+            let column = &k[stage * stride + row..][..(C - 1) * rows + 1];
+            for c in 0..C {
+                let k = column[c * rows];
+                sums[0][c] = weights[0].multiply_add(k, sums[0][c]);
+                sums[1][c] = weights[1].multiply_add(k, sums[1][c]);
+            }
+        }
+        for estimate in 0..2 {
+            let mut error2 = S::zero();
+            for c in 0..C {
+                let error = h * sums[estimate][c] * inverse_scale;
+                error2 = error.multiply_add(error, error2);
+            }
+            let ratio = S::select(error2.less_equal(S::splat(HUGE)), error2, S::splat(HUGE));
+            largest[estimate] = largest[estimate].max(ratio);
+        }
+    }
+    largest
+}

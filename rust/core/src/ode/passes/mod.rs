@@ -1,0 +1,6 @@
+//! The loops over a state that integrators are made of, each written once ([`Pass`](crate::numerics::element::Pass)).
+
+pub mod errors;
+pub mod multistep;
+pub mod stages;
+pub mod updates;
