@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
+    "AccuracyWarning": "errors",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
@@ -46,6 +47,7 @@ _HOME = {
 _ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering")
 
 __all__ = [
+    "AccuracyWarning",
     "CentralField",
     "CloseEncounter",
     "Conservation",
@@ -83,6 +85,7 @@ if TYPE_CHECKING:
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
         CloseEncounter,
+        AccuracyWarning,
         ConvergenceError,
         Error,
         InternalError,

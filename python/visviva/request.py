@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 import numpy as np
 
 from visviva import _core
+from visviva._accuracy import judge
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 
@@ -75,6 +76,8 @@ def execute(
         with callback(progress) as report:
             result = _core.run(request, threads=count, progress=report, ensemble=ensemble)
     made = make(result)
+    if "energy_error" in result:
+        judge(result["energy_error"], ensemble=ensemble)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

@@ -153,7 +153,7 @@ pub fn run<S: Element>(
     dynamics: &mut Dynamics<S>,
     places: impl Iterator<Item = Place>,
     ticker: &mut Ticker<'_>,
-    mut record: impl FnMut(usize, &State<S>) -> Result<()>,
+    mut record: impl FnMut(usize, &State<S>, &mut Ticker<'_>) -> Result<()>,
 ) -> (u64, Result<()>) {
     let mut taken = 0;
     let outcome = (|| {
@@ -204,7 +204,7 @@ pub fn run<S: Element>(
                     &*between
                 }
             };
-            record(index, reached)?;
+            record(index, reached, ticker)?;
         }
         ticker.advance(taken % PROGRESS_STEPS);
         Ok(())

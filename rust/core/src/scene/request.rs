@@ -1,6 +1,7 @@
 //! What is asked of a scene: times, method, tolerances, columns; checked before anything runs.
 
 use super::Scene;
+use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
 use crate::integrators::Method;
 use crate::registry;
@@ -9,9 +10,10 @@ use crate::words::{number, unknown};
 /// The smallest relative tolerance that double precision can honour (a hundred units in the last place).
 pub const RTOL_MIN: f64 = 2.3e-14;
 
-/// What may be recorded.
-pub const COLUMNS: [&str; 6] =
-    ["position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass"];
+/// What may be recorded: states, and what is derived from them.
+pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
+    ["position", "velocity"].into_iter().chain(COLUMNS.iter().map(|column| column.name))
+}
 
 /// What is asked of a scene.
 #[derive(Clone, Debug)]
@@ -30,7 +32,7 @@ pub struct Request {
     pub max_step: Option<f64>,
     /// The most steps, accepted or not, of a trajectory.
     pub max_steps: Option<i64>,
-    /// Names from [`COLUMNS`].
+    /// Names from [`columns`].
     pub record: Vec<String>,
     /// Threads.
     pub threads: usize,
@@ -55,6 +57,16 @@ impl Request {
         self.record.iter().any(|name| name == column)
     }
 
+    /// The derived columns that are asked for, in that order, each once.
+    pub fn derived(&self) -> Vec<&'static Column> {
+        let mut derived: Vec<&'static Column> = Vec::new();
+        for name in &self.record {
+            let wanted = COLUMNS.iter().find(|column| column.name == name);
+            derived.extend(wanted.filter(|column| derived.iter().all(|other| other.name != column.name)));
+        }
+        derived
+    }
+
     /// Refuses what cannot be done.
     ///
     /// # Errors
@@ -65,8 +77,8 @@ impl Request {
         let names = core::iter::once("auto").chain(registry::METHODS.iter().map(|method| method.name));
         let method = registry::method(name).ok_or_else(|| unknown("method", name, names))?;
         for column in &self.record {
-            if !COLUMNS.contains(&column.as_str()) {
-                return Err(unknown("record", column, COLUMNS.into_iter()));
+            if !columns().any(|name| name == column) {
+                return Err(unknown("record", column, columns()));
             }
         }
         let direction = self.direction(scene)?;

@@ -69,8 +69,8 @@ fn lockstep(
         last: None,
     };
     let (steps, outcome) =
-        fixed::run(stepper, job.max_steps, state, &mut dynamics, places, ticker, |index, state| {
-            records.take(index, state)
+        fixed::run(stepper, job.max_steps, state, &mut dynamics, places, ticker, |index, state, ticker| {
+            records.take(index, state, ticker)
         });
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
@@ -99,14 +99,14 @@ impl Records<'_> {
     /// Records an output time.
     ///
     /// # Errors
-    /// [`Error::Convergence`] when no unit is finite any more.
+    /// [`Error::Convergence`] when no unit is finite any more; [`Error::Interrupted`].
     #[inline(always)]
-    fn take(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
+    fn take(&mut self, index: usize, state: &State<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         let job = self.job;
         let t = job.times[index];
         let elapsed = t - job.scene.t0;
         for (lane, unit) in self.units.iter().enumerate() {
-            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed) {
+            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);
                 self.running -= 1;
             }
