@@ -84,8 +84,8 @@ if TYPE_CHECKING:
     from visviva.conservation import Conservation
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
-        CloseEncounter,
         AccuracyWarning,
+        CloseEncounter,
         ConvergenceError,
         Error,
         InternalError,

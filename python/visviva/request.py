@@ -76,8 +76,8 @@ def execute(
         with callback(progress) as report:
             result = _core.run(request, threads=count, progress=report, ensemble=ensemble)
     made = make(result)
-    if "energy_error" in result:
-        judge(result["energy_error"], ensemble=ensemble)
+    if request["dt"] is not None:
+        judge(result, ensemble=ensemble)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

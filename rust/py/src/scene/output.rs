@@ -61,6 +61,7 @@ pub(super) fn output_dict<'py>(
         set(column.name, values, if column.width == 1 { &shape[..2] } else { &shape })?;
     }
     let dict = PyDict::new(py);
+    let span = request.times.last().map_or(0.0, |end| (end - scene.t0).abs());
     let mut reached = request.times;
     reached.truncate(times);
     dict.set_item("t", moved(py, reached, &[times])?)?;
@@ -96,6 +97,12 @@ pub(super) fn output_dict<'py>(
     last.set_item("position", flat(output.reached.position)?)?;
     last.set_item("velocity", flat(output.reached.velocity)?)?;
     dict.set_item("final", last)?;
+    if let Some(dt) = output.plan.dt {
+        let step = dt.abs();
+        if span > 0.0 && span < step {
+            dict.set_item("dt_beyond", (step, span))?;
+        }
+    }
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());
     if let (Some((copy, error)), Some(dt)) = (worst.max_by(|a, b| a.1.total_cmp(&b.1)), output.plan.dt) {
