@@ -19,6 +19,7 @@ __version__ = "0.1.0"
 
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
+    "AccuracyWarning": "errors",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
@@ -48,6 +49,7 @@ _HOME = {
 _ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
 __all__ = [
+    "AccuracyWarning",
     "CentralField",
     "CloseEncounter",
     "Conservation",
@@ -88,6 +90,7 @@ if TYPE_CHECKING:
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
+        AccuracyWarning,
         CloseEncounter,
         ConvergenceError,
         Error,

@@ -29,6 +29,7 @@ def conserved(
     about: NDArray[np.float64],
     columns: list[str],
 ) -> dict[str, NDArray[np.float64]]: ...
+def columns() -> list[tuple[str, str, int, bool]]: ...
 def acceleration(
     *,
     mass: NDArray[np.float64],

@@ -9,6 +9,7 @@ from dataclasses import FrozenInstanceError
 from typing import Any
 
 __all__ = [
+    "AccuracyWarning",
     "CloseEncounter",
     "ConvergenceError",
     "Error",
@@ -174,6 +175,24 @@ class Interrupted(KeyboardInterrupt):
 
     def __str__(self) -> str:
         return self.message if self.trajectory is None else f"{self.message}; .trajectory holds what was computed"
+
+
+class AccuracyWarning(UserWarning):
+    """A run came to its end, but resolved nothing: the energy at the end is not that of the start.
+
+    After fixed steps the two are compared, wherever that costs next to nothing beside the run. The message names the
+    figure and a step that would do.
+
+    Examples
+    --------
+    >>> import warnings, visviva as vv
+    >>> planets = vv.problems.outer_solar_system().scene
+    >>> with warnings.catch_warnings(record=True) as caught:
+    ...     warnings.simplefilter("always")
+    ...     out = planets.run(t=1e5, method="leapfrog", dt=1e3)
+    >>> caught[0].category is vv.AccuracyWarning
+    True
+    """
 
 
 class InternalError(Error, RuntimeError):

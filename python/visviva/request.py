@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 import numpy as np
 
 from visviva import _core
+from visviva._accuracy import judge
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
 from visviva.status import Status
@@ -172,6 +173,8 @@ def execute(
         with callback(request.progress) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
     made = make(result)
+    if request.dt is not None:
+        judge(result, ensemble=ensemble)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

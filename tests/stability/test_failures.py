@@ -84,3 +84,49 @@ def test_too_few_steps_keep_what_was_done() -> None:
     assert error.time is not None
     assert 0.0 < error.time < 3.0
     assert error.trajectory.t[-1] <= error.time
+
+
+def test_after_an_encounter_the_final_scene_is_of_one_time() -> None:
+    """A massless body falls into the star; the planet, which went on to the end, is taken back to that time."""
+    stars = vv.Particles([1.0, 1e-3], [[0.0, 0.0, 0.0], [5.0, 0.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.45, 0.0]])
+    falling = vv.Particles(
+        [1.0, 1e-3, 0.0], [*stars.position.tolist(), [1.0, 0.0, 0.0]], [*stars.velocity.tolist(), [0.0, 0.0, 0.0]]
+    )
+    for record in (("position", "velocity"), ("energy",)):
+        with pytest.raises(vv.CloseEncounter) as caught:
+            vv.Scene(falling, vv.Gravity(1.0)).run(t=3.0, method="dop853", record=record)
+        final = caught.value.trajectory.final
+        # The fall from rest at distance 1 onto mass 1 takes π/√8; the planet pulls a little.
+        assert final.t0 == caught.value.time == pytest.approx(np.pi / np.sqrt(8.0), abs=1e-4)
+        alone = vv.Scene(stars, vv.Gravity(1.0)).run(t=final.t0, method="dop853").final
+        assert np.array_equal(final.particles.position[:2], alone.particles.position)
+        assert np.array_equal(final.particles.velocity[:2], alone.particles.velocity)
+
+
+def test_after_an_encounter_bodies_that_do_not_interact_are_of_one_time() -> None:
+    """One of three falls into the centre, the others circle: they are where a run to that time finds them."""
+    field = vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=5.0))
+    x, v = [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0], [0.0, 3.0, 0.0]], [[0.0, 0.0, 0.0], [0.0, 0.6, 0.0], [0.5, 0.0, 0.0]]
+    with pytest.raises(vv.CloseEncounter) as caught:
+        vv.Scene(vv.Particles([1.0, 1.0, 1.0], x, v), field).run(t=5.0, method="dop853")
+    final = caught.value.trajectory.final
+    assert final.t0 == caught.value.time < 2.0
+    others = vv.Scene(vv.Particles([1.0, 1.0], x[1:], v[1:]), field).run(t=final.t0, method="dop853")
+    assert np.array_equal(final.particles.position[1:], others.position[-1])
+
+
+def test_a_final_scene_of_fixed_steps_is_the_last_that_is_finite() -> None:
+    """One of two bodies meets the centre to the bit and is no number from then on."""
+    field = vv.CentralField(vv.potentials.Coulomb(-1.0))
+    particles = vv.Particles([1.0, 1.0], [[1.0, 0.0, 0.0], [2.0, 0.0, 0.0]], [[-1.0, 0.0, 0.0], [0.0, 0.7, 0.0]])
+    scene = vv.Scene(particles, field)
+    # A first kick of half a step of 2 makes the speed -2; the drift then ends at -3, through the centre; a speed of 0.5
+    # before it ends in the centre itself.
+    scene = scene.with_state(particles.position, [[0.5, 0.0, 0.0], [0.0, 0.7, 0.0]], 0.0)
+    for record in (("position", "velocity"), ("position",)):
+        with pytest.raises(vv.ConvergenceError) as caught:
+            scene.run(t=np.linspace(0.0, 8.0, 9), method="leapfrog", dt=2.0, record=record)
+        final = caught.value.trajectory.final
+        assert final.t0 == caught.value.time == caught.value.trajectory.t[-1]
+        assert np.isfinite(final.particles.position).all()
+        assert np.array_equal(final.particles.position, caught.value.trajectory.position[-1])

@@ -6,6 +6,7 @@
 pub mod conservation;
 pub mod error;
 pub mod forces;
+pub mod memory;
 pub mod nbody;
 pub mod numerics;
 pub mod ode;

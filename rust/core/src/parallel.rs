@@ -45,6 +45,10 @@ impl Control {
     pub fn set_total(&self, total: u64) {
         self.total.store(total, Ordering::Relaxed);
     }
+    /// Says how much more there is to do, where work is begun part by part.
+    pub fn add_total(&self, total: u64) {
+        let _: u64 = self.total.fetch_add(total, Ordering::Relaxed);
+    }
     /// Asks every thread to stop at its next tick.
     pub fn cancel(&self) {
         self.cancelled.0.store(true, Ordering::Relaxed);

@@ -6,6 +6,8 @@
 //! user gave, with its messages, is `visviva._arrays`; this is the second line.
 
 use crate::errors::raised;
+use core::mem::ManuallyDrop;
+use core::ptr::NonNull;
 use numpy::ndarray::{ArrayD, ArrayViewD, IxDyn};
 use numpy::npyffi::NPY_ARRAY_ALIGNED;
 use numpy::{Element, IntoPyArray, PyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
@@ -58,12 +60,34 @@ pub(crate) fn moved<'py, T: Element>(
 }
 
 /// The base of an array of numbers; its room goes to the next run when the array is gone.
+///
+/// Taken apart, the vector is no longer ours to read: only through the array.
 #[pyclass(frozen)]
-struct Room(Vec<f64>);
+struct Room {
+    numbers: NonNull<f64>,
+    length: usize,
+    capacity: usize,
+}
+
+// SAFETY: nothing is read or written through it but by its `Drop`, when nobody else has the numbers any more.
+unsafe impl Send for Room {}
+// SAFETY: as above.
+unsafe impl Sync for Room {}
+
+impl Room {
+    fn new(values: Vec<f64>) -> Self {
+        let mut values = ManuallyDrop::new(values);
+        let (length, capacity) = (values.len(), values.capacity());
+        let numbers = NonNull::new(values.as_mut_ptr()).unwrap_or(NonNull::dangling());
+        Self { numbers, length, capacity }
+    }
+}
 
 impl Drop for Room {
     fn drop(&mut self) {
-        give_back(core::mem::take(&mut self.0));
+        // SAFETY: these are the parts of a vector that was taken apart, all its numbers initialised, and this is the
+        // one time that it is put together; the array that used them is gone, as it kept this alive.
+        give_back(unsafe { Vec::from_raw_parts(self.numbers.as_ptr(), self.length, self.capacity) });
     }
 }
 
@@ -77,10 +101,13 @@ pub(crate) fn moved_column<'py>(
     shape: &[usize],
 ) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
     let length = values.len();
-    let room = Bound::new(py, Room(values))?;
-    let view = ArrayViewD::from_shape(IxDyn(shape), &room.get().0).map_err(|_| {
-        raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}")))
-    })?;
+    let counted = shape.iter().try_fold(1_usize, |product, &axis| product.checked_mul(axis));
+    if counted != Some(length) {
+        return Err(raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}"))));
+    }
+    let room = Bound::new(py, Room::new(values))?;
+    // SAFETY: there are as many numbers as the shape says, in row-major order, and the pointer is the owner's.
+    let view = unsafe { ArrayViewD::from_shape_ptr(IxDyn(shape), room.get().numbers.as_ptr()) };
     // SAFETY: the array keeps the room alive as its base, and nothing but the array reads or writes there.
     Ok(unsafe { PyArray::borrow_from_array(&view, room.clone().into_any()) })
 }

@@ -36,7 +36,7 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::{monte_carlo, scattering_function, solid_angles};
     #[pymodule_export]
-    use crate::scene::{acceleration, conserved, plan, run};
+    use crate::scene::{acceleration, columns, conserved, plan, run};
     #[pymodule_export]
     use crate::words::nearest;
 

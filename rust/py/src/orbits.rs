@@ -9,6 +9,7 @@ use nalgebra::Vector3;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use visviva_core::memory::reserved;
 use visviva_core::nbody::anomalies::convert;
 use visviva_core::nbody::constants::{self, ConicConstants};
 use visviva_core::nbody::elements::{Elements, free_fall_time};
@@ -199,9 +200,12 @@ pub(crate) fn orbit_propagate<'py>(
     let v = vectors("velocity", &velocity, count)?;
     let (times, [length]) = copied("t", &t, [None])?;
     let (position, velocity) = compute(py, 0, None, |ticker| {
+        let [mut position, mut velocity] = reserved(
+            "t",
+            "positions and velocities at all these times",
+            count.checked_mul(length).and_then(|n| n.checked_mul(3)),
+        )?;
         let orbits = each(count, ticker, |i| KeplerOrbit::new(mu[i], r[i], v[i]))?;
-        let mut position = Vec::with_capacity(3 * count * length);
-        let mut velocity = Vec::with_capacity(3 * count * length);
         for &time in &times {
             for orbit in &orbits {
                 let (r, v) = orbit.state(time);

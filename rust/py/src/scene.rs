@@ -14,8 +14,8 @@ use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use visviva_core::Error;
-use visviva_core::conservation::{self, Body};
-use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::conservation::Bodies;
+use visviva_core::conservation::columns::{COLUMNS, State, column};
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::plan::Plan;
@@ -72,19 +72,23 @@ pub(crate) fn conserved<'py>(
     let specs = described(&forces)?;
     let about = points(&copied("about", &about, [Some(3)])?.0)[0];
     let (position, velocity) = (points(&position), points(&velocity));
+    let columns = columns.iter().map(|name| column("columns", name)).collect::<Result<Vec<_>, _>>();
+    let columns = columns.map_err(|error| raised(py, error))?;
+    let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let values = compute(py, times as u64, None, |ticker| {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+        let mut bodies = Bodies::default();
         for time in 0..times {
-            let exact = |x: [f64; 3]| x.map(DoubleDouble::from);
-            let bodies: Vec<Body> = (0..particles)
-                .map(|i| Body {
-                    mass: mass[i],
-                    position: exact(position[time * particles + i]),
-                    velocity: exact(velocity[time * particles + i]),
-                })
-                .collect();
-            for (name, values) in columns.iter().zip(&mut values) {
-                values.extend(conservation::column(name, &specs, &bodies, about)?);
+            bodies.clear(particles);
+            for (i, &mass) in mass.iter().enumerate() {
+                let exact = |x: [f64; 3]| [x, [0.0; 3]];
+                let at = time * particles + i;
+                bodies.set(i, mass, exact(position[at]), exact(velocity[at]));
+            }
+            bodies.settle();
+            let mut state = State::new(&specs, &bodies, about, threads, ticker);
+            for (column, values) in columns.iter().zip(&mut values) {
+                values.extend_from_slice(&state.value(column)?[..column.width]);
             }
             ticker.tick()?;
         }
@@ -92,12 +96,20 @@ pub(crate) fn conserved<'py>(
     })?
     .whole(py)?;
     let dict = PyDict::new(py);
-    for (name, values) in columns.into_iter().zip(values) {
-        let scalar = conservation::SCALARS.contains(&name.as_str());
-        let shape = [times, 3];
-        dict.set_item(name, moved(py, values, if scalar { &shape[..1] } else { &shape[..] })?)?;
+    for (column, values) in columns.into_iter().zip(values) {
+        let shape = [times, column.width];
+        dict.set_item(column.name, moved(py, values, if column.width == 1 { &shape[..1] } else { &shape })?)?;
     }
     Ok(dict)
+}
+
+/// The derived columns that there are: name, description, numbers for each time, whether velocities are needed.
+#[pyfunction]
+pub(crate) fn columns() -> Vec<(&'static str, &'static str, usize, bool)> {
+    COLUMNS
+        .iter()
+        .map(|column| (column.name, column.description, column.width, column.needs_velocity))
+        .collect()
 }
 
 /// The acceleration of every particle.

@@ -4,6 +4,7 @@
 //! inside it. A state is two blocks of coordinates laid out by [`Shape`]; lanes are particles (packed) or
 //! trajectories (batch), which only the pair kernels and the reductions need to know.
 
+pub mod bodies;
 pub mod central_field;
 pub mod gravity;
 pub mod uniform_field;

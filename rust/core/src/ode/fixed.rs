@@ -63,7 +63,7 @@ pub trait Recorder<S> {
     ///
     /// # Errors
     /// Whatever ends the run.
-    fn record(&mut self, index: usize, state: &State<S>) -> Result<()>;
+    fn record(&mut self, index: usize, state: &State<S>, ticker: &mut Ticker<'_>) -> Result<()>;
 
     /// Whether the run is worth going on with; asked every few steps.
     fn goes_on(&mut self, state: &State<S>) -> bool;
@@ -140,7 +140,7 @@ pub fn run<S: Element>(
                     &*between
                 }
             };
-            recorder.record(index, reached)?;
+            recorder.record(index, reached, ticker)?;
         }
         ticker.advance(taken % PROGRESS_STEPS);
         Ok(())

@@ -78,6 +78,8 @@ pub trait Potential: Debug + Send + Sync {
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3];
     /// V(r) to about thirty digits.
     fn precise_value(&self, r: DoubleDouble) -> DoubleDouble;
+    /// −dV/dr to about thirty digits.
+    fn precise_force(&self, r: DoubleDouble) -> DoubleDouble;
     /// The same potential when lengths are divided by `2^length` and energies by `2^energy`.
     fn scaled(&self, length: i32, energy: i32) -> Arc<dyn Potential>;
     /// `k` if V = k/r.
@@ -107,6 +109,9 @@ impl<P: Formula> Potential for P {
     }
     fn precise_value(&self, r: DoubleDouble) -> DoubleDouble {
         self.value(r)
+    }
+    fn precise_force(&self, r: DoubleDouble) -> DoubleDouble {
+        self.force(r)
     }
     fn scaled(&self, length: i32, energy: i32) -> Arc<dyn Potential> {
         Arc::new(Formula::scaled(self, length, energy))

@@ -8,6 +8,7 @@ use super::columns::{Entry, Writer};
 use super::plan::{Plan, Solution};
 use super::run::Reached;
 use crate::error::Result;
+use crate::forces::bodies::Bodies;
 use crate::nbody::kepler::KeplerOrbit;
 use crate::nbody::two_body::{ExactState, TwoBody};
 use crate::numerics::double_double::DoubleDouble;
@@ -123,6 +124,7 @@ pub fn run(
     writer: &Writer<'_>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Reached> {
+    let mut bodies = Bodies::default();
     let mut reached = Reached { position: Vec::new(), velocity: Vec::new() };
     for copy in 0..scene.copies {
         let motion = motion(scene, plan, copy)?;
@@ -130,10 +132,22 @@ pub fn run(
         for (index, &t) in times.iter().enumerate() {
             motion.states(DoubleDouble::sum(t, -scene.t0), &mut states);
             last.clear();
+            // SAFETY: no other thread writes here.
+            let output = unsafe { writer.output(copy, index) };
             for (particle, state) in states.iter().enumerate() {
                 let entry = entry(scene, copy, particle, *state, t);
-                writer.output(copy, index).write(particle, &entry);
+                output.write(particle, &entry);
                 last.push(entry);
+            }
+            if writer.derives() {
+                bodies.clear(last.len());
+                for (particle, entry) in last.iter().enumerate() {
+                    let position = [entry.position, entry.position_rest];
+                    let velocity = [entry.velocity, entry.velocity_rest];
+                    bodies.set(particle, scene.masses(copy)[particle], position, velocity);
+                }
+                bodies.settle();
+                output.derive(&bodies, ticker)?;
             }
             ticker.tick()?;
         }

@@ -1,13 +1,62 @@
 //! What a run records: arrays that trajectories fill side by side, with NaN where one has failed.
+//!
+//! Derived columns are computed at the record, from the state and its compensation, by the unit that holds all that has
+//! mass in its ensemble member. Where there is none (bodies that do not act on each other are units by themselves), the
+//! states are kept, and the columns derived when all of them are there.
 
 use super::room;
+use super::{ForceSpec, Scene};
+use crate::conservation::columns::{Column, State};
+use crate::error::Result;
+use crate::forces::bodies::Bodies;
 use crate::numerics::lanes::{Bits, Vector8, WIDTH};
 use crate::numerics::simd::prefetch;
+use crate::parallel::Ticker;
 use core::marker::PhantomData;
+
+/// What is recorded, and how.
+#[derive(Clone, Debug)]
+pub struct Wanted {
+    /// Positions.
+    pub position: bool,
+    /// Velocities.
+    pub velocity: bool,
+    /// What is derived from both.
+    pub derived: Vec<&'static Column>,
+    /// Whether the states must be kept for it.
+    pub keep_states: bool,
+}
+
+impl Wanted {
+    /// Which arrays of three numbers for each particle there are: positions, velocities, and what they leave out.
+    fn vectors(&self) -> [bool; 4] {
+        let keep = self.keep_states;
+        [self.position || keep, self.velocity || keep, keep, keep]
+    }
+
+    /// The bytes of all arrays; `None` if nobody could count them.
+    pub fn bytes(&self, copies: usize, times: usize, particles: usize) -> Option<usize> {
+        let vectors = self.vectors().into_iter().filter(|&wanted| wanted).count();
+        let numbers: usize = self.derived.iter().map(|column| column.width).sum();
+        let each = particles.checked_mul(3 * vectors)?.checked_add(numbers)?;
+        copies.checked_mul(times)?.checked_mul(each)?.checked_mul(size_of::<f64>())
+    }
+}
+
+/// A derived column: its numbers, `copies × times × width`.
+#[derive(Clone, Debug)]
+pub struct Derived {
+    /// Which it is.
+    pub column: &'static Column,
+    /// The numbers; NaN where nothing was recorded.
+    pub values: Vec<f64>,
+}
 
 /// Output arrays of a batch, C order `(copies, times, particles, 3)`; empty where not asked for.
 #[derive(Clone, Debug, Default)]
 pub struct Columns {
+    /// Ensemble members.
+    pub copies: usize,
     /// Output times.
     pub times: usize,
     /// Particles.
@@ -16,66 +65,76 @@ pub struct Columns {
     pub position: Vec<f64>,
     /// Velocities.
     pub velocity: Vec<f64>,
-    /// What the positions leave out, for quantities derived from them.
+    /// What the positions leave out, where columns are derived from kept states.
     pub position_rest: Vec<f64>,
     /// What the velocities leave out.
     pub velocity_rest: Vec<f64>,
+    /// Derived columns, in the order asked for.
+    pub derived: Vec<Derived>,
+    streams: bool,
 }
 
 impl Columns {
-    /// Room for the arrays; `derived` asks for all four.
+    /// The arrays, with anything in them: what is not written is made NaN by [`finish`](Self::finish).
     ///
-    /// The room is not initialised (touching it twice would cost as much as the steps between two
-    /// outputs): the arrays are empty until [`finish`](Self::finish).
-    pub fn new(
-        copies: usize,
-        times: usize,
-        particles: usize,
-        position: bool,
-        velocity: bool,
-        derived: bool,
-    ) -> Self {
-        let array = |wanted: bool| room::take(if wanted { copies * times * particles * 3 } else { 0 });
-        Self {
+    /// # Errors
+    /// Of `t`, if there is no room for them.
+    pub fn new(copies: usize, times: usize, particles: usize, wanted: &Wanted) -> Result<Self> {
+        let array = |width: Option<usize>| {
+            let len = width.and_then(|width| copies.checked_mul(times)?.checked_mul(width));
+            len.and_then(room::take).ok_or_else(|| room::refusal(wanted.bytes(copies, times, particles)))
+        };
+        let vector = |wanted: bool| array(if wanted { particles.checked_mul(3) } else { Some(0) });
+        let [position, velocity, position_rest, velocity_rest] = wanted.vectors();
+        let derived = wanted.derived.iter();
+        let derived = derived
+            .map(|&column| Ok(Derived { column, values: array(Some(column.width))? }))
+            .collect::<Result<_>>()?;
+        Ok(Self {
+            copies,
             times,
             particles,
-            position: array(position || derived),
-            velocity: array(velocity || derived),
-            position_rest: array(derived),
-            velocity_rest: array(derived),
-        }
+            position: vector(position)?,
+            velocity: vector(velocity)?,
+            position_rest: vector(position_rest)?,
+            velocity_rest: vector(velocity_rest)?,
+            derived,
+            streams: !wanted.keep_states,
+        })
     }
 
-    /// Makes the arrays whole: NaN for a (particle, copy) from the output time at which its record ends.
-    ///
-    /// # Safety
-    /// Every entry that is not in `missing` has been written, for each of the `copies` copies.
-    pub unsafe fn finish(&mut self, copies: usize, missing: &[Missing]) {
+    /// NaN for each particle from the output time at which its record ends, and for what is derived from it.
+    pub fn finish(&mut self, missing: &[Missing]) {
         let Self { times, particles, .. } = *self;
-        let len = copies * times * particles * 3;
-        for array in
-            [&mut self.position, &mut self.velocity, &mut self.position_rest, &mut self.velocity_rest]
-        {
-            if array.capacity() < len || len == 0 {
-                continue;
-            }
-            for &Missing { copy, from_time, particle } in missing {
+        for &Missing { copy, from_time, particle } in missing {
+            for array in
+                [&mut self.position, &mut self.velocity, &mut self.position_rest, &mut self.velocity_rest]
+            {
+                if array.is_empty() {
+                    continue;
+                }
                 for time in from_time..times {
                     let at = ((copy * times + time) * particles + particle) * 3;
-                    for entry in &mut array.spare_capacity_mut()[at..at + 3] {
-                        let _: &mut f64 = entry.write(f64::NAN);
-                    }
+                    array[at..at + 3].fill(f64::NAN);
                 }
             }
-            // SAFETY: the capacity is there (tested above) and everything was written, by the contract or
-            // by the loop above.
-            unsafe { array.set_len(len) };
+            for Derived { column, values } in &mut self.derived {
+                values[(copy * times + from_time) * column.width..(copy + 1) * times * column.width]
+                    .fill(f64::NAN);
+            }
         }
     }
 
-    /// A writer that threads may share, each for particles of its own.
-    pub fn writer(&mut self) -> Writer<'_> {
-        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.capacity());
+    /// A writer that threads may share, each for particles of its own. The copies of `scene` are `members` of these
+    /// columns; what takes long is shared out over so many `threads`.
+    pub fn writer<'a>(
+        &'a mut self,
+        scene: &'a Scene,
+        members: Option<&'a [usize]>,
+        threads: usize,
+    ) -> Writer<'a> {
+        let raw = |array: &mut Vec<f64>| (array.as_mut_ptr(), array.len());
+        let streams = self.streams;
         Writer {
             times: self.times,
             particles: self.particles,
@@ -83,6 +142,16 @@ impl Columns {
             velocity: raw(&mut self.velocity),
             position_rest: raw(&mut self.position_rest),
             velocity_rest: raw(&mut self.velocity_rest),
+            derived: self
+                .derived
+                .iter_mut()
+                .filter(|_| streams)
+                .map(|derived| (derived.column, raw(&mut derived.values)))
+                .collect(),
+            masses: &scene.mass,
+            forces: &scene.forces,
+            members,
+            threads,
             columns: PhantomData,
         }
     }
@@ -108,11 +177,16 @@ pub struct Writer<'a> {
     velocity: (*mut f64, usize),
     position_rest: (*mut f64, usize),
     velocity_rest: (*mut f64, usize),
+    derived: Vec<(&'static Column, (*mut f64, usize))>,
+    masses: &'a [f64],
+    forces: &'a [ForceSpec],
+    members: Option<&'a [usize]>,
+    threads: usize,
     columns: PhantomData<&'a mut Columns>,
 }
 
-// SAFETY: the arrays outlive the writer (its lifetime borrows them mutably), and every particle of every
-// copy is written by the one thread that integrates it, so no entry is written by two threads.
+// SAFETY: the arrays outlive the writer (its lifetime borrows them mutably), and whoever takes an output from it
+// promises that no other thread writes there.
 unsafe impl Sync for Writer<'_> {}
 
 /// One particle at one time: values and what they leave out.
@@ -156,17 +230,35 @@ impl<'a> Writer<'a> {
         self.position_rest.1 > 0
     }
 
+    /// Whether columns are derived at the record.
+    pub fn derives(&self) -> bool {
+        !self.derived.is_empty()
+    }
+
+    /// The masses of a copy.
+    pub fn masses(&self, copy: usize) -> &[f64] {
+        &self.masses[copy * self.particles..(copy + 1) * self.particles]
+    }
+
     /// The entries of a copy at an output time.
+    ///
+    /// # Safety
+    /// As long as it is there, no other thread writes the particles, or derives the columns, of this copy at this time
+    /// that are written through it.
     #[inline(always)]
-    pub fn output(&'a self, copy: usize, time: usize) -> Output<'a> {
-        Output { writer: self, start: (copy * self.times + time) * self.particles }
+    pub unsafe fn output(&'a self, copy: usize, time: usize) -> Output<'a> {
+        let member = self.members.map_or(copy, |members| members[copy]);
+        let row = member * self.times + time;
+        Output { writer: self, row, start: row * self.particles }
     }
 }
 
-/// What is recorded of a copy at one output time. Only one thread may write a given particle.
+/// What is recorded of a copy at one output time.
 #[derive(Debug)]
 pub struct Output<'a> {
     writer: &'a Writer<'a>,
+    /// Its place among those of all copies.
+    row: usize,
     /// The entry of its first particle.
     start: usize,
 }
@@ -174,11 +266,32 @@ pub struct Output<'a> {
 impl Output<'_> {
     #[inline(always)]
     fn put(&self, (array, len): (*mut f64, usize), particle: usize, values: [f64; 3]) {
-        let at = (self.start + particle) * 3;
-        if at + 3 <= len {
-            // SAFETY: in bounds by the test; no other thread writes this particle (see the type).
-            unsafe { array.add(at).cast::<[f64; 3]>().write(values) };
+        if len == 0 {
+            return;
         }
+        let at = (self.start + particle) * 3;
+        assert!(at + 3 <= len, "a particle has a place in its column");
+        // SAFETY: in bounds by the test; no other thread writes this particle (see the type).
+        unsafe { array.add(at).cast::<[f64; 3]>().write(values) };
+    }
+
+    /// Derives the columns from all bodies of the copy that have a mass, or from all of them if none has.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted), and then not all are written.
+    pub fn derive(&self, bodies: &Bodies, ticker: &mut Ticker<'_>) -> Result<()> {
+        let Writer { derived, forces, threads, .. } = self.writer;
+        let mut state = State::new(forces, bodies, [0.0; 3], *threads, ticker);
+        for &(column, (array, len)) in derived {
+            let values = state.value(column)?;
+            let at = self.row * column.width;
+            assert!(at + column.width <= len, "a row has a place in its column");
+            for (offset, value) in values.into_iter().take(column.width).enumerate() {
+                // SAFETY: in bounds by the test; no other thread derives this row (see the type).
+                unsafe { array.add(at + offset).write(value) };
+            }
+        }
+        Ok(())
     }
 
     /// Writes a particle.
@@ -197,16 +310,18 @@ impl Output<'_> {
 
     #[inline(always)]
     fn put_points<V: Vector8>(&self, (array, len): (*mut f64, usize), run: &Run, points: [V; 3]) {
+        if len == 0 {
+            return;
+        }
         let at = (self.start + run.first) * 3;
-        if at + run.numbers <= len {
-            // A store to a line that is far holds up all after it, so the lines of the next output time come while
-            // there are steps to take.
-            let next = at + 3 * self.writer.particles;
-            for (third, lanes) in points.into_iter().enumerate() {
-                prefetch(array.wrapping_add(next + WIDTH * third));
-                // SAFETY: in bounds by the test; no other thread writes these particles (see the type).
-                unsafe { lanes.write_where(run.wanted[third], array.wrapping_add(at + WIDTH * third)) };
-            }
+        assert!(at + run.numbers <= len, "particles have places in their column");
+        // A store to a line that is far holds up all after it, so the lines of the next output time come while
+        // there are steps to take.
+        let next = at + 3 * self.writer.particles;
+        for (third, lanes) in points.into_iter().enumerate() {
+            prefetch(array.wrapping_add(next + WIDTH * third));
+            // SAFETY: in bounds by the test; no other thread writes these particles (see the type).
+            unsafe { lanes.write_where(run.wanted[third], array.wrapping_add(at + WIDTH * third)) };
         }
     }
 

@@ -67,7 +67,14 @@ impl Job<'_> {
 /// # Errors
 /// Only errors of the library itself: how a unit ended is in its report.
 pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    let mut units = job.plan.unit_list();
+    run_units(job, job.plan.unit_list(), ticker)
+}
+
+/// As [`run`], some of the units only.
+///
+/// # Errors
+/// As [`run`].
+pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     // Units share lanes with units of the same make-up; massive bodies alone differ from those with
     // massless ones beside them.
     units.sort_by_key(|unit| (unit.active, unit.bodies.len()));
@@ -81,7 +88,7 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     for run in units.chunk_by(|a, b| (a.active, a.bodies.len()) == (b.active, b.bodies.len())) {
         runs.extend(run.chunks(per_chunk));
     }
-    ticker.control().set_total(job.total_progress(&runs));
+    ticker.control().add_total(job.total_progress(&runs));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
         Scheme::Embedded(_) => adaptive::run(job, runs[chunk], inside, ticker),
         _ => fixed::run(job, runs[chunk], inside, ticker),

@@ -190,11 +190,6 @@ impl Plan {
         let (active, passive) = (self.active.len() as u64, self.passive.len() as u64);
         if self.gravity.is_some() { active * active.saturating_sub(1) / 2 + active * passive } else { 0 }
     }
-
-    /// Whether a column that is computed from the recorded states is asked for.
-    pub fn derived(&self) -> bool {
-        self.record.iter().any(|name| name != "position" && name != "velocity")
-    }
 }
 
 /// The forces that do anything in this scene.

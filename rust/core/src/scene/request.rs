@@ -1,6 +1,7 @@
 //! What is asked of a scene: times, method, tolerances, columns; checked before anything runs.
 
 use super::Scene;
+use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
 use crate::ode::Method;
 use crate::registry;
@@ -12,9 +13,10 @@ pub const RTOL_MIN: f64 = 2.3e-14;
 /// The most steps that a run can count: 2^53, the largest number to which every whole number is one of float64.
 const MOST_STEPS: f64 = 9_007_199_254_740_992.0;
 
-/// What may be recorded.
-pub const COLUMNS: [&str; 6] =
-    ["position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass"];
+/// What may be recorded: states, and what is derived from them.
+pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
+    ["position", "velocity"].into_iter().chain(COLUMNS.iter().map(|column| column.name))
+}
 
 /// What is asked of a scene.
 #[derive(Clone, Debug)]
@@ -33,7 +35,7 @@ pub struct Request {
     pub max_step: Option<f64>,
     /// The most steps, accepted or not, of a trajectory.
     pub max_steps: Option<i64>,
-    /// Names from [`COLUMNS`].
+    /// Names from [`columns`].
     pub record: Vec<String>,
     /// Threads.
     pub threads: usize,
@@ -58,6 +60,16 @@ impl Request {
         self.record.iter().any(|name| name == column)
     }
 
+    /// The derived columns that are asked for, in that order, each once.
+    pub fn derived(&self) -> Vec<&'static Column> {
+        let mut derived: Vec<&'static Column> = Vec::new();
+        for name in &self.record {
+            let wanted = COLUMNS.iter().find(|column| column.name == name);
+            derived.extend(wanted.filter(|column| derived.iter().all(|other| other.name != column.name)));
+        }
+        derived
+    }
+
     /// Refuses what cannot be done.
     ///
     /// # Errors
@@ -68,8 +80,8 @@ impl Request {
         let names = core::iter::once("auto").chain(registry::METHODS.iter().map(|method| method.name));
         let method = registry::method(name).ok_or_else(|| unknown("method", name, names))?;
         for column in &self.record {
-            if !COLUMNS.contains(&column.as_str()) {
-                return Err(unknown("record", column, COLUMNS.into_iter()));
+            if !columns().any(|name| name == column) {
+                return Err(unknown("record", column, columns()));
             }
         }
         let direction = self.direction(scene)?;

@@ -1,20 +1,23 @@
-//! From a scene and a request to columns: plan, do, derive.
+//! From a scene and a request to columns: plan, do, put together.
 
 mod derived;
 mod patterns;
+mod reached;
+mod resolved;
 
-pub use derived::Derived;
-
-use super::columns::{Columns, Missing};
-use super::integrate::{self, Counts, Ending, Job, Report};
+use super::Scene;
+use super::closed_form;
+use super::columns::{Columns, Missing, Wanted};
+use super::integrate::{self, Counts, Ending, Job};
 use super::plan::{Plan, Solution};
 use super::request::Request;
 use super::room::give_back;
-use super::{Scene, closed_form};
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::memory;
 use crate::parallel::Ticker;
 use derived::derive;
-use patterns::run_by_pattern;
+use patterns::patterns;
+use reached::gather;
 
 /// What became of a copy of the scene.
 #[derive(Clone, Debug)]
@@ -25,8 +28,10 @@ pub struct Outcome {
     pub rows: usize,
     /// What all units cost.
     pub counts: Counts,
-    /// The time reached.
+    /// The time that all its particles have reached.
     pub time: f64,
+    /// How far the energy is off at the end of fixed steps, against kinetic + |potential|; NaN if nobody looked.
+    pub energy_error: f64,
 }
 
 /// The states that the copies reached, particle after particle, copy after copy.
@@ -43,100 +48,167 @@ pub struct Reached {
 pub struct Output {
     /// The plan that was carried out.
     pub plan: Plan,
-    /// Positions and velocities, where asked for.
+    /// The recorded columns.
     pub columns: Columns,
-    /// Derived columns, in the order asked for.
-    pub derived: Vec<Derived>,
     /// What became of each copy.
     pub outcomes: Vec<Outcome>,
     /// The states reached.
     pub reached: Reached,
 }
 
+/// Copies that are run together.
+struct Part<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    /// Which copies of the whole they are; `None` is all of them.
+    members: Option<&'a [usize]>,
+}
+
+impl Part<'_> {
+    /// The place among all copies of one of these.
+    fn member(&self, copy: usize) -> usize {
+        self.members.map_or(copy, |members| members[copy])
+    }
+
+    /// Whether columns can be derived at the record.
+    fn tells(&self) -> bool {
+        self.plan.solution != Solution::Integration
+            || self.plan.unit_list().first().is_some_and(|unit| unit.is_whole(self.scene))
+    }
+}
+
 /// Runs a scene.
 ///
 /// # Errors
-/// Bad input, before anything runs; errors of the library itself. How each copy ended is in the output.
+/// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
+/// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
     let plan = Plan::new(scene, request)?;
-    if let Some(output) = run_by_pattern(scene, request, ticker)? {
-        return Ok(Output { plan, ..output });
-    }
-    let mut columns = Columns::new(
-        scene.copies,
-        request.times.len(),
-        scene.particles,
-        request.records("position"),
-        request.records("velocity"),
-        plan.derived(),
-    );
-    let (outcomes, reached) = if plan.solution == Solution::Integration {
-        let writer = columns.writer();
-        let job = Job {
-            scene,
-            plan: &plan,
-            times: &request.times,
-            rtol: request.rtol,
-            atol: request.atol,
-            max_step: request.max_step.unwrap_or(f64::MAX),
-            max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
-            writer: &writer,
-        };
-        let reports = integrate::run(&job, ticker)?;
-        let missing: Vec<Missing> = reports
+    let groups = patterns(scene);
+    let plans: Vec<Plan> =
+        groups.iter().flatten().map(|(_, part)| Plan::new(part, request)).collect::<Result<_>>()?;
+    let parts: Vec<Part<'_>> = match &groups {
+        None => vec![Part { scene, plan: &plan, members: None }],
+        Some(groups) => groups
             .iter()
-            .filter(|report| report.rows < request.times.len())
-            .flat_map(|report| {
-                let unit = &report.unit;
-                unit.recorded.clone().map(|slot| Missing {
-                    copy: unit.copy,
-                    from_time: report.rows,
-                    particle: unit.bodies[slot],
-                })
-            })
-            .collect();
-        // SAFETY: there is a report for every unit, the units' recorded bodies are all particles of all
-        // copies, and a unit writes its bodies at each of the first `rows` output times.
-        unsafe { columns.finish(scene.copies, &missing) };
-        gather(scene, request, &reports)
-    } else {
-        let reached = closed_form::run(scene, &plan, &request.times, &columns.writer(), ticker)?;
-        // SAFETY: a closed form that succeeds has written every particle at every time.
-        unsafe { columns.finish(scene.copies, &[]) };
-        // It cannot fail.
-        (vec![Outcome::finished(request); scene.copies], reached)
+            .zip(&plans)
+            .map(|((members, scene), plan)| Part { scene, plan, members: Some(members) })
+            .collect(),
     };
-    let derived = derive(scene, request, &plan, &columns, &outcomes, ticker)?;
-    if !request.records("position") {
-        give_back(core::mem::take(&mut columns.position));
-    }
-    if !request.records("velocity") {
-        give_back(core::mem::take(&mut columns.velocity));
-    }
-    give_back(core::mem::take(&mut columns.position_rest));
-    give_back(core::mem::take(&mut columns.velocity_rest));
-    Ok(Output { plan, columns, derived, outcomes, reached })
-}
-
-/// Puts the units' reports together, copy by copy.
-fn gather(scene: &Scene, request: &Request, reports: &[Report]) -> (Vec<Outcome>, Reached) {
+    let derived = request.derived();
+    let wanted = Wanted {
+        position: request.records("position"),
+        velocity: request.records("velocity"),
+        keep_states: !derived.is_empty() && !parts.iter().all(Part::tells),
+        derived,
+    };
+    check_memory(scene, request, &wanted, plan.threads.0)?;
+    let mut columns = Columns::new(scene.copies, request.times.len(), scene.particles, &wanted)?;
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
     let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
-    for report in reports {
-        let outcome = &mut outcomes[report.unit.copy];
-        if outcome.ending == Ending::Finished && report.ending != Ending::Finished {
-            outcome.ending = report.ending.clone();
-            outcome.time = report.time;
-        }
-        outcome.rows = outcome.rows.min(report.rows);
-        outcome.counts += report.counts;
-        for (&[position, velocity], slot) in report.states.iter().zip(report.unit.recorded.clone()) {
-            let particle = report.unit.copy * scene.particles + report.unit.bodies[slot];
-            reached.position[particle] = position;
-            reached.velocity[particle] = velocity;
+    for part in &parts {
+        run_part(part, request, &mut columns, &mut outcomes, &mut reached, ticker)?;
+    }
+    if wanted.keep_states {
+        let rows: Vec<usize> = outcomes.iter().map(|outcome| outcome.rows).collect();
+        derive(scene, &mut columns, &rows, request.threads, ticker)?;
+    }
+    for (kept, array) in [
+        (wanted.position, &mut columns.position),
+        (wanted.velocity, &mut columns.velocity),
+        (false, &mut columns.position_rest),
+        (false, &mut columns.velocity_rest),
+    ] {
+        if !kept {
+            give_back(core::mem::take(array));
         }
     }
-    (outcomes, reached)
+    Ok(Output { plan, columns, outcomes, reached })
+}
+
+/// Refuses what there is no memory for: the columns, the times of each thread, the states reached.
+fn check_memory(scene: &Scene, request: &Request, wanted: &Wanted, threads: usize) -> Result<()> {
+    let times = request.times.len();
+    let bytes = wanted.bytes(scene.copies, times, scene.particles).and_then(|columns| {
+        let each = size_of::<f64>() * (threads + 2);
+        let states = scene.copies.checked_mul(scene.particles)?.checked_mul(4 * size_of::<[f64; 3]>())?;
+        columns.checked_add(times.checked_mul(each)?)?.checked_add(states)
+    });
+    memory::check(
+        "t",
+        &format!(
+            "{} times of {} particles in {} copies, with what is recorded of them,",
+            times, scene.particles, scene.copies
+        ),
+        bytes,
+        "ask for fewer times, record fewer columns, or run in parts",
+    )
+}
+
+fn run_part(
+    part: &Part<'_>,
+    request: &Request,
+    columns: &mut Columns,
+    outcomes: &mut [Outcome],
+    reached: &mut Reached,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    let Part { scene, plan, .. } = *part;
+    if plan.solution != Solution::Integration {
+        let writer = columns.writer(scene, part.members, 1);
+        let end = closed_form::run(scene, plan, &request.times, &writer, ticker)?;
+        let size = scene.particles;
+        for copy in 0..scene.copies {
+            let (from, to) = (copy * size, part.member(copy) * size);
+            reached.position[to..to + size].copy_from_slice(&end.position[from..from + size]);
+            reached.velocity[to..to + size].copy_from_slice(&end.velocity[from..from + size]);
+        }
+        return Ok(());
+    }
+    check_units(part)?;
+    let writer = columns.writer(scene, part.members, plan.threads.1);
+    let job = Job {
+        scene,
+        plan,
+        times: &request.times,
+        rtol: request.rtol,
+        atol: request.atol,
+        max_step: request.max_step.unwrap_or(f64::MAX),
+        max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
+        writer: &writer,
+    };
+    let reports = integrate::run(&job, ticker)?;
+    let missing: Vec<Missing> = reports
+        .iter()
+        .filter(|report| report.rows < request.times.len())
+        .flat_map(|report| {
+            let unit = &report.unit;
+            unit.recorded.clone().map(|slot| Missing {
+                copy: part.member(unit.copy),
+                from_time: report.rows,
+                particle: unit.bodies[slot],
+            })
+        })
+        .collect();
+    columns.finish(&missing);
+    gather(part, request, &reports, columns, outcomes, reached, ticker)?;
+    resolved::look(part, request, outcomes, reached, ticker)
+}
+
+/// That each particle is recorded from one unit: what lets threads write side by side.
+fn check_units(part: &Part<'_>) -> Result<()> {
+    let Part { scene, plan, .. } = *part;
+    let mut seen = vec![false; scene.copies * scene.particles];
+    let broken = || Error::Internal("a particle belongs to no unit or to two".to_owned());
+    for unit in plan.unit_list() {
+        for slot in unit.recorded {
+            let place = seen.get_mut(unit.copy * scene.particles + unit.bodies[slot]).ok_or_else(broken)?;
+            if core::mem::replace(place, true) {
+                return Err(broken());
+            }
+        }
+    }
+    if seen.contains(&false) { Err(broken()) } else { Ok(()) }
 }
 
 impl Outcome {
@@ -148,6 +220,7 @@ impl Outcome {
             rows: times.len(),
             counts: Counts::default(),
             time: times[times.len() - 1],
+            energy_error: f64::NAN,
         }
     }
 }

@@ -15,8 +15,10 @@ use super::Scene;
 use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
+use crate::forces::bodies::Bodies;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
+use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
 
@@ -31,6 +33,20 @@ pub struct Unit {
     pub active: usize,
     /// Which of them, by their place in `bodies`, are recorded from this unit.
     pub recorded: core::ops::Range<usize>,
+}
+
+impl Unit {
+    /// Whether the columns of its copy are derived from it, where one unit can tell them.
+    pub fn derives(&self) -> bool {
+        self.recorded.start == 0
+    }
+
+    /// Whether nothing that has a mass is elsewhere.
+    pub fn is_whole(&self, scene: &Scene) -> bool {
+        let massive = scene.masses(self.copy).iter().filter(|&&mass| mass > 0.0).count();
+        let own = self.bodies.iter().filter(|&&body| scene.masses(self.copy)[body] > 0.0).count();
+        self.bodies.len() == scene.particles || (own > 0 && own == massive)
+    }
 }
 
 /// A unit in the units and about the origin of its integration.
@@ -57,6 +73,8 @@ pub struct Prepared {
     layout: Layout,
     units: Units,
     reading: Reading,
+    /// Where columns are derived.
+    scratch: RefCell<Bodies>,
 }
 
 impl Prepared {
@@ -90,6 +108,7 @@ impl Prepared {
             size: (1.0, 1.0),
             layout: plan.layout,
             units,
+            scratch: RefCell::default(),
         };
         if plan.method.adaptive() {
             prepared.measure(plan);

@@ -207,7 +207,7 @@ pub fn five_lanes() -> Problem<Lanes> {
 pub struct Keep<S>(pub Vec<(usize, State<S>)>);
 
 impl<S: Element> Recorder<S> for Keep<S> {
-    fn record(&mut self, index: usize, state: &State<S>) -> Result<()> {
+    fn record(&mut self, index: usize, state: &State<S>, _: &mut Ticker<'_>) -> Result<()> {
         self.0.push((index, state.clone()));
         Ok(())
     }

@@ -6,6 +6,7 @@ use pyo3::types::PyDict;
 use visviva_core::Error;
 use visviva_core::numerics::simd::tier;
 use visviva_core::scene::Scene;
+use visviva_core::scene::columns::Derived;
 use visviva_core::scene::integrate::Ending;
 use visviva_core::scene::plan::{Plan, Solution};
 use visviva_core::scene::request::Request;
@@ -55,11 +56,12 @@ pub(super) fn output_dict<'py>(
     if request.records("velocity") {
         set("velocity", output.columns.velocity, &[copies, times, particles, 3])?;
     }
-    for column in output.derived {
+    for Derived { column, values } in output.columns.derived {
         let shape = [copies, times, column.width];
-        set(&column.name, column.values, if column.width == 1 { &shape[..2] } else { &shape })?;
+        set(column.name, values, if column.width == 1 { &shape[..2] } else { &shape })?;
     }
     let dict = PyDict::new(py);
+    let span = request.times.last().map_or(0.0, |end| (end - scene.t0).abs());
     let mut reached = request.times;
     reached.truncate(times);
     dict.set_item("t", moved(py, reached, &[times])?)?;
@@ -95,6 +97,17 @@ pub(super) fn output_dict<'py>(
     last.set_item("position", flat(output.reached.position)?)?;
     last.set_item("velocity", flat(output.reached.velocity)?)?;
     dict.set_item("final", last)?;
+    if let Some(dt) = output.plan.dt {
+        let step = dt.abs();
+        if span > 0.0 && span < step {
+            dict.set_item("dt_beyond", (step, span))?;
+        }
+    }
+    let worst =
+        outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());
+    if let (Some((copy, error)), Some(dt)) = (worst.max_by(|a, b| a.1.total_cmp(&b.1)), output.plan.dt) {
+        dict.set_item("energy_error", (copy, error, dt.abs(), output.plan.method.order))?;
+    }
     let error = if ensemble { None } else { failure(&outcomes[0]) };
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
     Ok(dict)

@@ -12,6 +12,7 @@
 //! A massless body exerts nothing, so pairs of them are never formed.
 
 pub mod closed;
+pub mod energy;
 pub mod few;
 mod pair;
 mod passive;

@@ -40,7 +40,11 @@ pub(super) fn run(
 ) -> Result<Vec<Report>> {
     let mut run = Run::new(job, units, threads)?;
     loop {
-        let fresh = run.take_up();
+        let fresh = match run.take_up(ticker) {
+            Ok(fresh) => fresh,
+            Err(Error::Interrupted) => return Ok(run.into_reports()),
+            Err(other) => return Err(other),
+        };
         let running = run.running();
         if !running.any() {
             return Ok(run.into_reports());
@@ -137,7 +141,10 @@ impl<'a> Run<'a> {
     }
 
     /// Gives the free lanes to units that wait; which lanes were given.
-    fn take_up(&mut self) -> Bits {
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    fn take_up(&mut self, ticker: &mut Ticker<'_>) -> Result<Bits> {
         let mut fresh = Bits(0);
         for lane in 0..self.job.plan.layout.units() {
             while self.slots[lane].is_none() {
@@ -153,7 +160,7 @@ impl<'a> Run<'a> {
                     counts: Counts { evaluations: self.cost.start, ..Counts::default() },
                     progress: 0,
                 };
-                self.record_start(&mut slot, lane);
+                self.record_start(&mut slot, lane, ticker)?;
                 if slot.next_output < self.outputs.len() {
                     self.slots[lane] = Some(slot);
                     fresh = fresh.or(mask);
@@ -162,7 +169,7 @@ impl<'a> Run<'a> {
                 }
             }
         }
-        fresh
+        Ok(fresh)
     }
 
     /// Starts the fresh lanes and takes a step in all that run.

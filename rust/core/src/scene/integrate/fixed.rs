@@ -100,14 +100,14 @@ struct Records<'a> {
 }
 
 impl Recorder<Lanes> for Records<'_> {
-    /// [`Error::Convergence`] when no unit is finite any more.
+    /// [`Error::Convergence`] when no unit is finite any more; [`Error::Interrupted`].
     #[inline(always)]
-    fn record(&mut self, index: usize, state: &State<Lanes>) -> Result<()> {
+    fn record(&mut self, index: usize, state: &State<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         let job = self.job;
         let t = job.times[index];
         let elapsed = t - job.scene.t0;
         for (lane, unit) in self.units.iter().enumerate() {
-            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed) {
+            if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);
                 self.running -= 1;
             }

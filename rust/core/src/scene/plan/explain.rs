@@ -1,7 +1,7 @@
 //! The plan in words: what will be done and why, what is skipped and why.
 
 use super::super::layout::Layout;
-use super::super::request::COLUMNS;
+use super::super::request::columns;
 use super::{Plan, Solution};
 use crate::ode::Scheme;
 use core::fmt;
@@ -110,7 +110,7 @@ impl Plan {
             }
             skip("event location", "no events are asked for".to_owned());
         }
-        for column in COLUMNS {
+        for column in columns() {
             if !self.record.iter().any(|name| name == column) {
                 skip(&format!("the {column} column"), "not asked for".to_owned());
             }

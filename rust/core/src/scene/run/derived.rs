@@ -1,90 +1,78 @@
-//! Columns that are derived from the recorded states: energy, momenta, the centre of mass.
+//! Columns that no unit could derive at the record: from the kept states, when all of them are there.
 
 use super::super::Scene;
-use super::super::columns::Columns;
-use super::super::integrate::Ending;
-use super::super::plan::Plan;
-use super::super::request::Request;
-use super::Outcome;
-use crate::conservation::{self, Body};
+use super::super::columns::{Columns, Derived};
+use crate::conservation::columns::State;
 use crate::error::Result;
-use crate::numerics::double_double::DoubleDouble;
+use crate::forces::bodies::Bodies;
 use crate::parallel::{Ticker, for_chunks};
 
-/// A derived column: its name and its numbers, `copies × times × width`.
-#[derive(Clone, Debug)]
-pub struct Derived {
-    /// Its name.
-    pub name: String,
-    /// Numbers per time.
-    pub width: usize,
-    /// The numbers; NaN where nothing was recorded.
-    pub values: Vec<f64>,
-}
+/// Numbers of a state that one thread takes at a time, about: a state of many particles is a chunk by itself.
+const NUMBERS_PER_CHUNK: usize = 1 << 14;
 
-/// The derived columns, from the recorded states and what they leave out.
+/// Derives the columns of the rows that each copy has.
+///
+/// What was computed before an interrupt is not lost: an interrupted run is still derived from; an interrupt that comes
+/// now leaves the rest as NaN.
 ///
 /// # Errors
 /// Only errors of the library itself.
 pub(super) fn derive(
     scene: &Scene,
-    request: &Request,
-    plan: &Plan,
-    columns: &Columns,
-    outcomes: &[Outcome],
+    columns: &mut Columns,
+    rows: &[usize],
+    threads: usize,
     ticker: &mut Ticker<'_>,
-) -> Result<Vec<Derived>> {
-    let names: Vec<&String> =
-        request.record.iter().filter(|name| *name != "position" && *name != "velocity").collect();
-    let times = request.times.len();
-    let widths: Vec<usize> =
-        names.iter().map(|name| if conservation::SCALARS.contains(&name.as_str()) { 1 } else { 3 }).collect();
-    if names.is_empty() {
-        return Ok(Vec::new());
-    }
-    let threads = plan.threads.0.max(plan.threads.1);
-    // What was computed before an interrupt is not lost: an interrupted run is still derived from, and an
-    // interrupt that comes now leaves the rest of a column as NaN.
-    let interrupted = outcomes.iter().any(|outcome| outcome.ending == Ending::Interrupted);
-    let per_copy = for_chunks(threads, scene.copies, ticker, |copy, ticker| {
-        let mut values: Vec<Vec<f64>> = widths.iter().map(|width| vec![f64::NAN; width * times]).collect();
-        for time in 0..outcomes[copy].rows {
-            if ticker.tick().is_err() && !interrupted {
+) -> Result<()> {
+    let times = columns.times;
+    let together = NUMBERS_PER_CHUNK.div_ceil(scene.particles.max(1));
+    let chunks: Vec<(usize, usize)> = (0..scene.copies)
+        .flat_map(|copy| (0..rows[copy]).step_by(together).map(move |time| (copy, time)))
+        .collect();
+    let widths: Vec<&'static _> = columns.derived.iter().map(|derived| derived.column).collect();
+    let parts = for_chunks(threads, chunks.len(), ticker, |chunk, ticker| {
+        let (copy, first) = chunks[chunk];
+        let mut bodies = Bodies::default();
+        let mut values: Vec<f64> = Vec::new();
+        for time in first..rows[copy].min(first + together) {
+            if ticker.tick().is_err() {
                 break;
             }
-            let bodies = recorded_bodies(scene, columns, copy, time);
-            for (index, name) in names.iter().enumerate() {
-                let numbers = conservation::column(name, &scene.forces, &bodies, [0.0; 3])?;
-                values[index][time * widths[index]..(time + 1) * widths[index]].copy_from_slice(&numbers);
+            read(scene, columns, copy, time, &mut bodies);
+            let mut state = State::new(&scene.forces, &bodies, [0.0; 3], 1, ticker);
+            let mut row = Vec::new();
+            for column in &widths {
+                let Ok(numbers) = state.value(column) else { return Ok(values) };
+                row.extend_from_slice(&numbers[..column.width]);
             }
+            values.extend(row);
         }
         Ok(values)
     })?;
-    let mut derived: Vec<Derived> = names
-        .iter()
-        .zip(&widths)
-        .map(|(name, &width)| Derived { name: (*name).clone(), width, values: Vec::new() })
-        .collect();
-    for values in per_copy {
-        for (column, values) in derived.iter_mut().zip(values) {
-            column.values.extend(values);
+    for Derived { values, .. } in &mut columns.derived {
+        values.fill(f64::NAN);
+    }
+    let numbers: usize = widths.iter().map(|column| column.width).sum();
+    for ((copy, first), part) in chunks.into_iter().zip(parts) {
+        for (time, row) in (first..).zip(part.chunks_exact(numbers)) {
+            let mut row = row;
+            for Derived { column, values } in &mut columns.derived {
+                let (own, rest) = row.split_at(column.width);
+                values[(copy * times + time) * column.width..][..column.width].copy_from_slice(own);
+                row = rest;
+            }
         }
     }
-    Ok(derived)
+    Ok(())
 }
 
-fn recorded_bodies(scene: &Scene, columns: &Columns, copy: usize, time: usize) -> Vec<Body> {
-    let at = |particle: usize| ((copy * columns.times + time) * columns.particles + particle) * 3;
-    (0..scene.particles)
-        .map(|particle| {
-            let exact = |values: &[f64], rest: &[f64]| {
-                core::array::from_fn(|c| DoubleDouble::sum(values[at(particle) + c], rest[at(particle) + c]))
-            };
-            Body {
-                mass: scene.masses(copy)[particle],
-                position: exact(&columns.position, &columns.position_rest),
-                velocity: exact(&columns.velocity, &columns.velocity_rest),
-            }
-        })
-        .collect()
+fn read(scene: &Scene, columns: &Columns, copy: usize, time: usize, bodies: &mut Bodies) {
+    bodies.clear(scene.particles);
+    for (particle, &mass) in scene.masses(copy).iter().enumerate() {
+        let at = ((copy * columns.times + time) * columns.particles + particle) * 3;
+        let point = |values: &[f64]| [values[at], values[at + 1], values[at + 2]];
+        let position = [point(&columns.position), point(&columns.position_rest)];
+        bodies.set(particle, mass, position, [point(&columns.velocity), point(&columns.velocity_rest)]);
+    }
+    bodies.settle();
 }

@@ -6,10 +6,13 @@
 use super::super::columns::{Output, Run, Writer};
 use super::super::frame::Units;
 use super::{Layout, Origin, Prepared, Unit};
+use crate::error::Result;
+use crate::forces::bodies::Of;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::Mask;
 use crate::ode::state::State;
+use crate::parallel::Ticker;
 use crate::tiered;
 
 /// How a unit is read off.
@@ -59,6 +62,9 @@ fn rows(unit: &Unit) -> Option<Way> {
 
 impl Prepared {
     /// Records the unit's bodies at an output time; `false` if they are no longer finite.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted): the record of this time is then not whole.
     #[inline(always)]
     pub fn record(
         &self,
@@ -67,25 +73,43 @@ impl Prepared {
         state: &State<Lanes>,
         unit_lane: usize,
         elapsed: f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<bool> {
+        // SAFETY: a particle is recorded from one unit (`run` looked), and one thread has the unit.
+        let output = unsafe { writer.output(self.unit.copy, time) };
+        let finite = self.record_states(writer, &output, state, unit_lane, elapsed);
+        if writer.derives() && self.unit.derives() && finite {
+            self.derive(writer, &output, state, unit_lane, elapsed, ticker)?;
+        }
+        Ok(finite)
+    }
+
+    #[inline(always)]
+    fn record_states(
+        &self,
+        writer: &Writer<'_>,
+        output: &Output<'_>,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
     ) -> bool {
-        let output = writer.output(self.unit.copy, time);
         let Reading { factors, way } = &self.reading;
         match way {
             Way::Rows { start, runs } if !writer.keeps_rest() => {
                 if self.shape.components == 2 {
-                    record_rows::<2>(runs, *start, state, *factors, &output)
+                    record_rows::<2>(runs, *start, state, *factors, output)
                 } else {
-                    record_rows::<3>(runs, *start, state, *factors, &output)
+                    record_rows::<3>(runs, *start, state, *factors, output)
                 }
             }
             Way::Bodies if !writer.keeps_rest() => {
                 if self.shape.components == 2 {
-                    self.record_bodies::<2>(&output, state, unit_lane, *factors)
+                    self.record_bodies::<2>(output, state, unit_lane, *factors)
                 } else {
-                    self.record_bodies::<3>(&output, state, unit_lane, *factors)
+                    self.record_bodies::<3>(output, state, unit_lane, *factors)
                 }
             }
-            _ => self.record_precisely(&output, state, unit_lane, elapsed),
+            _ => self.record_precisely(output, state, unit_lane, elapsed),
         }
     }
 
@@ -131,6 +155,63 @@ impl Prepared {
             output.write(self.unit.bodies[slot], &entry);
         }
         finite
+    }
+}
+
+impl Prepared {
+    /// Derives columns from the state and its compensation.
+    #[inline(never)]
+    fn derive(
+        &self,
+        writer: &Writer<'_>,
+        output: &Output<'_>,
+        state: &State<Lanes>,
+        unit_lane: usize,
+        elapsed: f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let unit = &self.unit;
+        let masses = writer.masses(unit.copy);
+        // Massless bodies have no share in anything, unless there are no others.
+        let count = if unit.active > 0 { unit.active } else { unit.bodies.len() };
+        let mut bodies = self.scratch.borrow_mut();
+        bodies.clear(count);
+        if matches!(self.reading.way, Way::Restored) {
+            for slot in 0..count {
+                let entry = self.read(slot, state, unit_lane, elapsed);
+                let position = [entry.position, entry.position_rest];
+                bodies.set(slot, masses[unit.bodies[slot]], position, [entry.velocity, entry.velocity_rest]);
+            }
+        } else {
+            let rows = state.q().len() / self.shape.components;
+            let (y, error) = state.all();
+            let (y, error) = (as_numbers(y), as_numbers(error));
+            let (row, lane) = self.locate(0, unit_lane);
+            let step = if self.layout == Layout::Packed { 1 } else { WIDTH };
+            for (slot, &body) in unit.bodies[..count].iter().enumerate() {
+                bodies.set_mass(slot, masses[body]);
+            }
+            let [length, speed] = self.reading.factors;
+            for (of, factor, first) in
+                [(Of::Position, length, 0), (Of::Velocity, speed, self.shape.components)]
+            {
+                for c in 0..self.shape.components {
+                    let from = ((first + c) * rows + row) * WIDTH + lane;
+                    let [values, rests] = bodies.coordinates_mut(of, c);
+                    for (into, from) in [(values, &y[from..]), (rests, &error[from..])] {
+                        if step == 1 {
+                            into.iter_mut().zip(from).for_each(|(into, from)| *into = from * factor);
+                        } else {
+                            into.iter_mut()
+                                .zip(from.iter().step_by(step))
+                                .for_each(|(into, from)| *into = from * factor);
+                        }
+                    }
+                }
+            }
+        }
+        bodies.settle();
+        output.derive(&bodies, ticker)
     }
 }
 

@@ -22,11 +22,16 @@ struct Round {
 
 impl Run<'_> {
     /// Records the outputs at the start of a unit.
-    pub(super) fn record_start(&self, slot: &mut Slot, lane: usize) {
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    pub(super) fn record_start(&self, slot: &mut Slot, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
-            let _: bool = slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0);
+            let _: bool =
+                slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0, ticker)?;
             slot.next_output += 1;
         }
+        Ok(())
     }
 
     /// Records the outputs that the step has passed, before it is committed.
@@ -51,7 +56,7 @@ impl Run<'_> {
                 self.charge(round.inside.and(charged.not()));
                 charged = charged.or(round.inside);
             }
-            self.write(&round);
+            self.write(&round, ticker)?;
         }
     }
 
@@ -80,7 +85,7 @@ impl Run<'_> {
         round
     }
 
-    fn write(&mut self, round: &Round) {
+    fn write(&mut self, round: &Round, ticker: &mut Ticker<'_>) -> Result<()> {
         for lane in 0..WIDTH {
             if !round.due.lane(lane) {
                 continue;
@@ -89,9 +94,11 @@ impl Run<'_> {
             let state = if round.inside.lane(lane) { &self.between } else { self.trial.next() };
             let elapsed = self.job.times[slot.next_output] - self.job.scene.t0;
             // A step is only accepted with a finite error, so its states are finite.
-            let _: bool = slot.unit.record(self.job.writer, slot.next_output, state, lane, elapsed);
+            let _: bool =
+                slot.unit.record(self.job.writer, slot.next_output, state, lane, elapsed, ticker)?;
             slot.next_output += 1;
         }
+        Ok(())
     }
 
     /// Counts the evaluations of the continuous extension for the units that read it.

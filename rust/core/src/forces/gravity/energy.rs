@@ -1,0 +1,197 @@
+//! The potential energy and the virial of gravity: the pairs of one state, summed to about thirty digits.
+//!
+//! Pairs go eight at a time, a body beside eight that follow it. A pair whose numbers would leave the range (closer
+//! than 2^-450 of the extent, say) is summed by itself, in units of its own.
+
+use crate::error::Result;
+use crate::forces::bodies::{Bodies, Exponents, Of, joined};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::fused_double::FusedDouble;
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::numerics::power_of_two::{exponent, power_of_two, scale};
+use crate::numerics::real::{Mask, Real};
+use crate::numerics::scaled::Scaled;
+use crate::parallel::{Ticker, for_chunks};
+use crate::tiered;
+use core::ops::Range;
+
+/// Pairs summed between two looks at the clock, about; and the share of one thread at a time.
+const PAIRS_PER_BLOCK: usize = 1 << 17;
+/// Squares of distances, and products of masses, below 2^-this lose digits.
+const RANGE: i32 = 800;
+
+/// Sums over pairs.
+#[derive(Clone, Copy, Debug)]
+struct Sums {
+    /// Σ mᵢmⱼ/√(r² + ε²) and Σ mᵢmⱼ r²/(r² + ε²)^{3/2} of the pairs in range.
+    lanes: [FusedDouble<Lanes>; 2],
+    /// The same of the others.
+    apart: Option<[Scaled; 2]>,
+}
+
+/// Potential energy and virial Σ r·F of gravity with that constant and softening.
+///
+/// The same on any number of threads.
+///
+/// # Errors
+/// [`Error::Interrupted`](crate::Error::Interrupted).
+pub fn potential_and_virial(
+    bodies: &Bodies,
+    constant: f64,
+    softening: f64,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<(Scaled, Scaled)> {
+    let (massive, units) = (bodies.massive(), bodies.units);
+    let softening = scale(softening, -units.length);
+    let [mut potential, mut virial] = [Scaled::ZERO; 2];
+    let mut add = |sums: Sums| {
+        potential = potential.plus(Scaled::new(joined(sums.lanes[0]), 0));
+        if softening != 0.0 {
+            virial = virial.plus(Scaled::new(joined(sums.lanes[1]), 0));
+        }
+        if let Some(apart) = sums.apart {
+            (potential, virial) = (potential.plus(apart[0]), virial.plus(apart[1]));
+        }
+    };
+    let pairs = massive * massive.saturating_sub(1) / 2;
+    if pairs <= PAIRS_PER_BLOCK {
+        add(sums_of(bodies, 0..massive, softening));
+    } else {
+        let blocks = blocks(massive);
+        let sums = for_chunks(threads, blocks.len(), ticker, |block, ticker| {
+            ticker.tick()?;
+            Ok(sums_of(bodies, blocks[block].clone(), softening))
+        })?;
+        sums.into_iter().for_each(&mut add);
+    }
+    let near = units == Exponents::default() && (constant == 0.0 || exponent(constant).abs() < RANGE / 2);
+    if near && potential.exponent() == 0 && virial.exponent() == 0 {
+        let constant = Scaled::from(-constant);
+        let product = |sum: Scaled| Scaled::new(sum.value() * constant.value(), 0);
+        let potential = product(potential);
+        return Ok((potential, if softening == 0.0 { potential } else { product(virial) }));
+    }
+    // The range of what was summed is that of numbers; its units are not.
+    let unit = Scaled::new(DoubleDouble::from(-1.0), 2 * units.mass - units.length).times(constant);
+    let potential = potential.by(unit);
+    Ok((potential, if softening == 0.0 { potential } else { virial.by(unit) }))
+}
+
+/// Rows of about as many pairs.
+fn blocks(massive: usize) -> Vec<Range<usize>> {
+    let mut blocks = Vec::new();
+    let (mut first, mut pairs) = (0, 0);
+    for row in 0..massive {
+        pairs += massive - 1 - row;
+        if pairs >= PAIRS_PER_BLOCK || row + 1 == massive {
+            blocks.push(first..row + 1);
+            (first, pairs) = (row + 1, 0);
+        }
+    }
+    blocks
+}
+
+fn sums_of(bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums {
+    if softening == 0.0 {
+        row_sums::<false>(bodies, rows, softening)
+    } else {
+        row_sums::<true>(bodies, rows, softening)
+    }
+}
+
+tiered! {
+    fn row_sums[const SOFT: bool][SOFT](bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums = rows_of_pairs;
+}
+
+#[inline(always)]
+fn rows_of_pairs<V: Vector8, const SOFT: bool>(bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums {
+    let massive = bodies.massive();
+    let soft = FusedDouble::product(V::splat(softening), V::splat(softening));
+    let (least, most) = (V::splat(power_of_two(-RANGE)), V::splat(power_of_two(RANGE)));
+    let mut depth = FusedDouble::<V>::zero();
+    let mut work = FusedDouble::<V>::zero();
+    let mut apart = None;
+    for i in rows {
+        if bodies.mass()[i] == 0.0 {
+            continue;
+        }
+        let mass = V::splat(bodies.mass()[i]);
+        let mut j = i + 1;
+        while j < massive {
+            let masses = bodies.masses_from::<V>(j);
+            let product = FusedDouble::product(mass, masses);
+            let mut d = [FusedDouble::<V>::zero(); 3];
+            for c in 0..3 {
+                let (to, from) =
+                    (bodies.coordinates_from::<V>(Of::Position, c, j), bodies.coordinate(Of::Position, c, i));
+                d[c] = to.minus(from);
+            }
+            let r2 = FusedDouble::sum_of_squares(d);
+            let soft2 = if SOFT { r2.plus(soft) } else { r2 };
+            let heavy = V::zero().less(masses);
+            let fine = least.less(soft2.high).and(soft2.high.less(most)).and(least.less(product.high));
+            let inverse = soft2.inverse_root();
+            let term = product.times(inverse);
+            // Also what is not a number, of two massless bodies in one place or after the last, is taken out.
+            let good = heavy.and(fine);
+            depth.gather(only(good, term));
+            if SOFT {
+                work.gather(only(good, term.times(r2.times(inverse.squared()))));
+            }
+            let odd = heavy.and(fine.not());
+            if odd.any() {
+                for lane in 0..WIDTH {
+                    if odd.lane(lane) {
+                        pair_apart(bodies, (i, j + lane), softening, apart.get_or_insert([Scaled::ZERO; 2]));
+                    }
+                }
+            }
+            j += WIDTH;
+        }
+    }
+    let stored = |sum: FusedDouble<V>| FusedDouble { high: sum.high.store(), low: sum.low.store() };
+    Sums { lanes: [stored(depth), stored(work)], apart }
+}
+
+#[inline(always)]
+fn only<V: Vector8>(mask: Bits, value: FusedDouble<V>) -> FusedDouble<V> {
+    let zero = V::zero();
+    FusedDouble { high: V::select(mask, value.high, zero), low: V::select(mask, value.low, zero) }
+}
+
+/// A pair in units of its own.
+#[cold]
+#[inline(never)]
+fn pair_apart(bodies: &Bodies, (i, j): (usize, usize), softening: f64, sums: &mut [Scaled; 2]) {
+    let (from, to) = (bodies.vector(Of::Position, i), bodies.vector(Of::Position, j));
+    let d: [DoubleDouble; 3] = core::array::from_fn(|c| to[c] - from[c]);
+    let largest = d.iter().fold(0.0_f64, |largest, x| largest.max(x.to_f64().abs()));
+    let masses = Scaled::from(bodies.mass()[i]).times(bodies.mass()[j]);
+    let near = |x: DoubleDouble, unit: i32| {
+        let (high, low) = x.parts();
+        DoubleDouble::new(scale(high, -unit), scale(low, -unit))
+    };
+    // The square of the distance in its own unit, of all that is under the root in the larger one.
+    let own = exponent(largest);
+    let unit = if largest == 0.0 {
+        exponent(softening)
+    } else if softening == 0.0 {
+        own
+    } else {
+        own.max(exponent(softening))
+    };
+    let [x, y, z] = d.map(|x| near(x, own));
+    let r2 = x * x + y * y + z * z;
+    let soft = near(DoubleDouble::from(softening), unit);
+    let shift = power_of_two((2 * (own - unit)).max(-1000));
+    let inverse = DoubleDouble::one() / (r2.scale(shift) + soft * soft).sqrt();
+    if largest == 0.0 && softening == 0.0 {
+        let infinite = Scaled::from(f64::INFINITY);
+        *sums = [sums[0].plus(infinite), sums[1].plus(infinite)];
+        return;
+    }
+    let term = masses.by(Scaled::new(inverse, -unit));
+    let share = Scaled::new(r2 * inverse * inverse, 2 * (own - unit));
+    *sums = [sums[0].plus(term), sums[1].plus(term.by(share))];
+}

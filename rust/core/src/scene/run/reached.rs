@@ -1,0 +1,153 @@
+//! What the units report, put together: of each copy one ending, and one state of one time.
+//!
+//! Units of a copy may stop at different times: one meets another body, or Ctrl-C finds each on its way. The state that
+//! the copy has reached is then the one at the earliest of those times: units that went further are integrated once more,
+//! up to there. After Ctrl-C nobody wants to wait for that: then it is the last output time that all have reached, if
+//! states were recorded, else the start. A unit whose numbers have ceased to be finite has reached its last output.
+
+use super::super::columns::Columns;
+use super::super::integrate::{self, Ending, Job, Report};
+use super::super::request::Request;
+use super::super::unit::Unit;
+use super::{Outcome, Part, Reached};
+use crate::error::Result;
+use crate::parallel::Ticker;
+use crate::scene::columns::Wanted;
+
+/// Puts the reports together, copy by copy.
+///
+/// # Errors
+/// Only errors of the library itself.
+pub(super) fn gather(
+    part: &Part<'_>,
+    request: &Request,
+    reports: &[Report],
+    columns: &Columns,
+    outcomes: &mut [Outcome],
+    reached: &mut Reached,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    let t0 = part.scene.t0;
+    for report in reports {
+        let member = part.member(report.unit.copy);
+        let outcome = &mut outcomes[member];
+        if outcome.ending == Ending::Finished && report.ending != Ending::Finished {
+            outcome.ending = report.ending.clone();
+        }
+        outcome.rows = outcome.rows.min(report.rows);
+        outcome.counts += report.counts;
+        let time = time_of(report, request, t0);
+        if (time - t0).abs() < (outcome.time - t0).abs() {
+            outcome.time = time;
+        }
+        put(part, report, reached);
+    }
+    let mut behind: Vec<&Report> = Vec::new();
+    for report in reports {
+        let outcome = &outcomes[part.member(report.unit.copy)];
+        if outcome.ending != Ending::Finished
+            && (report.ending == Ending::NotFinite || report.time != outcome.time)
+        {
+            behind.push(report);
+        }
+    }
+    behind.sort_by_key(|report| report.unit.copy);
+    for of_copy in behind.chunk_by(|a, b| a.unit.copy == b.unit.copy) {
+        bring_together(part, request, of_copy, columns, outcomes, reached, ticker)?;
+    }
+    Ok(())
+}
+
+/// The time of a report's state, or of the last output before it ceased to be one.
+fn time_of(report: &Report, request: &Request, t0: f64) -> f64 {
+    match report.ending {
+        Ending::NotFinite if report.rows == 0 => t0,
+        Ending::NotFinite => request.times[report.rows - 1],
+        _ => report.time,
+    }
+}
+
+/// Puts the state of a report in its places.
+fn put(part: &Part<'_>, report: &Report, reached: &mut Reached) {
+    for (&[position, velocity], slot) in report.states.iter().zip(report.unit.recorded.clone()) {
+        let particle = part.member(report.unit.copy) * part.scene.particles + report.unit.bodies[slot];
+        reached.position[particle] = position;
+        reached.velocity[particle] = velocity;
+    }
+}
+
+/// Brings a copy to one time, whose units `apart` are not at the time of its outcome.
+fn bring_together(
+    part: &Part<'_>,
+    request: &Request,
+    apart: &[&Report],
+    columns: &Columns,
+    outcomes: &mut [Outcome],
+    reached: &mut Reached,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    let (scene, copy) = (part.scene, apart[0].unit.copy);
+    let outcome = &mut outcomes[part.member(copy)];
+    let row = request.times[..outcome.rows].iter().rposition(|&t| t == outcome.time);
+    let on_a_row = apart.iter().all(|report| report.ending == Ending::NotFinite) && row.is_some();
+    let interrupted = ticker.tick().is_err();
+    if outcome.time != scene.t0
+        && !interrupted
+        && !on_a_row
+        && again(part, request, apart, outcome.time, reached, ticker)?
+    {
+        return Ok(());
+    }
+    let recorded = !columns.position.is_empty() && !columns.velocity.is_empty() && outcome.time != scene.t0;
+    let places = part.member(copy) * scene.particles..(part.member(copy) + 1) * scene.particles;
+    match outcome.rows.checked_sub(1).filter(|_| recorded) {
+        Some(row) => {
+            outcome.time = request.times[row];
+            let from = (part.member(copy) * columns.times + row) * columns.particles * 3;
+            for (particle, place) in places.enumerate() {
+                let at = from + 3 * particle;
+                let point = |values: &[f64]| [values[at], values[at + 1], values[at + 2]];
+                reached.position[place] = point(&columns.position);
+                reached.velocity[place] = point(&columns.velocity);
+            }
+        }
+        None => {
+            outcome.time = scene.t0;
+            reached.position[places.clone()].copy_from_slice(scene.positions(copy));
+            reached.velocity[places].copy_from_slice(scene.velocities(copy));
+        }
+    }
+    Ok(())
+}
+
+/// Integrates units once more, up to a time at which they are finite; whether all of them came there.
+fn again(
+    part: &Part<'_>,
+    request: &Request,
+    apart: &[&Report],
+    time: f64,
+    reached: &mut Reached,
+    ticker: &mut Ticker<'_>,
+) -> Result<bool> {
+    let nothing = Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false };
+    let mut columns = Columns::new(part.scene.copies, 1, part.scene.particles, &nothing)?;
+    let writer = columns.writer(part.scene, None, part.plan.threads.1);
+    let times = [time];
+    let job = Job {
+        scene: part.scene,
+        plan: part.plan,
+        times: &times,
+        rtol: request.rtol,
+        atol: request.atol,
+        max_step: request.max_step.unwrap_or(f64::MAX),
+        max_steps: u64::MAX,
+        writer: &writer,
+    };
+    let units: Vec<Unit> = apart.iter().map(|report| report.unit.clone()).collect();
+    let reports = integrate::run_units(&job, units, ticker)?;
+    let there = reports.iter().all(|report| report.ending == Ending::Finished);
+    if there {
+        reports.iter().for_each(|report| put(part, report, reached));
+    }
+    Ok(there)
+}

@@ -1,0 +1,70 @@
+//! Whether fixed steps have resolved anything: the energy at the end against that at the start.
+//!
+//! Looked at where it costs next to nothing beside the run, so that a result that is wrong by orders of magnitude does
+//! not go out without a word.
+
+use super::super::integrate::Ending;
+use super::super::request::Request;
+use super::{Outcome, Part, Reached};
+use crate::conservation::{kinetic_energy, potential_and_virial};
+use crate::error::Result;
+use crate::forces::bodies::Bodies;
+use crate::numerics::scaled::Scaled;
+use crate::parallel::Ticker;
+
+/// A sum over so few pairs is nothing beside a run.
+const FEW_PAIRS: u64 = 100;
+/// A sum over pairs takes less than a hundredth of so many evaluations of the forces.
+const MANY_EVALUATIONS: u64 = 2_000;
+/// More massive bodies are not looked at.
+const MOST: usize = 2_000;
+
+/// Fills in the errors of the energies.
+///
+/// # Errors
+/// None but those of the library itself.
+pub(super) fn look(
+    part: &Part<'_>,
+    request: &Request,
+    outcomes: &mut [Outcome],
+    reached: &Reached,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
+    let (scene, plan) = (part.scene, part.plan);
+    if plan.method.adaptive() || plan.active.len() > MOST || request.times.is_empty() {
+        return Ok(());
+    }
+    let pairs = plan.pairs_per_evaluation();
+    let mut bodies = Bodies::default();
+    for copy in 0..scene.copies {
+        let member = part.member(copy);
+        let outcome = &mut outcomes[member];
+        let cheap = pairs <= FEW_PAIRS || outcome.counts.evaluations >= MANY_EVALUATIONS;
+        if outcome.ending != Ending::Finished || !cheap {
+            continue;
+        }
+        let places = member * scene.particles..(member + 1) * scene.particles;
+        let states = [
+            (scene.positions(copy), scene.velocities(copy)),
+            (&reached.position[places.clone()], &reached.velocity[places]),
+        ];
+        let mut energies = [(Scaled::ZERO, Scaled::ZERO); 2];
+        for ((position, velocity), energies) in states.into_iter().zip(&mut energies) {
+            bodies.clear(scene.particles);
+            for (particle, &mass) in scene.masses(copy).iter().enumerate() {
+                let exact = |x: [f64; 3]| [x, [0.0; 3]];
+                bodies.set(particle, mass, exact(position[particle]), exact(velocity[particle]));
+            }
+            bodies.settle();
+            let Ok((potential, _)) = potential_and_virial(&scene.forces, &bodies, 1, ticker) else {
+                return Ok(());
+            };
+            *energies = (kinetic_energy(&bodies), potential);
+        }
+        let [(kinetic, potential), (kinetic_end, potential_end)] = energies;
+        let change = kinetic_end.plus(potential_end).plus(kinetic.plus(potential).times(-1.0));
+        let size = if potential.to_f64() < 0.0 { potential.times(-1.0) } else { potential };
+        outcome.energy_error = change.over(kinetic.plus(size)).to_f64().abs();
+    }
+    Ok(())
+}
