@@ -249,7 +249,7 @@ def pleiades() -> Problem:
 
 @known_keywords
 def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem:
-    """Two bodies with semi-major axis 1, total mass 1 and period 2π, starting at pericentre.
+    """Two bodies with semi-major axis 1, total mass 1 and period 2π, starting at pericenter.
 
     Parameters
     ----------
@@ -287,7 +287,7 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
         t_end,
         (_reference(t_end, position),),
         # The period depends on the energy: dT/T = 3/2 da/a = 3 (1 + e)/(1 - e) dv/v, and a wrong time is
-        # multiplied by the speed at pericentre.
+        # multiplied by the speed at pericenter.
         ((t_end, 6.0 * pi * periods * (1.0 + e) / (1.0 - e) * speed),),
         "Kepler's laws",
     )
@@ -352,3 +352,7 @@ def _rows(position: ArrayLike) -> NDArray[np.float64]:
     rows = np.array(position, dtype=float)
     rows.flags.writeable = False
     return rows
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -39,12 +39,12 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
         assert np.isnan(found.turning_angle)
     mu = given["gamma"] / given["m"]
     elements = vv.orbits.elements(mu, r, v)
-    close(elements.argument_of_pericentre, expected["apsis_angle"])
+    close(elements.argument_of_pericenter, expected["apsis_angle"])
     lenz = elements.laplace_runge_lenz
     close(np.arctan2(lenz[1], lenz[0]), expected["apsis_angle"])
     close(np.hypot(lenz[0], lenz[1]), mu * expected["e"])
     position, _ = vv.orbits.state(
-        mu, pericentre=conic.r_min, eccentricity=conic.eccentricity, true_anomaly=given["theta"]
+        mu, pericenter=conic.r_min, eccentricity=conic.eccentricity, true_anomaly=given["theta"]
     )
     close(np.linalg.norm(position), expected["r_at_theta_from_periapsis"])
     position, velocity = vv.orbits.propagate(mu, r, v, given["t"])
@@ -64,7 +64,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     nu = vv.orbits.true_from_eccentric(anomaly, e)
     close(nu, expected["nu"])
     close(vv.orbits.eccentric_from_true(nu, e), expected["E"])
-    position, _ = vv.orbits.state(1.0, pericentre=1.0 - e, eccentricity=e, true_anomaly=nu)
+    position, _ = vv.orbits.state(1.0, pericenter=1.0 - e, eccentricity=e, true_anomaly=nu)
     close(np.linalg.norm(position), expected["r_over_a"])
 
 
@@ -91,7 +91,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     mu, q = given["gamma"] / given["m"], given["q"]
     d = vv.orbits.parabolic_from_mean(np.sqrt(mu / (2 * q**3)) * given["t"])
     close(vv.orbits.true_from_parabolic(d), expected["nu"])
-    r, v = vv.orbits.state(mu, pericentre=q, eccentricity=1.0)
+    r, v = vv.orbits.state(mu, pericenter=q, eccentricity=1.0)
     conic = vv.orbits.conic(given["m"], given["gamma"], r, v)
     close(conic.angular_momentum, expected["l"])
     close(conic.semi_latus_rectum, 2 * q)
@@ -103,7 +103,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(np.linalg.norm(velocity), expected["speed"])
     later = vv.orbits.elements(mu, position, velocity)
     close(later.true_anomaly, expected["nu"])
-    close(later.time_since_pericentre, given["t"])
+    close(later.time_since_pericenter, given["t"])
 
 
 @golden("G7.25-repulsive")
@@ -138,15 +138,15 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(2 * np.pi / found.period, expected["theta_dot"])
     # The rounding of E and l alone makes e of order √ε.
     assert found.eccentricity < 3e-8
-    r, v = vv.orbits.state(gamma / m, pericentre=expected["r0"], eccentricity=0.0)
+    r, v = vv.orbits.state(gamma / m, pericenter=expected["r0"], eccentricity=0.0)
     circle = vv.orbits.conic(m, gamma, r, v)
     close(circle.angular_momentum, given["l"])
     close(circle.energy, expected["E"])
     close(circle.eccentricity, 0.0, scale=1.0)
-    # A small radial oscillation about it has the period of the orbit: from pericentre to pericentre.
+    # A small radial oscillation about it has the period of the orbit: from pericenter to pericenter.
     ellipse = vv.orbits.elements(gamma / m, r, v * (1 + 1e-6))
     later, _ = vv.orbits.propagate(gamma / m, r, v * (1 + 1e-6), ellipse.period)
-    close(np.linalg.norm(later), ellipse.pericentre)
+    close(np.linalg.norm(later), ellipse.pericenter)
     assert abs(2 * np.pi / ellipse.period / expected["radial_omega"] - 1) < 4e-6
 
 
@@ -154,7 +154,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     mu, a, e, m = given["GM"], given["a"], given["e"], given["m"]
     close(vv.orbits.period(mu, a), expected["period"])
-    r, v = vv.orbits.state(mu, pericentre=a * (1 - e), eccentricity=e, true_anomaly=[0.0, np.pi])
+    r, v = vv.orbits.state(mu, pericenter=a * (1 - e), eccentricity=e, true_anomaly=[0.0, np.pi])
     close(np.linalg.norm(v, axis=-1), [expected["v_perihelion"], expected["v_aphelion"]])
     found = vv.orbits.conic(m, mu * m, r, v)
     close(found.angular_momentum, [expected["l"]] * 2)
@@ -192,7 +192,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     m1, m2, a = given["m1"], given["m2"], given["a"]
     mu = given["G"] * (m1 + m2)
     close(vv.orbits.period(mu, a), expected["period"])
-    r, v = vv.orbits.state(mu, pericentre=a, eccentricity=0.0)
+    r, v = vv.orbits.state(mu, pericenter=a, eccentricity=0.0)
     close(vv.orbits.conic(expected["mu"], given["G"] * m1 * m2, r, v).energy, expected["E_rel"])
     # The distances from the centre of mass, after a third of a turn in a scene of both bodies.
     share = m2 / (m1 + m2)

@@ -43,3 +43,7 @@ __all__ = [
     "true_from_hyperbolic",
     "true_from_parabolic",
 ]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

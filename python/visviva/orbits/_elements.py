@@ -9,6 +9,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva._text import table
+from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -32,8 +33,8 @@ class Elements:
     energy : ndarray
         v²/2 − μ/r.
     laplace_runge_lenz : ndarray
-        A = v×L − μ r/|r|: towards the pericentre, of length |μ| e.
-    hodograph_centre, hodograph_radius : ndarray
+        A = v×L − μ r/|r|: towards the pericenter, of length |μ| e.
+    hodograph_center, hodograph_radius : ndarray
         The velocities lie on a circle about this vector with the radius |μ|/L; radial motion has no
         centre (NaN) and an infinite radius.
     eccentricity : ndarray
@@ -42,22 +43,22 @@ class Elements:
         a = |μ/2E| and b = a√|1 − e²|, positive for hyperbolas too; infinite for a parabola.
     semi_latus_rectum : ndarray
         L²/|μ|.
-    pericentre, apocentre : ndarray
+    pericenter, apocenter : ndarray
         Least and greatest distance; the latter infinite if unbound.
     inclination : ndarray
         Angle of L from z in [0, π]; radial motion has no plane: NaN, as for the two angles below.
     node : ndarray
         Angle of the ascending node from x, in (−π, π]; 0 for an orbit in the xy plane.
-    argument_of_pericentre : ndarray
-        Angle from the node to the pericentre along the motion, in (−π, π].
+    argument_of_pericenter : ndarray
+        Angle from the node to the pericenter along the motion, in (−π, π].
     true_anomaly : ndarray
-        Angle from the pericentre to the body, in (−π, π].
+        Angle from the pericenter to the body, in (−π, π].
     eccentric_anomaly : ndarray
         E of an ellipse in (−π, π], H of a hyperbola, D = tan(ν/2) of a parabola.
     mean_anomaly : ndarray
         E − e sin E, e sinh H ∓ H (+ for repulsion), or D + D³/3.
-    time_since_pericentre : ndarray
-        Since the nearest pericentre; negative before it.
+    time_since_pericenter : ndarray
+        Since the nearest pericenter; negative before it.
     period : ndarray
         2π√(a³/μ); infinite if unbound.
     areal_rate : ndarray
@@ -70,21 +71,21 @@ class Elements:
     angular_momentum: NDArray[np.float64]
     energy: NDArray[np.float64]
     laplace_runge_lenz: NDArray[np.float64]
-    hodograph_centre: NDArray[np.float64]
+    hodograph_center: NDArray[np.float64]
     hodograph_radius: NDArray[np.float64]
     eccentricity: NDArray[np.float64]
     semi_major_axis: NDArray[np.float64]
     semi_minor_axis: NDArray[np.float64]
     semi_latus_rectum: NDArray[np.float64]
-    pericentre: NDArray[np.float64]
-    apocentre: NDArray[np.float64]
+    pericenter: NDArray[np.float64]
+    apocenter: NDArray[np.float64]
     inclination: NDArray[np.float64]
     node: NDArray[np.float64]
-    argument_of_pericentre: NDArray[np.float64]
+    argument_of_pericenter: NDArray[np.float64]
     true_anomaly: NDArray[np.float64]
     eccentric_anomaly: NDArray[np.float64]
     mean_anomaly: NDArray[np.float64]
-    time_since_pericentre: NDArray[np.float64]
+    time_since_pericenter: NDArray[np.float64]
     period: NDArray[np.float64]
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
@@ -107,11 +108,11 @@ class Elements:
         """
         return state(
             self.mu,
-            pericentre=self.pericentre,
+            pericenter=self.pericenter,
             eccentricity=self.eccentricity,
             inclination=self.inclination,
             node=self.node,
-            argument_of_pericentre=self.argument_of_pericentre,
+            argument_of_pericenter=self.argument_of_pericenter,
             true_anomaly=self.true_anomaly,
         )
 
@@ -143,7 +144,7 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     --------
     >>> import visviva as vv
     >>> found = vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
-    >>> round(float(found.eccentricity), 12), round(float(found.apocentre), 12)
+    >>> round(float(found.eccentricity), 12), round(float(found.apocenter), 12)
     (0.44, 2.571428571429)
     """
     shape, (mu_,), (position_, velocity_) = broadcast({"mu": mu}, {"position": position, "velocity": velocity})
@@ -155,12 +156,14 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
 def state(
     mu: ArrayLike,
     *,
-    pericentre: ArrayLike,
+    pericenter: ArrayLike,
     eccentricity: ArrayLike,
     inclination: ArrayLike = 0.0,
     node: ArrayLike = 0.0,
-    argument_of_pericentre: ArrayLike = 0.0,
-    true_anomaly: ArrayLike = 0.0,
+    argument_of_pericenter: ArrayLike = 0.0,
+    true_anomaly: ArrayLike | None = None,
+    eccentric_anomaly: ArrayLike | None = None,
+    mean_anomaly: ArrayLike | None = None,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Find the states of orbits with given elements.
 
@@ -168,12 +171,17 @@ def state(
     ----------
     mu : array_like
         Strength of the acceleration −μ r/|r|³; negative for repulsion, not 0.
-    pericentre : array_like
+    pericenter : array_like
         Least distance, above 0: a|1 − e| (repulsion: a(e + 1)).
     eccentricity : array_like
         e ≥ 0; for repulsion e > 1.
-    inclination, node, argument_of_pericentre, true_anomaly : array_like, optional
-        Angles as in :class:`Elements`; the last inside the asymptotes of a hyperbola.
+    inclination : array_like, optional
+        From 0 to π.
+    node, argument_of_pericenter : array_like, optional
+        Angles as in :class:`Elements`.
+    true_anomaly, eccentric_anomaly, mean_anomaly : array_like, optional
+        Where the body is, by one of the three at most, as in :class:`Elements`: the first inside the asymptotes of a
+        hyperbola, the second E, H or D = tan(ν/2). By default at the pericenter.
 
     Returns
     -------
@@ -187,22 +195,34 @@ def state(
 
     Examples
     --------
-    >>> import visviva as vv
-    >>> position, velocity = vv.orbits.state(1.0, pericentre=1.0, eccentricity=0.44)
+    >>> import numpy as np, visviva as vv
+    >>> position, velocity = vv.orbits.state(1.0, pericenter=1.0, eccentricity=0.44)
     >>> position.tolist(), round(float(velocity[1]), 12)
     ([1.0, 0.0, 0.0], 1.2)
+    >>> position, _ = vv.orbits.state(1.0, pericenter=1.0, eccentricity=0.44, mean_anomaly=np.pi)
+    >>> round(float(position[0]), 12)
+    -2.571428571429
     """
+    anomalies = {
+        "true_anomaly": true_anomaly,
+        "eccentric_anomaly": eccentric_anomaly,
+        "mean_anomaly": mean_anomaly,
+    }
+    chosen = [name for name, value in anomalies.items() if value is not None] or ["true_anomaly"]
+    if len(chosen) > 1:
+        raise InvalidInput(chosen[1], f"expected one anomaly, got {' and '.join(chosen)}; leave out all but one")
+    where = anomalies[chosen[0]]
     given = {
         "mu": mu,
-        "pericentre": pericentre,
+        "pericenter": pericenter,
         "eccentricity": eccentricity,
         "inclination": inclination,
         "node": node,
-        "argument_of_pericentre": argument_of_pericentre,
-        "true_anomaly": true_anomaly,
+        "argument_of_pericenter": argument_of_pericenter,
+        chosen[0]: 0.0 if where is None else where,
     }
     shape, flat, _ = broadcast(given, {})
-    position, velocity = _core.orbit_state(*flat)
+    position, velocity = _core.orbit_state(chosen[0], *flat)
     return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
 
 

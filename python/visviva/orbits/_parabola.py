@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
     """Solve Barker's equation M = D + D³/3 for D = tan(ν/2).
 
-    M = √(μ/2q³) t, t since the pericentre at distance q.
+    M = √(μ/2q³) t, t since the pericenter at distance q.
 
     Parameters
     ----------
@@ -46,7 +46,7 @@ def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
 def mean_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     """Give the mean anomaly M of the parabolic anomaly D on a parabola.
 
-    M = D + D³/3. Then M = √(μ/2q³) t, t since the pericentre at distance q.
+    M = D + D³/3. Then M = √(μ/2q³) t, t since the pericenter at distance q.
 
     Parameters
     ----------

@@ -5,8 +5,9 @@ use core::f64::consts::PI;
 use nalgebra::Vector3;
 use visviva_core::nbody::anomalies::*;
 use visviva_core::nbody::constants::{ConicConstants, period};
-use visviva_core::nbody::elements::{Elements, free_fall_time, state_from_elements};
+use visviva_core::nbody::elements::{Elements, free_fall_time};
 use visviva_core::nbody::kepler::KeplerOrbit;
+use visviva_core::nbody::state::{Anomaly, Shape, state_from_elements};
 
 fn close(found: f64, expected: f64) {
     assert!((found - expected).abs() <= 4.0 * f64::EPSILON * expected.abs(), "{found:?} ≠ {expected:?}");
@@ -17,25 +18,25 @@ fn elements_of_a_radial_ellipse() {
     // At rest at r = 2, then at r = 1 on the way down and up: a = 1, E − sin E = M, cos E = 1 − r/a.
     let rest = Elements::from_state(1.0, Vector3::new(0.0, 2.0, 0.0), Vector3::zeros()).unwrap();
     assert_eq!(
-        (rest.eccentricity, rest.pericentre, rest.semi_minor_axis, rest.areal_rate),
+        (rest.eccentricity, rest.pericenter, rest.semi_minor_axis, rest.areal_rate),
         (1.0, 0.0, 0.0, 0.0)
     );
     assert_eq!(
-        (rest.semi_major_axis, rest.apocentre, rest.energy, rest.semi_latus_rectum),
+        (rest.semi_major_axis, rest.apocenter, rest.energy, rest.semi_latus_rectum),
         (1.0, 2.0, -0.5, 0.0)
     );
     close(rest.eccentric_anomaly.abs(), PI);
-    close(rest.time_since_pericentre.abs(), PI);
+    close(rest.time_since_pericenter.abs(), PI);
     assert_eq!(rest.laplace_runge_lenz, Vector3::new(0.0, -1.0, 0.0));
-    assert!(rest.inclination.is_nan() && rest.node.is_nan() && rest.argument_of_pericentre.is_nan());
+    assert!(rest.inclination.is_nan() && rest.node.is_nan() && rest.argument_of_pericenter.is_nan());
     assert!(rest.hodograph_radius.is_infinite());
     for sign in [-1.0, 1.0] {
         let moving = Elements::from_state(1.0, Vector3::x(), Vector3::x() * sign).unwrap();
-        assert_eq!((moving.eccentricity, moving.pericentre), (1.0, 0.0));
+        assert_eq!((moving.eccentricity, moving.pericenter), (1.0, 0.0));
         close(moving.semi_major_axis, 1.0);
         close(moving.eccentric_anomaly, sign * PI / 2.0);
         close(moving.mean_anomaly, sign * (PI / 2.0 - 1.0));
-        close(moving.time_since_pericentre, sign * (PI / 2.0 - 1.0));
+        close(moving.time_since_pericenter, sign * (PI / 2.0 - 1.0));
     }
 }
 
@@ -43,14 +44,14 @@ fn elements_of_a_radial_ellipse() {
 fn elements_of_radial_escape_and_repulsion() {
     // v² = 2μ/r is the radial parabola: r³ = 9μt²/2.
     let escape = Elements::from_state(1.0, Vector3::new(0.0, 0.0, 2.0), Vector3::z()).unwrap();
-    assert_eq!((escape.energy, escape.eccentricity, escape.pericentre), (0.0, 1.0, 0.0));
+    assert_eq!((escape.energy, escape.eccentricity, escape.pericenter), (0.0, 1.0, 0.0));
     assert!(escape.semi_major_axis.is_infinite() && escape.period.is_infinite());
-    close(escape.time_since_pericentre, (16.0f64 / 9.0).sqrt());
+    close(escape.time_since_pericenter, (16.0f64 / 9.0).sqrt());
     close(escape.turning_angle, PI);
     // Head-on against a repulsive centre: turned back at |μ|/E, e = 1 as the limit of p → 0.
     let back = Elements::from_state(-1.0, Vector3::new(2.0, 0.0, 0.0), Vector3::zeros()).unwrap();
-    assert_eq!((back.energy, back.eccentricity, back.pericentre), (0.5, 1.0, 2.0));
-    assert_eq!(back.time_since_pericentre, 0.0);
+    assert_eq!((back.energy, back.eccentricity, back.pericenter), (0.5, 1.0, 2.0));
+    assert_eq!(back.time_since_pericenter, 0.0);
     close(back.turning_angle, PI);
 }
 
@@ -66,15 +67,15 @@ fn elements_of_a_parabola() {
             assert!(found.semi_major_axis.is_infinite() && found.semi_minor_axis.is_infinite());
             close(found.turning_angle, PI);
         }
-        close(found.pericentre, l2 / (3.0 * v.norm_squared()));
-        // r = q (1 + D²), D = tan(ν/2), r·v > 0 after the pericentre.
-        let d = (3.0 / found.pericentre - 1.0).sqrt().copysign(r.dot(&v));
+        close(found.pericenter, l2 / (3.0 * v.norm_squared()));
+        // r = q (1 + D²), D = tan(ν/2), r·v > 0 after the pericenter.
+        let d = (3.0 / found.pericenter - 1.0).sqrt().copysign(r.dot(&v));
         assert!((found.true_anomaly - 2.0 * d.atan()).abs() < 1e-15);
         if found.energy == 0.0 {
             assert!((found.eccentric_anomaly - d).abs() <= 4.0 * f64::EPSILON * d.abs());
             close(found.mean_anomaly, mean_from_parabolic(d));
-            let rate = (1.5 * v.norm_squared() / (2.0 * found.pericentre.powi(3))).sqrt();
-            close(found.time_since_pericentre, found.mean_anomaly / rate);
+            let rate = (1.5 * v.norm_squared() / (2.0 * found.pericenter.powi(3))).sqrt();
+            close(found.time_since_pericenter, found.mean_anomaly / rate);
         }
     }
 }
@@ -82,7 +83,11 @@ fn elements_of_a_parabola() {
 #[test]
 fn state_from_elements_refuses_by_name() {
     let good = [1.0, 1.0, 0.5, 0.1, 0.2, 0.3, 0.4];
-    let call = |x: [f64; 7]| state_from_elements(x[0], x[1], x[2], x[3], x[4], x[5], x[6]);
+    let call = |x: [f64; 7]| {
+        let [mu, pericenter, eccentricity, inclination, node, argument_of_pericenter, nu] = x;
+        let shape = Shape { pericenter, eccentricity, inclination, node, argument_of_pericenter };
+        state_from_elements(mu, shape, Anomaly::True(nu))
+    };
     let _ = call(good).unwrap();
     let hyperbola = [1.0, 1.0, 2.0, 0.1, 0.2, 0.3, 2.0];
     let _ = call(hyperbola).unwrap();
@@ -90,12 +95,15 @@ fn state_from_elements_refuses_by_name() {
         (good, 0, 0.0, "mu"),
         (good, 0, f64::NAN, "mu"),
         (good, 0, -1.0, "eccentricity"),
-        (good, 1, 0.0, "pericentre"),
-        (good, 1, f64::INFINITY, "pericentre"),
+        (good, 1, 0.0, "pericenter"),
+        (good, 1, f64::INFINITY, "pericenter"),
         (good, 2, -0.1, "eccentricity"),
         (good, 2, f64::NAN, "eccentricity"),
         (good, 3, f64::NAN, "angles"),
-        (good, 6, f64::INFINITY, "angles"),
+        (good, 3, -0.1, "inclination"),
+        (good, 3, PI.next_up(), "inclination"),
+        (good, 5, f64::INFINITY, "angles"),
+        (good, 6, f64::INFINITY, "true_anomaly"),
         (hyperbola, 6, 2.1, "true_anomaly"),
         (hyperbola, 6, PI, "true_anomaly"),
         (hyperbola, 0, -1.0, "true_anomaly"),

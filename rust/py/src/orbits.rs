@@ -3,6 +3,7 @@
 //! Every function takes flat arrays of one length, one entry per orbit; `visviva.orbits` gives them their axes.
 
 use crate::arrays::{copied, moved};
+use crate::errors::raised;
 use crate::gate::compute;
 use nalgebra::Vector3;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
@@ -10,9 +11,11 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::nbody::anomalies::convert;
 use visviva_core::nbody::constants::{self, ConicConstants};
-use visviva_core::nbody::elements::{Elements, free_fall_time, state_from_elements};
+use visviva_core::nbody::elements::{Elements, free_fall_time};
 use visviva_core::nbody::kepler::KeplerOrbit;
+use visviva_core::nbody::state::{Anomaly, Shape, state_from_elements};
 use visviva_core::parallel::Ticker;
+use visviva_core::words::unknown;
 use visviva_core::{Error, Result};
 
 type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
@@ -29,15 +32,15 @@ const ELEMENTS: Columns<Elements> = &[
     ("semi_major_axis", |found| found.semi_major_axis),
     ("semi_minor_axis", |found| found.semi_minor_axis),
     ("semi_latus_rectum", |found| found.semi_latus_rectum),
-    ("pericentre", |found| found.pericentre),
-    ("apocentre", |found| found.apocentre),
+    ("pericenter", |found| found.pericenter),
+    ("apocenter", |found| found.apocenter),
     ("inclination", |found| found.inclination),
     ("node", |found| found.node),
-    ("argument_of_pericentre", |found| found.argument_of_pericentre),
+    ("argument_of_pericenter", |found| found.argument_of_pericenter),
     ("true_anomaly", |found| found.true_anomaly),
     ("eccentric_anomaly", |found| found.eccentric_anomaly),
     ("mean_anomaly", |found| found.mean_anomaly),
-    ("time_since_pericentre", |found| found.time_since_pericentre),
+    ("time_since_pericenter", |found| found.time_since_pericenter),
     ("period", |found| found.period),
     ("areal_rate", |found| found.areal_rate),
     ("turning_angle", |found| found.turning_angle),
@@ -46,7 +49,7 @@ const ELEMENTS: Columns<Elements> = &[
 const ELEMENT_VECTORS: Columns<Elements, Vector3<f64>> = &[
     ("angular_momentum", |found| found.angular_momentum),
     ("laplace_runge_lenz", |found| found.laplace_runge_lenz),
-    ("hodograph_centre", |found| found.hodograph_centre),
+    ("hodograph_center", |found| found.hodograph_center),
 ];
 
 const CONSTANTS: Columns<ConicConstants> = &[
@@ -134,29 +137,46 @@ pub(crate) fn orbit_elements<'py>(
     Ok(dict)
 }
 
-/// Position and velocity of each set of elements.
+/// Position and velocity of each set of elements, the last of which is an anomaly of that name.
 #[pyfunction]
 pub(crate) fn orbit_state<'py>(
     py: Python<'py>,
+    name: &str,
     mu: Array<'py>,
-    pericentre: Array<'py>,
+    pericenter: Array<'py>,
     eccentricity: Array<'py>,
     inclination: Array<'py>,
     node: Array<'py>,
-    argument_of_pericentre: Array<'py>,
-    true_anomaly: Array<'py>,
+    argument_of_pericenter: Array<'py>,
+    anomaly: Array<'py>,
 ) -> PyResult<(Column<'py>, Column<'py>)> {
-    let (count, [mu, q, e, i, node, w, nu]) = together([
+    let (count, [mu, q, e, i, node, w, anomaly]) = together([
         ("mu", &mu),
-        ("pericentre", &pericentre),
+        ("pericenter", &pericenter),
         ("eccentricity", &eccentricity),
         ("inclination", &inclination),
         ("node", &node),
-        ("argument_of_pericentre", &argument_of_pericentre),
-        ("true_anomaly", &true_anomaly),
+        ("argument_of_pericenter", &argument_of_pericenter),
+        (name, &anomaly),
     ])?;
+    let kind = match name {
+        "true_anomaly" => Anomaly::True,
+        "eccentric_anomaly" => Anomaly::Eccentric,
+        "mean_anomaly" => Anomaly::Mean,
+        other => {
+            let known = ["true_anomaly", "eccentric_anomaly", "mean_anomaly"];
+            return Err(raised(py, unknown("name", other, known.into_iter())));
+        }
+    };
+    let shape = |k: usize| Shape {
+        pericenter: q[k],
+        eccentricity: e[k],
+        inclination: i[k],
+        node: node[k],
+        argument_of_pericenter: w[k],
+    };
     let states = compute(py, 0, None, |ticker| {
-        each(count, ticker, |k| state_from_elements(mu[k], q[k], e[k], i[k], node[k], w[k], nu[k]))
+        each(count, ticker, |k| state_from_elements(mu[k], shape(k), kind(anomaly[k])))
     })?
     .whole(py)?;
     let flat = |part: fn(&State) -> Vector3<f64>| {

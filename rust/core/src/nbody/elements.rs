@@ -1,8 +1,8 @@
-//! The elements of a conic from a state, and a state from elements; free fall.
+//! The elements of a conic from a state; free fall. The way back is in `state.rs`.
 //!
 //! The one idea: the same double-double preparation as the propagator, so that e, the apsides and the anomalies are
 //! right to a few ulps even for e near 0 or 1. Attraction and repulsion share every formula through the
-//! Laplace–Runge–Lenz vector A = v×L − μ r̂ (per unit mass), which points to the pericentre and has length |μ| e.
+//! Laplace–Runge–Lenz vector A = v×L − μ r̂ (per unit mass), which points to the pericenter and has length |μ| e.
 //! Conventions: lengths a, b are positive for hyperbolas too; angles in radians; x the reference direction, z the pole.
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9; hodograph: Hamilton (1847).
 
@@ -10,11 +10,11 @@ use super::conic::Conic;
 use super::constants::dynamical_time;
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
-use crate::numerics::angles::{atan2, sin_cos};
+use crate::numerics::angles::atan2;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
-use crate::words::{number, numbers};
+use crate::words::number;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 
@@ -25,10 +25,10 @@ pub struct Elements {
     pub angular_momentum: Vector3<f64>,
     /// v²/2 − μ/r.
     pub energy: f64,
-    /// v×L − μ r̂: towards the pericentre, length |μ| e.
+    /// v×L − μ r̂: towards the pericenter, length |μ| e.
     pub laplace_runge_lenz: Vector3<f64>,
     /// The velocities lie on a circle about this point (radial motion has none: NaN).
-    pub hodograph_centre: Vector3<f64>,
+    pub hodograph_center: Vector3<f64>,
     /// |μ|/L; infinite for radial motion.
     pub hodograph_radius: f64,
     /// e.
@@ -40,23 +40,23 @@ pub struct Elements {
     /// L²/|μ|.
     pub semi_latus_rectum: f64,
     /// Least distance.
-    pub pericentre: f64,
+    pub pericenter: f64,
     /// Greatest distance; infinite if unbound.
-    pub apocentre: f64,
+    pub apocenter: f64,
     /// Angle of L from z, in [0, π]; radial motion: NaN, as the two angles below.
     pub inclination: f64,
     /// Angle of the ascending node from x, in (−π, π]; 0 where the orbit lies in the xy plane.
     pub node: f64,
-    /// Angle of the pericentre from the node along the motion, in (−π, π].
-    pub argument_of_pericentre: f64,
-    /// Angle of the body from the pericentre, in (−π, π].
+    /// Angle of the pericenter from the node along the motion, in (−π, π].
+    pub argument_of_pericenter: f64,
+    /// Angle of the body from the pericenter, in (−π, π].
     pub true_anomaly: f64,
     /// E of an ellipse in (−π, π], H of a hyperbola, D = tan(ν/2) of a parabola.
     pub eccentric_anomaly: f64,
     /// E − e sin E, e sinh H ∓ H, or D + D³/3.
     pub mean_anomaly: f64,
-    /// Time since the nearest pericentre (negative before it).
-    pub time_since_pericentre: f64,
+    /// Time since the nearest pericenter (negative before it).
+    pub time_since_pericenter: f64,
     /// 2π √(a³/μ); infinite if unbound.
     pub period: f64,
     /// L/2.
@@ -94,7 +94,7 @@ impl Elements {
         let bound = beta.to_f64() > 0.0;
         let (cosine, sine) = conic.true_anomaly;
 
-        // From the anchoring apsis to the pericentre: half a turn, half a period.
+        // From the anchoring apsis to the pericenter: half a turn, half a period.
         let half = if conic.epoch.to_f64() > 0.0 { -DoubleDouble::PI } else { DoubleDouble::PI };
         let mut angle = rate * conic.epoch;
         let mut since = conic.since_apsis;
@@ -133,21 +133,21 @@ impl Elements {
             angular_momentum: normal * scale(h_size, length + speed),
             energy: scale(-0.5 * beta.to_f64(), 2 * speed),
             laplace_runge_lenz: conic.towards * scale(zeta.to_f64(), length + 2 * speed),
-            hodograph_centre: conic.along * scale((zeta / h).to_f64(), speed),
+            hodograph_center: conic.along * scale((zeta / h).to_f64(), speed),
             hodograph_radius: infinite_if(h_size == 0.0, scale((strength / h).to_f64(), speed)),
             eccentricity: e,
             semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
             semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
             semi_latus_rectum: lengths((h * h / strength).to_f64()),
-            pericentre: lengths(conic.pericentre.to_f64()),
-            apocentre: infinite_if(!bound, lengths(conic.apocentre)),
+            pericenter: lengths(conic.pericentre.to_f64()),
+            apocenter: infinite_if(!bound, lengths(conic.apocentre)),
             inclination,
             node,
-            argument_of_pericentre: argument,
+            argument_of_pericenter: argument,
             true_anomaly: atan2(sine, cosine),
             eccentric_anomaly: eccentric.to_f64(),
             mean_anomaly: mean.to_f64(),
-            time_since_pericentre: scale(since.to_f64(), length - speed),
+            time_since_pericenter: scale(since.to_f64(), length - speed),
             period: infinite_if(
                 !bound,
                 scale(conic.period.map_or(0.0, DoubleDouble::to_f64), length - speed),
@@ -156,79 +156,6 @@ impl Elements {
             turning_angle: turning,
         }
     }
-}
-
-/// Position and velocity on a conic of given pericentre distance, eccentricity, orientation and true anomaly.
-///
-/// `mu` > 0: any e ≥ 0; `mu` < 0: e > 1. For a given semi-major axis, `pericentre` = a|1 − e| (repulsive: a(e + 1)).
-///
-/// # Errors
-/// [`Error::InvalidInput`] for arguments out of range and for a true anomaly on or beyond an asymptote.
-pub fn state_from_elements(
-    mu: f64,
-    pericentre: f64,
-    eccentricity: f64,
-    inclination: f64,
-    node: f64,
-    argument_of_pericentre: f64,
-    true_anomaly: f64,
-) -> Result<(Vector3<f64>, Vector3<f64>)> {
-    let e = eccentricity;
-    if !mu.is_finite() || mu == 0.0 {
-        return Err(Error::invalid(
-            "mu",
-            format!("expected a finite number other than 0, got {}", number(mu)),
-        ));
-    }
-    if !(pericentre.is_finite() && pericentre > 0.0) {
-        return Err(Error::invalid(
-            "pericentre",
-            format!("expected a positive distance, got {}", number(pericentre)),
-        ));
-    }
-    if !(e.is_finite() && e >= 0.0 && (mu > 0.0 || e > 1.0)) {
-        return Err(Error::invalid(
-            "eccentricity",
-            format!("expected e ≥ 0 (mu < 0: e > 1), got {}", number(e)),
-        ));
-    }
-    let angles = [inclination, node, argument_of_pericentre, true_anomaly];
-    if !angles.iter().all(|angle| angle.is_finite()) {
-        return Err(Error::invalid("angles", format!("expected finite angles, got {}", numbers(&angles))));
-    }
-    let (half_sine, half_cosine) = sin_cos(0.5 * true_anomaly);
-    // ±1 + e cos ν, without the cancellation at an apocentre far out or near ν = 0 of repulsion.
-    let (shape, focal) = if mu > 0.0 {
-        ((1.0 - e) + 2.0 * e * half_cosine * half_cosine, 1.0 + e)
-    } else {
-        ((e - 1.0) - 2.0 * e * half_sine * half_sine, e - 1.0)
-    };
-    if shape <= 0.0 {
-        return Err(Error::invalid(
-            "true_anomaly",
-            format!(
-                "expected an angle inside the asymptotes of e = {}, got {}",
-                number(e),
-                number(true_anomaly)
-            ),
-        ));
-    }
-    let (sine, cosine) = sin_cos(true_anomaly);
-    let distance = pericentre * (focal / shape);
-    // v = (μ/L)(−sin ν P + cos ν Q) + (|μ| e/L) Q, and |μ|/L = √(|μ|/p).
-    let hodograph = (mu.abs() / pericentre / focal).sqrt();
-    let sign = mu.signum();
-    let (node_sine, node_cosine) = sin_cos(node);
-    let (sine_i, cosine_i) = sin_cos(inclination);
-    let (sine_w, cosine_w) = sin_cos(argument_of_pericentre);
-    let line = Vector3::new(node_cosine, node_sine, 0.0);
-    let across = Vector3::new(-node_sine * cosine_i, node_cosine * cosine_i, sine_i);
-    let towards = line * cosine_w + across * sine_w;
-    let along = across * cosine_w - line * sine_w;
-    Ok((
-        (towards * cosine + along * sine) * distance,
-        (towards * (-sign * sine) + along * (sign * cosine + e)) * hodograph,
-    ))
 }
 
 /// The time to fall from rest at the distance `start` to the distance `end` ≤ `start` of an attracting centre.

@@ -6,4 +6,5 @@ pub mod constants;
 pub mod elements;
 pub mod kepler;
 mod kepler_equation;
+pub mod state;
 pub mod two_body;

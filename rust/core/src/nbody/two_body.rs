@@ -53,6 +53,17 @@ impl TwoBody {
         let masses = masses.map(|mass| scale(mass, -unit));
         let total = DoubleDouble::sum(masses[0], masses[1]);
         let mu = scale((DoubleDouble::from(gravitational_constant) * total).to_f64(), unit);
+        if !mu.is_finite() {
+            return Err(Error::invalid(
+                "G",
+                format!(
+                    "expected units in which G times the masses is within the range of float64, got G = {} and a mass \
+                     of {}",
+                    number(gravitational_constant),
+                    number(scale(masses[0].max(masses[1]), unit))
+                ),
+            ));
+        }
         let [(r1, v1), (r2, v2)] = states;
         let relative = KeplerOrbit::new(mu, r1 - r2, v1 - v2)?;
         let shares = [DoubleDouble::from(masses[1]) / total, -(DoubleDouble::from(masses[0]) / total)];

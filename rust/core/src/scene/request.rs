@@ -84,11 +84,15 @@ impl Request {
     /// What steers an adaptive method. `rtol` always has a value, so that a method without tolerances ignores it.
     fn check_tolerances(&self, method: &Method) -> Result<()> {
         if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
+            let advice = if self.rtol > 0.0 && self.rtol < RTOL_MIN {
+                "; a smaller error needs a fixed-step method such as kahan_li8"
+            } else {
+                ""
+            };
             return Err(Error::invalid(
                 "rtol",
                 format!(
-                    "expected {} (what double precision can honour) to 1, got {}; a smaller error needs a \
-                     fixed-step method such as kahan_li8",
+                    "expected {} (what double precision can honour) to 1, got {}{advice}",
                     number(RTOL_MIN),
                     number(self.rtol)
                 ),
