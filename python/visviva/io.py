@@ -3,6 +3,7 @@
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
 ``per_trajectory/<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
+What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
 from __future__ import annotations
@@ -10,7 +11,7 @@ from __future__ import annotations
 import errno
 import json
 import os
-import zipfile
+import secrets
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ import numpy as np
 
 import visviva
 from visviva._keywords import known_keywords
+from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
@@ -32,10 +34,6 @@ if TYPE_CHECKING:
 
 __all__ = ["load", "save"]
 
-FORMAT = "visviva run"
-VERSION = 1
-_GROUPS = ("columns", "final", "per_trajectory")
-
 
 @known_keywords
 def save(path: str | PathLike[str], run: Recorded) -> None:
@@ -44,9 +42,17 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     Parameters
     ----------
     path : path-like
-        Written exactly as given; no ending is added. The folder must exist.
+        Written exactly as given; no ending is added. The folder must exist. A link is followed.
     run : Trajectory or EnsembleTrajectory
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If ``path`` is no path.
+    OSError
+        If it cannot be written.
     """
+    name = _named(path)
     result = run._result
     start = run._start._keywords
     header = {
@@ -61,16 +67,18 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     }
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
-    arrays |= {f"{group}/{name}": array for group in _GROUPS for name, array in result[group].items()}
+    arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
     text = json.dumps(header, default=_plain).encode()
-    target = Path(path)
+    # A link stays a link: what it points to is written.
+    target = Path(os.path.realpath(name)) if name else Path()
     if not target.parent.is_dir():
         raise FileNotFoundError(errno.ENOENT, "no such folder to save the run in", str(target.parent))
     if target.is_dir():
-        raise IsADirectoryError(errno.EISDIR, "expected a file to save the run in, but this is a folder", str(path))
-    partial = target.with_name(f"{target.name}.{os.getpid()}.part")
+        raise IsADirectoryError(errno.EISDIR, "expected a file to save the run in, but this is a folder", name)
+    # A name of its own for each call: two threads or processes that save to one path do not meet.
+    partial = target.with_name(f"{target.name}.{secrets.token_hex(8)}.part")
     try:
-        with partial.open("wb") as file:
+        with partial.open("xb") as file:
             np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
         partial.replace(target)
     finally:
@@ -93,7 +101,8 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     Raises
     ------
     visviva.InvalidInput
-        If the file is not one of these, is damaged, or was written by a later version of the format.
+        If the file is not one of these, is damaged, or was written by a later version of the format; or if ``path``
+        is no path.
     FileNotFoundError
         If there is no such file.
 
@@ -105,26 +114,25 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     >>> vv.load(path).final.t0
     1.0
     """
-    name = os.fspath(path)
-    try:
-        # Opened here because NumPy leaves the file open when it finds it damaged.
-        with open(name, "rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        header = json.loads(arrays.pop("header").tobytes())
-        found, version = header["format"], int(header["version"])
-    except (ValueError, KeyError, TypeError, AttributeError, EOFError, zipfile.BadZipFile) as error:
-        raise InvalidInput("path", f"expected a run that visviva saved, but {name!r} is none, or is damaged") from error
-    if found != FORMAT:
-        raise InvalidInput("path", f"expected a {FORMAT!r}, but {name!r} holds a {found!r}")
-    if version > VERSION:
-        raise InvalidInput(
-            "path", f"the file has format version {version}, this visviva reads up to {VERSION}; use a newer visviva"
-        )
-    return _restore(header, arrays)
+    name = _named(path)
+    with open(name, "rb") as stream:
+        try:
+            return _restored(*checked(stream))
+        except MemoryError:  # a good file may be too large
+            raise
+        except Damaged as error:
+            raise InvalidInput("path", f"{error.message} ({name!r})") from error
+        # NumPy, zipfile, zlib and json raise what they please, and what they let pass the parts of a scene refuse.
+        except Exception as error:
+            if isinstance(error, InvalidInput) and error.argument == "path":
+                raise
+            raise InvalidInput(
+                "path", f"expected a run that visviva saved, but {name!r} is none, or is damaged: {error}"
+            ) from error
 
 
-def _restore(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
-    result: dict[str, Any] = {group: {} for group in _GROUPS}
+def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
+    result: dict[str, Any] = {group: {} for group in GROUPS}
     result |= {"t": arrays["t"], "status": arrays["status"], "stats": header["stats"], "plan": header["plan"]}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
@@ -133,10 +141,22 @@ def _restore(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | Ens
     forces = [force_from_core(description) for description in header["forces"]]
     first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0])
     scene = Scene(first, *forces, t0=header["t0"])
-    if not header["ensemble"]:
-        return Trajectory(scene, result)
-    copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
-    return EnsembleTrajectory(copies, result)
+    run: Trajectory | EnsembleTrajectory
+    if header["ensemble"]:
+        copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
+        run = EnsembleTrajectory(copies, result)
+    else:
+        run = Trajectory(scene, result)
+    _ = run.stats, run.plan, run.status
+    return run
+
+
+def _named(path: object) -> str:
+    try:
+        name = os.fspath(path)  # type: ignore[call-overload]
+    except TypeError:
+        raise InvalidInput("path", f"expected the path of a file, got {type(path).__name__}") from None
+    return os.fsdecode(name)
 
 
 def _plain(value: object) -> Any:

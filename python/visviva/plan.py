@@ -46,6 +46,7 @@ class Plan:
     'closed form'
     """
 
+    # A field that is added later has a default, for the files that lack it.
     method: str
     solution: str
     particles: int
@@ -67,12 +68,10 @@ class Plan:
         """Whether the motion is known in closed form, so that no step is taken."""
         return self.solution.startswith("closed form")
 
-    def _to_dict(self) -> dict[str, Any]:
-        return {name: getattr(self, name) for name in self.__slots__}
-
     @classmethod
     def _from_core(cls, plan: dict[str, Any]) -> Plan:
-        known = {name: plan[name] for name in cls.__slots__}
-        known["rows"] = tuple(tuple(row) for row in plan["rows"])
-        known["skipped"] = tuple(tuple(row) for row in plan["skipped"])
+        """The plan of a dictionary of the core's, or of a file, which an older version may have written."""
+        known = {name: plan[name] for name in cls.__slots__ if name in plan}
+        for name in ("rows", "skipped"):
+            known[name] = tuple(tuple(row) for row in known.get(name, ()))
         return cls(**known)

@@ -1,0 +1,198 @@
+"""Read a saved run from a file, and refuse at once whatever is not as `visviva.io` wrote it.
+
+The one idea: every member and every key that a result looks at is checked here, name, type and shape, so that a file
+that loads is whole. Anything that goes wrong on the way, in whatever library, is for `visviva.io` to name.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import zipfile
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.lib import format as npy
+
+from visviva.status import Status
+
+if TYPE_CHECKING:
+    from typing import IO
+
+    from numpy.typing import NDArray
+
+__all__ = ["FORMAT", "GROUPS", "VERSION", "Damaged", "checked"]
+
+FORMAT = "visviva run"
+VERSION = 1
+GROUPS = ("columns", "final", "per_trajectory")
+
+# Axes after those over copies (B) and times (T).
+_COLUMNS = {
+    "position": ("N", 3),
+    "velocity": ("N", 3),
+    "energy": (),
+    "momentum": (3,),
+    "angular_momentum": (3,),
+    "center_of_mass": (3,),
+}
+_ARRAYS: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "mass": ("f8", ("B", "N")),
+    "position": ("f8", ("B", "N", 3)),
+    "velocity": ("f8", ("B", "N", 3)),
+    "t": ("f8", ("T",)),
+    "status": ("i1", ("B",)),
+    "final/t": ("f8", ("B",)),
+    "final/position": ("f8", ("B", "N", 3)),
+    "final/velocity": ("f8", ("B", "N", 3)),
+    "per_trajectory/steps": ("i8", ("B",)),
+    "per_trajectory/rejected": ("i8", ("B",)),
+    "per_trajectory/evaluations": ("i8", ("B",)),
+}
+# The keys that files of version 1 have always had; those of a later version are not asked for.
+_HEADER: dict[str, type | tuple[type, ...]] = {
+    "ensemble": bool,
+    "t0": (int, float),
+    "forces": list,
+    "stats": dict,
+    "plan": dict,
+}
+_STATS: dict[str, type | tuple[type, ...]] = {
+    "steps": int,
+    "rejected": int,
+    "evaluations": int,
+    "seconds": (int, float),
+    "threads": int,
+    "simd": str,
+    "method": str,
+}
+_PLAN: dict[str, type | tuple[type, ...]] = {
+    "method": str,
+    "solution": str,
+    "particles": int,
+    "active": int,
+    "passive": int,
+    "rows": list,
+    "skipped": list,
+    "evaluations_per_step": int,
+    "pairs_per_evaluation": int,
+    "lanes": str,
+    "threads": int,
+    "text": str,
+}
+
+
+class Damaged(Exception):
+    """What is wrong with a file, in words for its reader."""
+
+    def __init__(self, message: str) -> None:
+        super().__init__(message)
+        self.message = message
+
+
+def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """The header and the arrays of a saved run, all that a result needs among them.
+
+    Raises
+    ------
+    Damaged
+        If something is missing or not as it should be.
+    Exception
+        Whatever zipfile, zlib, NumPy and json raise for a file that is not theirs.
+    """
+    with zipfile.ZipFile(stream) as archive:
+        arrays = {_stem(info): _array(archive, info) for info in archive.infolist()}
+    if "header" not in arrays:
+        raise Damaged("expected a run that visviva saved, but the file has no header")
+    header = json.loads(arrays.pop("header").tobytes(), parse_constant=_no_number)
+    if not isinstance(header, dict) or not isinstance(header.get("format"), str):
+        raise Damaged("expected a run that visviva saved, but the header does not say so")
+    if header["format"] != FORMAT:
+        raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}")
+    _check_keys("header", header, {"version": int})
+    if header["version"] > VERSION:
+        raise Damaged(
+            f"the file has format version {header['version']}, this visviva reads up to {VERSION}; use a newer visviva"
+        )
+    _check_header(header)
+    _check_arrays(arrays, header["ensemble"])
+    return header, arrays
+
+
+def _no_number(word: str) -> float:
+    raise Damaged(f"expected finite numbers in the header, got {word}")
+
+
+def _stem(info: zipfile.ZipInfo) -> str:
+    return info.filename.removesuffix(".npy")
+
+
+def _array(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> NDArray[Any]:
+    # The size is compared before memory for it is asked for: a damaged shape may be of any size.
+    with archive.open(info) as member:
+        version = npy.read_magic(member)
+        read = npy.read_array_header_1_0 if version == (1, 0) else npy.read_array_header_2_0
+        shape, _, dtype = read(member)
+        if dtype.hasobject or math.prod(shape) * dtype.itemsize != info.file_size - member.tell():
+            raise Damaged(f"expected the array {_stem(info)!r} to fill its place in the file, which it does not")
+    # DEFLATE makes nothing smaller than by 1032.
+    if info.file_size > 1032 * info.compress_size:
+        raise Damaged(f"the array {_stem(info)!r} is larger than its place in the file can hold")
+    with archive.open(info) as member:
+        array: NDArray[Any] = npy.read_array(member, allow_pickle=False)
+    return array
+
+
+def _check_keys(where: str, found: dict[str, Any], expected: dict[str, type | tuple[type, ...]]) -> None:
+    for name, kind in expected.items():
+        if name not in found:
+            raise Damaged(f"the {where} of the file lacks {name!r}")
+        value = found[name]
+        if not isinstance(value, kind) or (isinstance(value, bool) and kind is not bool):
+            raise Damaged(f"the {where} of the file has {type(value).__name__} for {name!r}")
+
+
+def _check_header(header: dict[str, Any]) -> None:
+    _check_keys("header", header, _HEADER)
+    if not all(isinstance(force, dict) and isinstance(force.get("kind"), str) for force in header["forces"]):
+        raise Damaged("the header of the file has a force without a kind")
+    _check_keys("account of what the run cost", header["stats"], _STATS)
+    _check_keys("plan", header["plan"], _PLAN)
+    for name, length in (("rows", 3), ("skipped", 2)):
+        for row in header["plan"][name]:
+            if not (isinstance(row, list) and len(row) == length and all(isinstance(word, str) for word in row)):
+                raise Damaged(f"the plan of the file has a line in {name!r} that is not {length} texts")
+
+
+def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool) -> None:
+    lengths: dict[str, int] = {}
+    for name, (dtype, axes) in _ARRAYS.items():
+        if name not in arrays:
+            raise Damaged(f"the file lacks the array {name!r}")
+        _check_array(name, arrays[name], dtype, axes, lengths)
+    for name, array in arrays.items():
+        group, _, member = name.partition("/")
+        if group == "columns" and member:
+            axes = ("B", "T", *_COLUMNS.get(member, array.shape[2:]))
+            _check_array(name, array, "f8", axes, lengths)
+        elif name not in _ARRAYS:
+            # Another version may keep more of each copy.
+            if group not in GROUPS or not member:
+                raise Damaged(f"the file has an array {name!r} that this version does not know")
+            _check_array(name, array, array.dtype.str, ("B", *array.shape[1:]), lengths)
+    if not ensemble and lengths["B"] != 1:
+        raise Damaged(f"the file has {lengths['B']} copies of what is no ensemble")
+    known = {int(status) for status in Status}
+    if not known.issuperset(arrays["status"].tolist()):
+        raise Damaged("the file has a status that this version does not know")
+
+
+def _check_array(
+    name: str, array: NDArray[Any], dtype: str, axes: tuple[str | int, ...], lengths: dict[str, int]
+) -> None:
+    shape = tuple(
+        lengths.setdefault(axis, came) if isinstance(axis, str) else axis
+        for axis, came in zip(axes, array.shape, strict=False)
+    )
+    if array.dtype != np.dtype(dtype) or array.ndim != len(axes) or array.shape != shape:
+        raise Damaged(f"the array {name!r} of the file has shape {array.shape} of {array.dtype}, which does not fit")

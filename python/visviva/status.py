@@ -1,0 +1,22 @@
+"""How a run ends: the codes of the core, of results and of files."""
+
+from enum import IntEnum
+
+__all__ = ["Status"]
+
+
+class Status(IntEnum):
+    """How a trajectory ended.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.problems.figure_eight().scene.run(t=1.0).status is vv.Status.OK
+    True
+    """
+
+    OK = 0
+    CLOSE_ENCOUNTER = 1
+    STEP_FAILURE = 2
+    INTERRUPTED = 3
+    TOO_MANY_STEPS = 4
