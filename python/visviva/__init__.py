@@ -13,7 +13,6 @@ The names below are imported when they are first used, so that ``import visviva`
 than NumPy itself.
 """
 
-import sys
 from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
@@ -24,9 +23,11 @@ _HOME = {
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Drift": "conservation",
     "EnsembleScene": "ensemble",
     "EnsembleTrajectory": "ensemble",
     "Error": "errors",
+    "FrozenAttribute": "errors",
     "Gravity": "forces",
     "InternalError": "errors",
     "Interrupted": "errors",
@@ -36,23 +37,26 @@ _HOME = {
     "Particles": "particles",
     "Plan": "plan",
     "Scene": "scene",
-    "Status": "trajectory",
+    "Stats": "recorded",
+    "Status": "status",
     "Trajectory": "trajectory",
     "UniformField": "forces",
     "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
 }
-_ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering")
+_ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
 __all__ = [
     "CentralField",
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Drift",
     "EnsembleScene",
     "EnsembleTrajectory",
     "Error",
+    "FrozenAttribute",
     "Gravity",
     "InternalError",
     "Interrupted",
@@ -62,6 +66,7 @@ __all__ = [
     "Particles",
     "Plan",
     "Scene",
+    "Stats",
     "Status",
     "Trajectory",
     "UniformField",
@@ -75,16 +80,18 @@ __all__ = [
     "potentials",
     "problems",
     "scattering",
+    "typing",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, forces, orbits, potentials, problems, scattering
-    from visviva.conservation import Conservation
+    from visviva import datasets, errors, forces, orbits, potentials, problems, scattering, typing
+    from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
         CloseEncounter,
         ConvergenceError,
         Error,
+        FrozenAttribute,
         InternalError,
         Interrupted,
         InvalidInput,
@@ -96,23 +103,40 @@ if TYPE_CHECKING:
     from visviva.io import load
     from visviva.particles import Particles
     from visviva.plan import Plan
+    from visviva.recorded import Stats
     from visviva.scene import Scene
-    from visviva.trajectory import Status, Trajectory
+    from visviva.status import Status
+    from visviva.trajectory import Trajectory
 
+else:  # a type checker that saw this function would let every misspelt name pass
 
-def __getattr__(name: str) -> Any:
-    from importlib import import_module
+    def __getattr__(name: str) -> Any:
+        from importlib import import_module
 
-    if name in _ROOMS:
-        value: Any = import_module(f"visviva.{name}")
-    elif name in _HOME:
-        value = getattr(import_module(f"visviva.{_HOME[name]}"), name)
-    else:
-        # With these two, Python's own message suggests the nearest name.
-        raise AttributeError(f"module 'visviva' has no attribute {name!r}", name=name, obj=sys.modules[__name__])
-    globals()[name] = value
-    return value
+        if name in _ROOMS:
+            value: Any = import_module(f"visviva.{name}")
+        elif name in _HOME:
+            value = getattr(import_module(f"visviva.{_HOME[name]}"), name)
+        else:
+            raise AttributeError(f"module 'visviva' has no attribute {name!r}{_nearest(name)}")
+        globals()[name] = value
+        return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return [*__all__, "__version__"]
+
+
+def _nearest(name: str) -> str:
+    """The end of the message: where the name is, or the nearest one."""
+    if name.startswith("_"):
+        return ""
+    from importlib import import_module
+
+    from visviva._keywords import did_you_mean
+
+    full = {room: import_module(f"visviva.{room}").__all__ for room in _ROOMS}
+    for room, names in full.items():
+        if name in names:
+            return f"; it is visviva.{room}.{name}"
+    return did_you_mean(name, __all__)

@@ -6,7 +6,7 @@ returns can go to the core as it is.
 """
 
 import math
-from typing import TypeAlias, TypeVar
+from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
 from numpy.typing import NDArray
@@ -44,7 +44,8 @@ def float_array(name: str, value: object, shape: Shape | None, sizes: Sizes | No
     name : str
         The name of the argument, for the message.
     value : array_like
-        Floats of at most 64 bits or integers in any memory layout and byte order, or nested sequences of numbers.
+        Floats of at most 64 bits or integers in any memory layout and byte order, or nested sequences of numbers, whose
+        integers may have any size and are rounded.
     shape : tuple or None
         Expected lengths: numbers, names such as ``"N"``, or None for any length. None in place of the tuple allows
         any shape.
@@ -111,6 +112,14 @@ def mass_array(value: object, shape: Shape, sizes: Sizes | None = None) -> NDArr
     if negative.any():
         which = _first("mass", array, negative)
         raise InvalidInput("mass", f"expected masses of at least 0, but {which}; 0 marks a test particle")
+    with np.errstate(over="ignore"):
+        finite = np.isfinite(array.sum(axis=-1)).all() if array.ndim else True
+    if not finite:
+        raise InvalidInput(
+            "mass",
+            f"expected masses whose total is within the range of float64, but the largest is {array.max():g}; "
+            "choose a larger unit of mass",
+        )
     return array
 
 
@@ -242,6 +251,8 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
         raise InvalidInput(
             name, f"expected an array of real numbers, got {_article(value)} that is none: {error}"
         ) from None
+    if not isinstance(value, np.ndarray | np.generic) or array.dtype.kind == "O":
+        array = _rounded(name, array)
     kind, dtype = array.dtype.kind, array.dtype
     if kind in _ADVICE:
         what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{_article(value)} (dtype {dtype.name})"
@@ -254,6 +265,24 @@ def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
             "expected integers up to 2**53, which float64 holds exactly, got larger; round them with x.astype(float)",
         )
     return array
+
+
+def _rounded(name: str, array: NDArray[Any]) -> NDArray[Any]:
+    """Round Python's own integers, which have no largest, as ``float()`` does; leave anything else as it is.
+
+    NumPy's integers of 64 bits may be keys or counters whose last digits mean something: those are refused later.
+    """
+    if array.dtype.kind == "O":
+        if not array.size or any(type(each) not in (int, float) for each in array.flat):
+            return array
+        if not any(type(each) is int and abs(each) > _EXACT for each in array.flat):
+            return array
+    elif array.dtype.kind not in "iu" or array.dtype.itemsize < 8:
+        return array
+    try:
+        return array.astype(np.float64)
+    except OverflowError:
+        raise InvalidInput(name, "expected numbers within the range of float64, got a larger integer") from None
 
 
 def _article(value: object) -> str:
@@ -279,7 +308,9 @@ def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -
     )
     known_names = (part for part in dict.fromkeys(shape) if isinstance(part, str) and part in sizes)
     known_lengths = " and ".join(f"{part} = {sizes[part][0]} as in {sizes[part][1]}" for part in known_names)
-    message = f"expected shape ({expected})" + (f" with {known_lengths}" if known_lengths else "") + f", got {came}"
+    wanted_shape = "an array with one axis" if shape == (None,) else f"shape ({expected})"
+    message = f"expected {wanted_shape}" + (f" with {known_lengths}" if known_lengths else "") + ", got "
+    message += f"shape {came}" if shape == (None,) else f"{came}"
     if len(shape) == 2 and came[::-1][1:] == shape[1:] and came[1:] != shape[1:]:
         message += "; the vector axis is the last: pass x.T"
     raise InvalidInput(name, message)

@@ -1,4 +1,4 @@
-"""Refuse a keyword that a function does not take, by name and with the nearest one that it does take.
+"""Refuse names that are not there: keywords a function does not take, attributes a frozen part does not let go.
 
 Every public function and class carries `known_keywords`; a test walks through all of them. The names are compared
 before the call, so nothing has run when a keyword is refused, and a call without a mistake costs about 0.3 µs more.
@@ -9,15 +9,26 @@ from __future__ import annotations
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
-from typing import TYPE_CHECKING, ParamSpec, TypeVar, overload
+from typing import TYPE_CHECKING, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
-from visviva.errors import UnknownKeyword
+from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["did_you_mean", "known_keywords"]
+__all__ = ["did_you_mean", "frozen", "known_keywords", "refuse_subclass"]
+
+# What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
+_ELSEWHERE = {
+    ("run", "t_eval"): "the output times are t",
+    ("run", "t_span"): "give the end, or the output times, as t; the start is the scene's t0",
+    ("run", "dense_output"): "give as t the times you want: outputs between steps cost little and change no step",
+    ("run", "first_step"): "the first step follows from rtol; max_step bounds it",
+    ("run", "y0"): "the initial state is the scene's: see Scene.with_state",
+    ("run", "integrator"): "give it as method",
+    ("state", "semi_major_axis"): "give pericenter = a|1 − e| (of repulsion a(e + 1))",
+}
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -32,7 +43,8 @@ def known_keywords(target: Callable[_P, _R]) -> Callable[_P, _R]: ...
 def known_keywords(target: type[_T] | Callable[_P, _R]) -> type[_T] | Callable[_P, _R]:
     """Make a function, or the constructor and the public methods of a class, refuse unknown keywords.
 
-    Signature, documentation and types stay what they are. On a dataclass it stands above ``@dataclass``.
+    Signature, documentation and types stay what they are. On a dataclass it stands above ``@dataclass``; a frozen one
+    is made to refuse assignments in words, too (see `frozen`).
 
     Raises
     ------
@@ -57,7 +69,61 @@ mean 'distance'?
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
             called = target.__name__ if attribute == "__init__" else attribute
             setattr(target, attribute, _checked(value, called, _names(value)[1:]))
+    settings = vars(target).get("__dataclass_params__")
+    return target if settings is None or not settings.frozen else frozen(target)
+
+
+def frozen(target: type[_T]) -> type[_T]:
+    """Make assignments to attributes of a class a `FrozenAttribute`, which says how to get a changed one.
+
+    The class itself sets its attributes with ``object.__setattr__``, as a frozen dataclass does.
+
+    Examples
+    --------
+    >>> from visviva._keywords import frozen
+    >>> @frozen
+    ... class Stone:
+    ...     pass
+    >>> Stone().weight = 3.0
+    Traceback (most recent call last):
+      ...
+    visviva.errors.FrozenAttribute: weight: a Stone is frozen; make a new one instead
+    """
+    settings = vars(target).get("__dataclass_params__")
+
+    def refused(self: object, name: str, _: object = None) -> NoReturn:
+        known = _names(type(self).__init__)[1:] if settings is not None else ()
+        word = type(self).__name__
+        if name in known:
+            advice = f"make a changed one with dataclasses.replace({word.lower()}, {name}=…)"
+        else:
+            advice = "make a new one instead" + did_you_mean(name, known)
+        raise FrozenAttribute(name, f"{_article(word)} {word} is frozen; {advice}")
+
+    target.__setattr__ = refused  # type: ignore[method-assign]
+    target.__delattr__ = refused  # type: ignore[method-assign]
     return target
+
+
+def refuse_subclass(made: type, advice: str) -> None:
+    """Refuse a class that somebody derives from one whose kinds are the core's.
+
+    Called by ``__init_subclass__``.
+
+    Raises
+    ------
+    InvalidInput
+        Unless the class is visviva's own.
+    """
+    if str(vars(made).get("__module__")).partition(".")[0] != "visviva":
+        base = made.__bases__[0].__name__
+        raise InvalidInput(
+            base, f"expected no class derived from it, got {made.__name__}: the core knows its own only; {advice}"
+        )
+
+
+def _article(word: str) -> str:
+    return "an" if word[0] in "AEIOU" else "a"
 
 
 def did_you_mean(word: str, names: Iterable[str]) -> str:
@@ -95,4 +161,6 @@ def _checked(function: Callable[_P, _R], called: str, names: tuple[str, ...]) ->
 
 def _unknown(called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     expected = f"a keyword of {called} ({', '.join(names)})" if names else f"no keyword, {called} takes none"
-    return UnknownKeyword(came, f"expected {expected}, got {came!r}{did_you_mean(came, names)}")
+    elsewhere = _ELSEWHERE.get(("run" if called == "plan" else called, came))
+    advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
+    return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")

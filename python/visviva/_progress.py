@@ -45,13 +45,17 @@ def callback(progress: Progress) -> Iterator[Report | None]:
     """
     if progress is False:
         yield None
-    elif callable(progress):
-        yield progress
     elif progress is True:
         with _bar() as report:
             yield report
+    elif callable(progress) and not isinstance(progress, type):
+        yield progress
     else:
-        raise InvalidInput("progress", f"expected True, False or a callable f(done, total), got {progress!r}")
+        # Calling a class, tqdm for one, would make something new at every report.
+        came = f"the class {progress.__name__}" if isinstance(progress, type) else repr(progress)
+        raise InvalidInput(
+            "progress", f"expected True, False or a callable f(done, total), got {came}; True shows a tqdm bar"
+        )
 
 
 @contextmanager

@@ -6,15 +6,16 @@ others do not notice.
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from operator import index as whole
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from visviva._arrays import float_array, mass_array
-from visviva._keywords import known_keywords
+from visviva._keywords import frozen, known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.particles import Particles
+from visviva.particles import Particles, read_only
 from visviva.recorded import Recorded
 from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
@@ -31,6 +32,7 @@ __all__ = ["EnsembleScene", "EnsembleTrajectory"]
 
 
 @known_keywords
+@frozen
 class EnsembleScene(Runnable["EnsembleTrajectory"]):
     """B copies of a scene. Made by `Scene.ensemble`.
 
@@ -40,6 +42,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         The forces, the time, and whatever the copies share.
     mass : ndarray, shape (B, N)
     position, velocity : ndarray, shape (B, N, 3)
+
+    Indexing with a number gives the `Scene` of one copy, with a slice a smaller ensemble.
 
     Examples
     --------
@@ -54,6 +58,11 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     _is_ensemble = True
 
+    scene: Scene
+    mass: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+
     def __init__(
         self,
         scene: Scene,
@@ -64,12 +73,12 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     ) -> None:
         own = {"mass": scene.particles.mass, "position": scene.particles.position, "velocity": scene.particles.velocity}
         given = {
-            name: float_array(name, value, (None, *own[name].shape))
+            name: read_only(float_array(name, value, ("B", *own[name].shape)), value)
             for name, value in (("position", position), ("velocity", velocity))
             if value is not None
         }
         if mass is not None:
-            given["mass"] = mass_array(mass, (None, *own["mass"].shape))
+            given["mass"] = read_only(mass_array(mass, ("B", *own["mass"].shape)), mass)
         if not given:
             raise InvalidInput("position", "give position, velocity or mass with a leading axis over the copies")
         lengths = {name: array.shape[0] for name, array in given.items()}
@@ -80,29 +89,44 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         if count == 0:
             raise InvalidInput(first, "expected at least one copy, got none")
         full = {
-            name: given[name] if name in given else np.broadcast_to(array, (count, *array.shape)).copy()
+            name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
-        for array in full.values():
-            array.flags.writeable = False
-        self.scene = scene
-        self.mass, self.position, self.velocity = full["mass"], full["position"], full["velocity"]
-        self._keywords: _core._Scene = {
-            "mass": self.mass,
-            "position": self.position,
-            "velocity": self.velocity,
+        prepared: _core._Scene = {
+            "mass": full["mass"],
+            "position": full["position"],
+            "velocity": full["velocity"],
             "forces": scene._keywords["forces"],
             "t0": scene.t0,
         }
+        for name, value in {"scene": scene, **full, "_keywords": prepared}.items():
+            object.__setattr__(self, name, value)
 
     def __len__(self) -> int:
         return len(self.mass)
 
-    def __getitem__(self, index: int) -> Scene:
+    @overload
+    def __getitem__(self, index: int) -> Scene: ...
+    @overload
+    def __getitem__(self, index: slice) -> EnsembleScene: ...
+    def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
+        chosen = _chosen(index, len(self))
+        mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
+        if isinstance(chosen, slice):
+            return EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity)
         from visviva.scene import Scene
 
-        particles = Particles(self.mass[index], self.position[index], self.velocity[index])
-        return Scene(particles, *self.scene.forces, t0=self.scene.t0)
+        return Scene(Particles(mass, position, velocity), *self.scene.forces, t0=self.scene.t0)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            from visviva.scene import Scene
+
+            known = f"; each copy has one: ensemble[i].{name}" if hasattr(Scene, name) else ""
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}{known}", name=name, obj=self
+            )
 
     def __iter__(self) -> Iterator[Scene]:
         return (self[index] for index in range(len(self)))
@@ -133,7 +157,8 @@ class EnsembleTrajectory(Recorded):
     stats : Stats
         Totals over the copies; `per_trajectory` has them one by one.
 
-    Indexing gives the `Trajectory` of one copy.
+    Every array is read-only; ``out.position.copy()`` is yours. Indexing with a number gives the `Trajectory` of one
+    copy, with a slice those of a smaller ensemble.
 
     Examples
     --------
@@ -146,26 +171,34 @@ class EnsembleTrajectory(Recorded):
 
     __slots__ = ("ensemble",)
 
+    ensemble: EnsembleScene
+
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
         super().__init__(result)
-        self.ensemble = ensemble
+        object.__setattr__(self, "ensemble", ensemble)
 
     def __len__(self) -> int:
         return len(self.ensemble)
 
-    def __getitem__(self, index: int) -> Trajectory:
-        count = len(self)
-        if not -count <= index < count:
-            raise IndexError(f"copy {index} of {count}")
-        row = slice(index % count, index % count + 1)
+    @overload
+    def __getitem__(self, index: int) -> Trajectory: ...
+    @overload
+    def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
+    def __getitem__(self, index: int | slice) -> Trajectory | EnsembleTrajectory:
+        chosen = _chosen(index, len(self))
+        rows = chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
         result = dict(self._result)
-        result["columns"] = {name: column[row] for name, column in self._result["columns"].items()}
-        result["status"] = self.status[row]
-        result["final"] = {name: value[row] for name, value in self._result["final"].items()}
-        result["per_trajectory"] = {name: value[row] for name, value in self.per_trajectory.items()}
-        own = {name: int(value[index]) for name, value in self.per_trajectory.items() if name in self._result["stats"]}
-        result["stats"] = {**self._result["stats"], **own}
-        return Trajectory(self.ensemble[index], result)
+        for group in ("columns", "final", "per_trajectory"):
+            result[group] = {name: values[rows] for name, values in self._result[group].items()}
+        result["status"] = self.status[rows]
+        own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
+        result["stats"] = {**result["stats"], **own}
+        if isinstance(chosen, slice):
+            return EnsembleTrajectory(self.ensemble[chosen], result)
+        return Trajectory(self.ensemble[chosen], result)
+
+    def _elsewhere(self, name: str) -> str:
+        return f"; each copy has one: out[i].{name}" if hasattr(Trajectory, name) else super()._elsewhere(name)
 
     def __iter__(self) -> Iterator[Trajectory]:
         return (self[index] for index in range(len(self)))
@@ -188,12 +221,16 @@ class EnsembleTrajectory(Recorded):
     def status(self) -> NDArray[np.int8]:
         """How each copy ended, values of `Status`, shape (B,)."""
         status: NDArray[np.int8] = self._result["status"]
+        status.setflags(write=False)
         return status
 
     @property
     def per_trajectory(self) -> dict[str, NDArray[Any]]:
         """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,)."""
-        return dict(self._result["per_trajectory"])
+        counts: dict[str, NDArray[Any]] = self._result["per_trajectory"]
+        for each in counts.values():
+            each.setflags(write=False)
+        return dict(counts)
 
     @property
     def final(self) -> EnsembleScene:
@@ -210,6 +247,19 @@ class EnsembleTrajectory(Recorded):
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
+
+
+def _chosen(index: object, count: int) -> int | slice:
+    """An index as it came if it is a slice, and else as a whole number from 0."""
+    if isinstance(index, slice):
+        return index
+    try:
+        number = whole(index)  # type: ignore[arg-type]
+    except TypeError:
+        raise InvalidInput("index", f"expected a whole number or a slice, got {index!r}") from None
+    if not -count <= number < count:
+        raise IndexError(f"copy {number} of {count}")
+    return number % count
 
 
 def _rebuild(

@@ -1,15 +1,18 @@
 """The exceptions of visviva: what was asked, what came, and what to do.
 
-Every class derives from `Error` and from the built-in exception that a program would catch anyway, carries its facts
-as attributes, and pickles with them. The core raises these same classes.
+Every class carries its facts as attributes, pickles with them, and derives from the built-in exception that a program
+would catch anyway. All but `Interrupted` derive from `Error` too: Ctrl-C is no error, and ``except Exception`` must not
+swallow it. The core raises these same classes.
 """
 
+from dataclasses import FrozenInstanceError
 from typing import Any
 
 __all__ = [
     "CloseEncounter",
     "ConvergenceError",
     "Error",
+    "FrozenAttribute",
     "InternalError",
     "Interrupted",
     "InvalidInput",
@@ -18,7 +21,7 @@ __all__ = [
 
 
 class Error(Exception):
-    """Base of every exception that visviva raises on purpose."""
+    """Base of every exception that visviva raises on purpose, but for `Interrupted`."""
 
 
 class InvalidInput(Error, ValueError):
@@ -68,6 +71,28 @@ class UnknownKeyword(InvalidInput, TypeError):
     ... except vv.InvalidInput as error:
     ...     print(error)
     g: expected a keyword of Gravity (G, softening), got 'g'; did you mean 'G'?
+    """
+
+
+class FrozenAttribute(InvalidInput, FrozenInstanceError):
+    """An attribute of something frozen was set or deleted; also the `AttributeError` that Python itself would raise.
+
+    Parameters
+    ----------
+    argument : str
+        The attribute.
+    message : str
+        How to get a changed one.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> gravity = vv.Gravity(G=1.0)
+    >>> try:
+    ...     gravity.softening = 0.1
+    ... except vv.InvalidInput as error:
+    ...     print(error)
+    softening: a Gravity is frozen; make a changed one with dataclasses.replace(gravity, softening=…)
     """
 
 
@@ -129,10 +154,10 @@ class CloseEncounter(Error, RuntimeError):
         )
 
 
-class Interrupted(Error, KeyboardInterrupt):
+class Interrupted(KeyboardInterrupt):
     """Ctrl-C stopped the run.
 
-    Like `KeyboardInterrupt` it should end a program, but as an `Error` it is also an `Exception`.
+    A `KeyboardInterrupt` and nothing else: neither ``except Exception`` nor ``except visviva.Error`` catches it.
 
     Parameters
     ----------
@@ -166,3 +191,7 @@ class InternalError(Error, RuntimeError):
 
     def __str__(self) -> str:
         return f"{self.message}; this is a defect of visviva, please report it with what you ran"
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

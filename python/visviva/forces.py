@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 import numpy as np
 
 from visviva._arrays import float_array, in_range, number, positive
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -35,6 +35,9 @@ class Force(ABC):
     conserves_momentum: ClassVar[bool]
     # About the moving centre of mass.
     conserves_spin: ClassVar[bool]
+
+    def __init_subclass__(cls) -> None:
+        refuse_subclass(cls, "use Gravity, UniformField and CentralField, which add")
 
     @abstractmethod
     def conserves_angular_momentum(self, about: NDArray[np.float64]) -> bool:
@@ -290,3 +293,7 @@ def _in_units(name: str, value: float, powers: tuple[int, int, int], *scales: fl
 def _vector(name: str, value: ArrayLike) -> _Vector:
     x, y, z = float_array(name, value, (3,)).tolist()
     return (x, y, z)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

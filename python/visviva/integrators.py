@@ -3,9 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._keywords import known_keywords
+
+if TYPE_CHECKING:
+    from visviva.typing import MethodName
 
 __all__ = ["Method", "methods"]
 
@@ -18,7 +22,7 @@ class Method:
     Attributes
     ----------
     name : str
-        The name for ``run(method=...)``.
+        The name for ``run(method=...)``, which takes the record itself too.
     summary : str
         What it is for.
     order : int
@@ -34,7 +38,7 @@ class Method:
         Where it was published.
     """
 
-    name: str
+    name: MethodName
     summary: str
     order: int
     stages: int

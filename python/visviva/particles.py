@@ -55,11 +55,11 @@ class Particles:
 
     def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
         sizes: Sizes = {}
-        object.__setattr__(self, "mass", _frozen(mass_array(mass, ("N",), sizes), mass))
-        object.__setattr__(self, "position", _frozen(float_array("position", position, ("N", 3), sizes), position))
+        object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
+        object.__setattr__(self, "position", read_only(float_array("position", position, ("N", 3), sizes), position))
         if velocity is None:
             velocity = np.zeros(self.position.shape)
-        object.__setattr__(self, "velocity", _frozen(float_array("velocity", velocity, ("N", 3), sizes), velocity))
+        object.__setattr__(self, "velocity", read_only(float_array("velocity", velocity, ("N", 3), sizes), velocity))
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -152,9 +152,10 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
 
 
-def _frozen(array: NDArray[np.float64], given: object) -> NDArray[np.float64]:
-    if array.flags.writeable or array is given:
-        # Read-only views of somebody's writeable array are copied too: they have a base.
+def read_only(array: NDArray[np.float64], given: object = None) -> NDArray[np.float64]:
+    """The array, or a copy of what was given, as nobody can write to it."""
+    if array is given or not array.flags.owndata:
+        # Views are copied too, read-only ones among them: somebody else may hold what they look at.
         array = array.copy()
-        array.flags.writeable = False
+    array.flags.writeable = False
     return array

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -34,6 +34,9 @@ class Potential:
     name: ClassVar[str]
     _fields: ClassVar[tuple[str, ...]]
     _positive: ClassVar[tuple[str, ...]]
+
+    def __init_subclass__(cls) -> None:
+        refuse_subclass(cls, "a force along the line to a fixed centre is CentralField(one of visviva.potentials)")
 
     def __post_init__(self) -> None:
         for field in self._fields:
@@ -101,6 +104,7 @@ def _make(entry: dict[str, Any]) -> type[Potential]:
         [(field, "float") for field in fields],
         bases=(Potential,),
         namespace={
+            "__module__": __name__,
             "name": entry["name"],
             "_fields": fields,
             "_positive": tuple(p["name"] for p in entry["parameters"] if p["positive"]),
@@ -109,7 +113,6 @@ def _make(entry: dict[str, Any]) -> type[Potential]:
         frozen=True,
         slots=True,
     )
-    made.__module__ = __name__
     return cast("type[Potential]", known_keywords(made))
 
 
@@ -147,3 +150,7 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
         expected = f"{len(made._fields)} ({', '.join(made._fields)})"
         raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
     return made(*parameters)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -1,4 +1,8 @@
-"""What a run recorded and what it cost, alike for a trajectory and for an ensemble of them."""
+"""What a run recorded and what it cost, alike for a trajectory and for an ensemble of them.
+
+Results are read-only, arrays and attributes alike: what is derived from them on first use stays true. A copy of an
+array (``out.position.copy()``) may be changed.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +10,7 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from visviva._keywords import known_keywords
+from visviva._keywords import frozen, known_keywords
 from visviva.plan import Plan
 
 if TYPE_CHECKING:
@@ -39,16 +43,52 @@ class Stats:
         return cls(**{name: stats[name] for name in cls.__slots__})
 
 
+# What people look for from elsewhere, and where it is here.
+_ELSEWHERE = {
+    "y": "position and velocity",
+    "sol": "position and velocity at the times asked for; outputs between steps cost little and change no step",
+    "success": "status == vv.Status.OK",
+    "message": "status",
+    "nfev": "stats.evaluations",
+    "nsteps": "stats.steps",
+    "x": "position",
+    "v": "velocity",
+    "times": "t",
+}
+
+
 @known_keywords
+@frozen
 class Recorded(ABC):
     """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
 
     __slots__ = ("_columns", "_result", "t")
 
+    t: NDArray[np.float64]
+    _result: dict[str, Any]
+    _columns: dict[str, NDArray[np.float64]]
+
     def __init__(self, result: dict[str, Any]) -> None:
-        self.t: NDArray[np.float64] = result["t"]
-        self._result = result
-        self._columns: dict[str, NDArray[np.float64]] = {}
+        # What is handed out is made read-only when it is: a short run must not pay for all of it.
+        result["t"].setflags(write=False)
+        object.__setattr__(self, "t", result["t"])
+        object.__setattr__(self, "_result", result)
+        object.__setattr__(self, "_columns", {})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # By way of the constructor, which makes the arrays read-only again.
+        return type(self), (self._start, self._result)
+
+    if not TYPE_CHECKING:
+
+        def __getattr__(self, name: str) -> Any:
+            advice = self._elsewhere(name)
+            raise AttributeError(
+                f"{type(self).__name__!r} object has no attribute {name!r}{advice}", name=name, obj=self
+            )
+
+    def _elsewhere(self, name: str) -> str:
+        return f"; it is {_ELSEWHERE[name]}" if name in _ELSEWHERE else ""
 
     @property
     @abstractmethod
@@ -61,7 +101,9 @@ class Recorded(ABC):
 
     def _column(self, name: str) -> NDArray[np.float64]:
         if name not in self._columns:
-            self._columns[name] = self._found(name)
+            found = self._found(name)
+            found.setflags(write=False)
+            self._columns[name] = found
         return self._columns[name]
 
     @property

@@ -1,4 +1,7 @@
-"""What is asked of the core: one place that turns arguments into the core's keywords, and its errors into ours.
+"""What is asked of the core: one frozen request, its way into the core's keywords, and the core's errors into ours.
+
+The one idea: a run option is one field. Its default, its type and its check stand in one line of `PlanRequest` or
+`RunRequest`; the signatures of ``run`` and ``plan`` and the keywords of the core are made from the fields.
 
 Kept lean on purpose: a closed form at one time must not pay for the formalities. Whatever can be judged
 by the core (signs, ranges, names, order of times) is left to the core.
@@ -6,90 +9,44 @@ by the core (signs, ranges, names, order of times) is left to the core.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any, TypeVar
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, field, fields
+from functools import wraps
+from inspect import Parameter, Signature, signature
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import CloseEncounter, ConvergenceError, Interrupted, InvalidInput
+from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
     from visviva._progress import Progress
+    from visviva.integrators import Method
+    from visviva.typing import ColumnName, MethodName
 
-_INTERRUPTED = 3  # Status.INTERRUPTED; this room is below the one that names it
+__all__ = ["PlanRequest", "RunRequest", "asked_by", "execute"]
+
+_Parameters = ParamSpec("_Parameters")
+_Request = TypeVar("_Request")
 _Result = TypeVar("_Result")
+_Self = TypeVar("_Self")
+_Check = TypeVar("_Check")
 
 
-def keywords(
-    prepared: _core._Scene,
-    t: ArrayLike,
-    method: str,
-    dt: float | None,
-    rtol: float,
-    atol: float | None,
-    max_step: float | None,
-    max_steps: int | None,
-    record: Sequence[str],
-    events: Sequence[object],
-) -> _core._Request:
-    """What ``_core.run`` and ``_core.plan`` both take."""
-    if events:
-        raise InvalidInput("events", "events are not offered yet; leave events=() and look at the recorded columns")
-    # An array or a sequence is output times; anything else must be one number, and `number` says so.
-    end_only = getattr(t, "ndim", int(hasattr(t, "__len__"))) == 0
-    return {
-        **prepared,
-        "times": np.array([number("t", t)]) if end_only else float_array("t", t, (None,)),
-        "end_only": end_only,
-        "method": _word("method", method),
-        "dt": None if dt is None else number("dt", dt),
-        "rtol": number("rtol", rtol),
-        "atol": None if atol is None else number("atol", atol),
-        "max_step": None if max_step is None else number("max_step", max_step),
-        "max_steps": None if max_steps is None else whole_number("max_steps", max_steps),
-        "record": _words("record", record),
-    }
+def _method(name: str, value: object) -> str:
+    if not isinstance(value, str):
+        from visviva.integrators import Method
 
-
-def execute(
-    request: _core._Request,
-    threads: int | None,
-    progress: Progress,
-    *,
-    ensemble: bool,
-    make: Callable[[dict[str, Any]], _Result],
-) -> _Result:
-    """Run the request and make its result, or raise the core's error with the result attached."""
-    count = None if threads is None else whole_number("threads", threads)
-    if progress is False:
-        result = _core.run(request, threads=count, progress=None, ensemble=ensemble)
-    else:
-        from visviva._progress import callback
-
-        with callback(progress) as report:
-            result = _core.run(request, threads=count, progress=report, ensemble=ensemble)
-    made = make(result)
-    error = result["error"]
-    if error is not None:
-        raise _exception(error, made)
-    if ensemble and (result["status"] == _INTERRUPTED).any():
-        raise Interrupted("the ensemble was interrupted", made)
-    return made
-
-
-def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
-    if error["kind"] == "close_encounter":
-        first, second = error["bodies"]
-        return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)
-    if error["kind"] == "interrupted":
-        return Interrupted(error["message"], trajectory)
-    return ConvergenceError(error["message"], error["time"], trajectory)
+        if isinstance(value, Method):
+            return value.name
+    return _word(name, value)
 
 
 def _word(name: str, value: object) -> str:
@@ -105,3 +62,128 @@ def _words(name: str, value: object) -> list[str]:
     if not isinstance(value, Iterable):
         raise InvalidInput(name, f"expected a name or several names, got {value!r}")
     return [_word(name, word) for word in value]
+
+
+def _or_none(check: Callable[[str, object], _Check]) -> Callable[[str, object], _Check | None]:
+    return lambda name, value: None if value is None else check(name, value)
+
+
+def _told(check: Callable[[str, object], object]) -> dict[str, Any]:
+    """For a field that the core is told of, by the field's name, as ``check(name, value)``."""
+    return {"check": check}
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlanRequest:
+    """What is asked of a scene. Its fields are the arguments of ``plan``, and of ``run`` too."""
+
+    t: ArrayLike = field(kw_only=False)
+    method: MethodName | Method = field(default="auto", metadata=_told(_method))
+    dt: float | None = field(default=None, metadata=_told(_or_none(number)))
+    rtol: float = field(default=1e-9, metadata=_told(number))
+    atol: float | None = field(default=None, metadata=_told(_or_none(number)))
+    max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
+    max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
+    record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
+    events: Sequence[object] = ()
+
+    def to_core(self, prepared: _core._Scene) -> dict[str, Any]:
+        """What ``_core.run`` and ``_core.plan`` both take."""
+        if self.events:
+            raise InvalidInput("events", "events are not offered yet; leave events=() and look at the recorded columns")
+        t = self.t
+        # An array or a sequence is output times; anything else must be one number, and `number` says so.
+        end_only = getattr(t, "ndim", int(hasattr(t, "__len__"))) == 0
+        asked: dict[str, Any] = {
+            **prepared,
+            "times": np.array([number("t", t)]) if end_only else float_array("t", t, (None,)),
+            "end_only": end_only,
+        }
+        for name, default, ready, check in _OPTIONS:
+            value = getattr(self, name)
+            asked[name] = ready if value is default else check(name, value)
+        return asked
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunRequest(PlanRequest):
+    """What is asked of a scene, and how it is run. Its fields are the arguments of ``run``."""
+
+    threads: int | None = None
+    progress: Progress = False
+
+
+# Name, default, what the core is told if the default was left, and the check of anything else.
+_OPTIONS = tuple(
+    (option.name, option.default, option.metadata["check"](option.name, option.default), option.metadata["check"])
+    for option in fields(PlanRequest)
+    if "check" in option.metadata
+)
+
+
+def asked_by(
+    request: Callable[_Parameters, _Request],
+) -> Callable[[Callable[[_Self, _Request], _Result]], Callable[Concatenate[_Self, _Parameters], _Result]]:
+    """Make a method of a request take the fields of the request as its arguments.
+
+    Help, editors and type checkers see the fields as the method's own signature.
+
+    Examples
+    --------
+    >>> import inspect, visviva as vv
+    >>> list(inspect.signature(vv.Scene.plan).parameters)[:4]
+    ['self', 't', 'method', 'dt']
+    """
+
+    def decorate(method: Callable[[_Self, _Request], _Result]) -> Callable[Concatenate[_Self, _Parameters], _Result]:
+        own = Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)
+        asked_for = signature(request).parameters.values()
+        shown = Signature([own, *asked_for], return_annotation=signature(method).return_annotation)
+
+        @wraps(method)
+        def asked(self: _Self, /, *args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
+            try:
+                made = request(*args, **kwargs)
+            except TypeError:
+                shown.bind(self, *args, **kwargs)  # raises, in the words of this method's signature
+                raise
+            return method(self, made)
+
+        asked.__signature__ = shown  # type: ignore[attr-defined]
+        asked.__annotations__ = {parameter.name: parameter.annotation for parameter in asked_for} | {
+            "return": shown.return_annotation
+        }
+        return asked
+
+    return decorate
+
+
+def execute(
+    prepared: _core._Scene, request: RunRequest, *, ensemble: bool, make: Callable[[dict[str, Any]], _Result]
+) -> _Result:
+    """Run the request and make its result, or raise the core's error with the result attached."""
+    asked = request.to_core(prepared)
+    threads = None if request.threads is None else whole_number("threads", request.threads)
+    if request.progress is False:
+        result = _core.run(asked, threads=threads, progress=None, ensemble=ensemble)
+    else:
+        from visviva._progress import callback
+
+        with callback(request.progress) as report:
+            result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
+    made = make(result)
+    error = result["error"]
+    if error is not None:
+        raise _exception(error, made)
+    if ensemble and (result["status"] == Status.INTERRUPTED).any():
+        raise Interrupted("the ensemble was interrupted", made)
+    return made
+
+
+def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
+    if error["kind"] == "close_encounter":
+        first, second = error["bodies"]
+        return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)
+    if error["kind"] == "interrupted":
+        return Interrupted(error["message"], trajectory)
+    return ConvergenceError(error["message"], error["time"], trajectory)

@@ -1,21 +1,17 @@
-"""What can be run: the one signature of ``run`` and ``plan``, for a scene and for an ensemble of them."""
+"""What can be run: ``run`` and ``plan``, for a scene and for an ensemble of them.
+
+Their arguments are the fields of the request (`visviva.request`).
+"""
 
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Any, ClassVar, Generic, TypeVar
+from typing import Any, ClassVar, Generic, TypeVar
 
 from visviva import _core
 from visviva._keywords import known_keywords
 from visviva.plan import Plan
-from visviva.request import execute, keywords
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike
-
-    from visviva._progress import Progress
+from visviva.request import PlanRequest, RunRequest, asked_by, execute
 
 __all__ = ["Runnable"]
 
@@ -35,21 +31,8 @@ class Runnable(ABC, Generic[_Result]):
     def _finished(self, result: dict[str, Any]) -> _Result:
         """What the user gets for the core's answer."""
 
-    def run(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-        threads: int | None = None,
-        progress: Progress = False,
-    ) -> _Result:
+    @asked_by(RunRequest)
+    def run(self, request: RunRequest) -> _Result:
         """Run the scene, or every copy of an ensemble.
 
         Parameters
@@ -57,8 +40,8 @@ class Runnable(ABC, Generic[_Result]):
         t : float or array_like, shape (T,)
             The end time, or the output times in the order of the motion, forwards or backwards. An
             end time alone records the start and the end.
-        method : str, optional
-            One of `visviva.methods`; ``"auto"`` may choose a closed form. A method named here always
+        method : str or Method, optional
+            One of `visviva.methods`, or its name; ``"auto"`` may choose a closed form. A method named here always
             runs.
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
@@ -71,7 +54,7 @@ class Runnable(ABC, Generic[_Result]):
             The longest step an adaptive method may take. A fixed-step method refuses it.
         max_steps : int, optional
             The run ends with an error beyond this number of steps, of any method.
-        record : sequence of str, optional
+        record : str or sequence of str, optional
             Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
             ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.
         events : sequence, optional
@@ -109,22 +92,10 @@ class Runnable(ABC, Generic[_Result]):
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (2, 2, 3, 3)
         """
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return execute(request, threads, progress, ensemble=self._is_ensemble, make=self._finished)
+        return execute(self._keywords, request, ensemble=self._is_ensemble, make=self._finished)
 
-    def plan(
-        self,
-        t: ArrayLike,
-        *,
-        method: str = "auto",
-        dt: float | None = None,
-        rtol: float = 1e-9,
-        atol: float | None = None,
-        max_step: float | None = None,
-        max_steps: int | None = None,
-        record: Sequence[str] = ("position", "velocity"),
-        events: Sequence[object] = (),
-    ) -> Plan:
+    @asked_by(PlanRequest)
+    def plan(self, request: PlanRequest) -> Plan:
         """What `run` would do with the same arguments, without doing it.
 
         Returns
@@ -144,5 +115,4 @@ class Runnable(ABC, Generic[_Result]):
         >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
         ('leapfrog', 1, 15)
         """
-        request = keywords(self._keywords, t, method, dt, rtol, atol, max_step, max_steps, record, events)
-        return Plan._from_core(_core.plan(request))
+        return Plan._from_core(_core.plan(request.to_core(self._keywords)))

@@ -342,3 +342,7 @@ def _evaluate(
     ratio = positive("mass_ratio", mass_ratio)
     result = _core.scattering_function(function, half_distance, ratio, array.ravel()).reshape(array.shape)
     return result[()]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -7,6 +7,7 @@ when it is made, and a run of a closed form costs little more than the call.
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from itertools import chain
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,6 +22,8 @@ from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.ensemble import EnsembleScene
@@ -36,8 +39,11 @@ class Scene(Runnable[Trajectory]):
 
     Parameters
     ----------
-    *parts : Particles or Force
+    *parts : Particles or Force, or sequence of them
         One `Particles`, and any number of forces, in any order.
+    particles : Particles, optional
+    forces : sequence of Force, optional
+        Parts given by name, as the attributes have them.
     t0 : float, optional
         The time of the given state.
 
@@ -58,21 +64,28 @@ class Scene(Runnable[Trajectory]):
     particles: Particles
     forces: tuple[Force, ...]
     t0: float
-    _keywords: _core._Scene = field(repr=False)
+    _keywords: _core._Scene = field(init=False, repr=False)
 
-    def __init__(self, *parts: Particles | Force, t0: float = 0.0) -> None:
-        particles = [part for part in parts if isinstance(part, Particles)]
-        forces = tuple(part for part in parts if isinstance(part, Force))
-        for part in parts:
+    def __init__(
+        self,
+        *parts: Particles | Force | Sequence[Particles | Force],
+        particles: Particles | None = None,
+        forces: Force | Sequence[Force] = (),
+        t0: float = 0.0,
+    ) -> None:
+        by_name = () if particles is None else (particles,)
+        all_parts = tuple(chain.from_iterable(_flat(part) for part in (*parts, *by_name, forces)))
+        found = [part for part in all_parts if isinstance(part, Particles)]
+        for part in all_parts:
             if not isinstance(part, Particles | Force):
                 came = f"the class {part.__name__}" if isinstance(part, type) else f"a {type(part).__name__}"
                 raise InvalidInput(
                     "parts", f"expected Particles and forces (Gravity, UniformField, CentralField), got {came}"
                 )
-        if len(particles) != 1:
-            advice = "join their arrays" if particles else "the forces need bodies to act on"
-            raise InvalidInput("parts", f"expected exactly one Particles, got {len(particles)}; {advice}")
-        self._set(particles[0], forces, number("t0", t0))
+        if len(found) != 1:
+            advice = "join their arrays" if found else "the forces need bodies to act on"
+            raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
+        self._set(found[0], tuple(part for part in all_parts if isinstance(part, Force)), number("t0", t0))
 
     def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
         object.__setattr__(self, "particles", particles)
@@ -292,6 +305,10 @@ class Scene(Runnable[Trajectory]):
         array([2., 6., 0.])
         """
         return Scene(Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0)
+
+
+def _flat(part: object) -> Iterable[object]:
+    return part if isinstance(part, list | tuple) else (part,)
 
 
 def _rebuild(particles: Particles, forces: tuple[Force, ...], t0: float) -> Scene:

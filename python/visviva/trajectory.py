@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from enum import IntEnum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,6 +10,7 @@ from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.recorded import Recorded
+from visviva.status import Status
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -22,16 +22,6 @@ if TYPE_CHECKING:
 __all__ = ["Status", "Trajectory"]
 
 _DERIVED = ("energy", "momentum", "angular_momentum", "center_of_mass")
-
-
-class Status(IntEnum):
-    """How a trajectory ended."""
-
-    OK = 0
-    CLOSE_ENCOUNTER = 1
-    STEP_FAILURE = 2
-    INTERRUPTED = 3
-    TOO_MANY_STEPS = 4
 
 
 @known_keywords
@@ -56,6 +46,8 @@ class Trajectory(Recorded):
     final : Scene
         The scene at the last state that was reached, ready to run on.
 
+    Every array is read-only; ``out.position.copy()`` is yours.
+
     Examples
     --------
     >>> import visviva as vv
@@ -66,9 +58,11 @@ class Trajectory(Recorded):
 
     __slots__ = ("scene",)
 
+    scene: Scene
+
     def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
         super().__init__(result)
-        self.scene = scene
+        object.__setattr__(self, "scene", scene)
 
     def __repr__(self) -> str:
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"

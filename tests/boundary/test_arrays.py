@@ -120,9 +120,11 @@ REFUSED = {
     "timedelta": (np.zeros((4, 3), "m8[s]"), "dtype timedelta64"),
     "record": (np.zeros(4, "f8,f8,f8"), "one plain array per argument"),
     "ragged": ([[1.0, 2.0, 3.0], [1.0]], "a list that is none"),
-    "huge integers": ([[2**70, 0, 0]], "dtype object"),
-    "inexact integers": ([[2**53 + 1, 0, 0]], "2\\*\\*53"),
-    "inexact negative integers": ([[-(2**53) - 1, 0, 0]], "2\\*\\*53"),
+    "integers beyond float64": ([[10**400, 0, 0]], "range of float64, got a larger integer"),
+    "inexact integers": (np.array([[2**53 + 1, 0, 0]]), "2\\*\\*53"),
+    "inexact negative integers": (np.array([[-(2**53) - 1, 0, 0]]), "2\\*\\*53"),
+    "a huge integer among fractions": ([[2**70, Fraction(1, 3), 0]], "dtype object"),
+    "a huge integer among masks": ([[2**70, True, 0]], "dtype object"),
     "masked": (np.ma.masked_greater(PLAIN, 0.0), "masked"),
     "quantity": (Quantity(PLAIN.tolist()), "with a unit"),
     "dictionary": ({"x": 1.0}, "a dict .dtype object"),
@@ -148,6 +150,15 @@ def test_everything_else_is_refused_by_name(case: str) -> None:
     assert str(caught.value).startswith("position: expected ")
 
 
+def test_integers_of_python_have_no_largest() -> None:
+    """The masses of the Sun and the Earth in kilograms are numbers; they are rounded as float() rounds them."""
+    for value in ([2 * 10**30, 6 * 10**24], (2**53 + 1, -(2**53) - 1), [2**63, 0.5], np.array([10**30]), [2**64 - 1]):
+        expected = [float(each) for each in value]
+        assert float_array("mass", value, ("N",)).tolist() == expected
+    assert float_array("mass", [[10**30], [1]], ("B", "N")).tolist() == [[1e30], [1.0]]
+    assert number("mass", 2**70 + 1) == 2.0**70
+
+
 def test_named_lengths_must_agree() -> None:
     sizes: Sizes = {}
     float_array("mass", [1.0, 2.0], ("N",), sizes)
@@ -162,6 +173,11 @@ def test_named_lengths_must_agree() -> None:
     float_array("mass", [], ("N",), empty)
     with pytest.raises(InvalidInput, match="N = 0 as in mass"):
         float_array("position", [[0.0] * 3], ("N", 3), empty)
+
+
+def test_one_axis_of_any_length() -> None:
+    with pytest.raises(InvalidInput, match=r"^t: expected an array with one axis, got shape \(1, 1\)$"):
+        float_array("t", [[1.0]], (None,))
 
 
 def test_a_plain_array_is_not_copied() -> None:

@@ -5,6 +5,7 @@ keywords in `test_keywords.py`.
 """
 
 import re
+from dataclasses import FrozenInstanceError
 
 import numpy as np
 import pytest
@@ -40,7 +41,7 @@ P(np.array([1, None]), apart)                       | mass        | object
 scene.ensemble()                                    | position    | leading axis
 scene.ensemble(position=np.zeros((2, 3)))           | position    | got \(2, 3\)
 scene.ensemble(mass=[[1, 1], [1, -1]])              | mass        | mass\[1, 1\] is -1.0
-scene.ensemble(mass=[1, 1])                         | mass        | expected shape \(any, 2\), got \(2,\)
+scene.ensemble(mass=[1, 1])                         | mass        | expected shape \(B, 2\), got \(2,\)
 scene.ensemble(position=np.zeros((3, 2, 3)), velocity=np.zeros((2, 2, 3))) | velocity | expected 3 copies like position, got 2
 scene.ensemble(position=np.zeros((0, 2, 3)))        | position    | at least one copy
 scene.ensemble(position=np.zeros((3, 2, 3))).run(1) | position    | position\[0, 0\] = position\[0, 1\]
@@ -80,7 +81,7 @@ copies.run(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fi
 copies.plan(1, method="rk4", dt=0.1, atol=1e-9)     | atol        | rk4 has a fixed step
 copies.run(1, method="rk4", dt=-0.1)                | dt          | from t0 = 0.0 to 1.0, got -0.1
 scene.run([1.0, 0.0])                               | t           | lead away from t0 = 0.0 in order, got t\[1\] = 0.0 after 1.0
-scene.run(1, rtol=-1)                               | rtol        | 2.3e-14 .* to 1, got -1.0;
+scene.run(1, rtol=-1)                               | rtol        | 2.3e-14 .* to 1, got -1.0$
 scene.run(1, method="rk4", dt=np.nan)               | dt          | dt is nan
 scene.run(1, method="dop853", dt=0.1)               | dt          | leave dt out
 scene.run(1, rtol=1e-15)                            | rtol        | 2.3e-14 .* got 1e-15
@@ -95,6 +96,35 @@ scene.run(1, record="postion")                      | record      | got 'postion
 scene.run(1, record=None)                           | record      | a name or several names, got None
 scene.run(1, record=["position", 4])                | record      | expected a name, got int
 scene.run(1, progress=3)                            | progress    | callable
+scene.run(1, progress=dict)                         | progress    | got the class dict; True shows a tqdm bar
+scene.run(1, dense_output=True)                     | dense_output | give as t the times you want
+scene.run(1, t_eval=[1])                            | t_eval      | ; the output times are t$
+scene.plan(1, t_eval=[1])                           | t_eval      | ; the output times are t$
+scene.run([[1.0]])                                  | t           | expected an array with one axis, got shape \(1, 1\)
+P([1e308, 1e308], apart)                            | mass        | total is within the range of float64, but the largest is 1e\+308
+vv.Scene(P([1e300, 1e300], apart), vv.Gravity(1e10)).run(1) | G   | G = 10000000000.0 and a mass of 1e\+300
+setattr(vv.Gravity(1.0), "soft", 5)                 | soft        | a Gravity is frozen; .* did you mean 'softening'\?
+setattr(vv.Gravity(1.0), "softening", 5)            | softening   | dataclasses.replace\(gravity, softening=…\)
+setattr(scene, "t0", 5)                             | t0          | a Scene is frozen; .*dataclasses.replace\(scene, t0=…\)
+setattr(vv.potentials.Yukawa(1, 1), "k", 2)         | k           | a Yukawa is frozen
+setattr(copies, "mass", 1)                          | mass        | an EnsembleScene is frozen
+setattr(copies.run(1), "t", 1)                      | t           | an EnsembleTrajectory is frozen
+setattr(scene.run(1), "t", 1)                       | t           | a Trajectory is frozen
+delattr(scene, "t0")                                | t0          | a Scene is frozen
+type("Drag", (vv.forces.Force,), {})                | Force       | got Drag: the core knows its own only
+type("Well", (vv.potentials.Potential,), {})        | Potential   | got Well: the core knows its own only; .*CentralField
+type("Mine", (vv.potentials.Yukawa,), {})           | Yukawa      | got Mine
+vv.Scene(particles=P([1], [[0, 0, 0]]), forces=[3]) | parts       | got a int
+copies["first"]                                     | index       | expected a whole number or a slice, got 'first'
+copies.run(1)[1.0]                                  | index       | expected a whole number or a slice, got 1.0
+copies[2:2]                                         | position    | at least one copy
+scene.run(1).save(None)                             | path        | expected the path of a file, got NoneType
+vv.load(None)                                       | path        | expected the path of a file, got NoneType
+vv.orbits.state(1, semi_major_axis=1, eccentricity=0) | semi_major_axis | give pericenter = a\|1 − e\|
+vv.orbits.state(1, pericenter=1, eccentricity=0, inclination=45) | inclination | from 0 to π, got 45.0
+vv.orbits.state(1, pericenter=1, eccentricity=0, inclination=-0.1) | inclination | from 0 to π, got -0.1
+vv.orbits.state(1, pericenter=1, eccentricity=0, mean_anomaly=1, true_anomaly=1) | mean_anomaly | one anomaly, got true_anomaly and mean_anomaly
+vv.orbits.state(1, pericenter=1, eccentricity=2, eccentric_anomaly=1e3) | eccentric_anomaly | range of float64
 scene.run(1, record="energy").position              | record      | 'position' in record
 scene.run(1).conservation(about="com")              | about       | 'center_of_mass', got 'com'
 scene.particles.rescaled(length=0)                  | length      | positive number of new units
@@ -153,8 +183,37 @@ def test_a_folder_that_is_not_there_is_named(tmp_path: object) -> None:
         vv.problems.kepler().scene.run(1.0).save(f"{tmp_path}/nowhere/run.npz")
 
 
-def test_a_public_name_with_other_capitals_is_suggested() -> None:
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("gravity", "did you mean 'Gravity'?"),
+        ("Partcles", "did you mean 'Particles'?"),
+        ("Yukawa", "it is visviva.potentials.Yukawa"),
+        ("_hidden", "has no attribute '_hidden'"),
+    ],
+)
+def test_a_name_that_is_not_there_is_told_from_the_nearest(name: str, message: str) -> None:
     with pytest.raises(AttributeError) as caught:
-        vv.gravity  # type: ignore[attr-defined]  # noqa: B018
-    assert caught.value.name == "gravity"
-    assert caught.value.obj is vv
+        getattr(vv, name)
+    assert str(caught.value).endswith(message)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [("conservation", r"out\[i\]\.conservation"), ("plot", r"out\[i\]\.plot"), ("y", "position and velocity")],
+)
+def test_what_an_ensemble_lacks_its_copies_have(name: str, message: str) -> None:
+    copies: vv.EnsembleScene = NAMES["copies"]  # type: ignore[assignment]
+    with pytest.raises(AttributeError, match=message):
+        getattr(copies.run(1.0), name)
+    with pytest.raises(AttributeError, match=r"ensemble\[i\]\.ensemble"):
+        copies.ensemble  # type: ignore[attr-defined]  # noqa: B018
+    with pytest.raises(AttributeError, match=r"status == vv\.Status\.OK"):
+        copies[0].run(1.0).success  # type: ignore[attr-defined]  # noqa: B018
+    assert not hasattr(copies, "_repr_html_")
+
+
+def test_a_frozen_attribute_is_the_error_that_programs_catch() -> None:
+    for kind in (AttributeError, FrozenInstanceError, ValueError, vv.FrozenAttribute):
+        with pytest.raises(kind):
+            NAMES["scene"].t0 = 5.0  # type: ignore[attr-defined]

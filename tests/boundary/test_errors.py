@@ -11,6 +11,7 @@ EXAMPLES = [
     (errors.Error("something"), Exception, {}),
     (errors.InvalidInput("dt", "expected a positive number"), ValueError, {"argument": "dt"}),
     (errors.UnknownKeyword("dtt", "expected a keyword of run"), TypeError, {"argument": "dtt"}),
+    (errors.FrozenAttribute("t0", "a Scene is frozen"), AttributeError, {"argument": "t0"}),
     (errors.ConvergenceError("gave up", 2.5), RuntimeError, {"message": "gave up", "time": 2.5, "trajectory": None}),
     (
         errors.CloseEncounter(1.5, (3, 4), 1e-9),
@@ -28,7 +29,9 @@ def test_every_class_has_an_example() -> None:
 
 @pytest.mark.parametrize(("error", "base", "fields"), EXAMPLES, ids=lambda value: type(value).__name__)
 def test_bases_fields_and_message(error: errors.Error, base: type, fields: dict[str, object]) -> None:
-    assert isinstance(error, errors.Error)
+    # Ctrl-C is no error: `except Exception` must not swallow it.
+    ctrl_c = isinstance(error, errors.Interrupted)
+    assert isinstance(error, errors.Error) is isinstance(error, Exception) is not ctrl_c
     assert isinstance(error, base)
     assert {name: getattr(error, name) for name in fields} == fields
     assert str(error)

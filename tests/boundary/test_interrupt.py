@@ -43,20 +43,41 @@ def test_ctrl_c_stops_a_run(threads: int) -> None:
     for _ in range(3):  # another user of the machine may delay one attempt
         elapsed, line = interrupted_child(
             """
-            from visviva import _core, errors
+            from visviva import _core
             print("ready", flush=True)
             try:
                 _core._busy(30.0, threads)
             except KeyboardInterrupt as error:
-                print(type(error).__name__, isinstance(error, errors.Error), error.trajectory, flush=True)
+                print(type(error).__name__, isinstance(error, Exception), error.trajectory, flush=True)
             """,
             threads,
         )
-        assert line == "Interrupted True None\n"
+        assert line == "Interrupted False None\n"
         best = min(best, elapsed)
         if best < PROMISE:
             break
     assert best < PROMISE
+
+
+@needs_signals
+def test_a_loop_that_forgives_every_exception_still_stops() -> None:
+    _, line = interrupted_child(
+        """
+        import visviva as vv
+        scene = vv.problems.figure_eight().scene
+        print("ready", flush=True)
+        try:
+            while True:
+                try:
+                    scene.run(1e9, method="leapfrog", dt=1e-3, threads=threads)
+                except (Exception, vv.Error):
+                    pass
+        except KeyboardInterrupt as error:
+            print(type(error).__mro__[1].__name__, error.trajectory.status.name, flush=True)
+        """,
+        1,
+    )
+    assert line == "KeyboardInterrupt INTERRUPTED\n"
 
 
 @needs_signals

@@ -30,6 +30,32 @@ def test_shapes_and_members() -> None:
         out[5]
 
 
+@pytest.mark.parametrize("chosen", [slice(0, 1), slice(1, 4), slice(None, None, -2), slice(-2, None)])
+def test_a_slice_is_a_smaller_ensemble(chosen: slice) -> None:
+    copies = SCENE.ensemble(position=STARTS)
+    out = copies.run(t=[0.0, 0.5, 1.0], method="dop853")
+    some = out[chosen]
+    assert isinstance(some, vv.EnsembleTrajectory)
+    assert isinstance(copies[chosen], vv.EnsembleScene)
+    indices = range(5)[chosen]
+    assert len(some) == len(copies[chosen]) == len(indices)
+    assert some.stats.steps == sum(out[index].stats.steps for index in indices)
+    for member, start, index in zip(some, copies[chosen], indices, strict=True):
+        assert start == copies[index]
+        assert member.scene == out[index].scene
+        assert member.final == out[index].final
+        assert np.array_equal(member.position, out[index].position)
+    # What is run again has the bits it had among more.
+    assert np.array_equal(copies[chosen].run(t=[0.0, 0.5, 1.0], method="dop853").position, some.position)
+
+
+def test_an_ensemble_keeps_its_own_copy() -> None:
+    starts = STARTS.copy()
+    copies = SCENE.ensemble(position=starts)
+    starts += 1.0
+    assert np.array_equal(copies.position, STARTS)
+
+
 def test_masses_may_differ() -> None:
     masses = np.array([[1.0, 1.0, 1.0], [2.0, 1.0, 0.0]])
     out = SCENE.ensemble(mass=masses).run(t=0.5)

@@ -10,3 +10,7 @@ __all__ = [
     "geiger_marsden_1913",
     "outer_solar_system",
 ]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

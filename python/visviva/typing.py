@@ -1,0 +1,19 @@
+"""Types to annotate with: the names that `run` takes, and what it reports to.
+
+`MethodName` and `ColumnName` are written by ``tools/write_names.py`` from what the core has; a test compares.
+"""
+
+from typing import Literal, TypeAlias
+
+from visviva._progress import Progress, Report
+
+__all__ = ["ColumnName", "MethodName", "Progress", "Report"]
+
+# written by tools/write_names.py: begin
+MethodName: TypeAlias = Literal["auto", "dop853", "kahan_li8", "leapfrog", "rk4", "stormer13", "yoshida4"]
+ColumnName: TypeAlias = Literal["angular_momentum", "center_of_mass", "energy", "momentum", "position", "velocity"]
+# written by tools/write_names.py: end
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -1,0 +1,98 @@
+"""Names: public ones only in `dir`, and those that a type checker may know."""
+
+import ast
+import importlib
+import subprocess
+import sys
+from pathlib import Path
+from typing import get_args
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+ROOT = Path(__file__).parent.parent.parent
+
+
+def test_names_are_all_there() -> None:
+    for name in vv.__all__:
+        assert getattr(vv, name) is not None
+    assert set(dir(vv)) == {*vv.__all__, "__version__"}
+
+
+@pytest.mark.parametrize("room", vv._ROOMS)
+def test_a_room_shows_its_public_names(room: str) -> None:
+    module = importlib.import_module(f"visviva.{room}")
+    assert sorted(dir(module)) == sorted(module.__all__)
+
+
+def test_type_checkers_see_every_public_name() -> None:
+    """The imports under TYPE_CHECKING are the names of `__all__`, so that a typo is an error and not an Any."""
+    tree = ast.parse((ROOT / "python" / "visviva" / "__init__.py").read_text(encoding="utf-8"))
+    seen: set[str] = set()
+    for node in tree.body:
+        if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
+            for line in node.body:
+                assert isinstance(line, ast.ImportFrom)
+                seen |= {alias.asname or alias.name for alias in line.names}
+    assert seen == set(vv.__all__)
+    assert {*vv._HOME, *vv._ROOMS} == set(vv.__all__)
+
+
+def test_the_literals_are_the_names_of_the_core() -> None:
+    assert get_args(vv.typing.MethodName) == ("auto", *sorted(method.name for method in vv.methods()))
+    scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]]))
+    columns = get_args(vv.typing.ColumnName)
+    assert set(scene.run(1.0, record=columns).recorded) == set(columns)
+    done = subprocess.run([sys.executable, ROOT / "tools" / "write_names.py", "--check"], check=False)
+    assert done.returncode == 0
+
+
+def test_a_method_may_be_given_as_what_methods_returns() -> None:
+    scene = vv.problems.figure_eight().scene
+    for method in vv.methods():
+        how = {} if method.adaptive else {"dt": 0.01}
+        given, named = scene.run(0.1, method=method, **how), scene.run(0.1, method=method.name, **how)
+        assert given.stats.method == method.name
+        assert np.array_equal(given.position, named.position)
+        assert scene.plan(0.1, method=method, **how).method == method.name
+
+
+USER = """
+import numpy as np
+import visviva as vv
+
+scene = vv.problems.kepler(e=0.5).scene
+out: vv.Trajectory = scene.run(1.0, method="rk4", dt=0.1, record="energy")
+stats: vv.Stats = out.stats
+drift: vv.Drift = out.conservation().energy
+copies: vv.EnsembleTrajectory = scene.ensemble(mass=np.ones((2, 2))).run([1.0, 2.0], threads=1)
+some: vv.EnsembleTrajectory = copies[0:1]
+one: vv.Trajectory = copies[0]
+plan: vv.Plan = scene.plan(1.0, method=vv.methods()[0])
+scene.run(1.0, method="rk5")  # wrong
+scene.run(1.0, metod="rk4")  # wrong
+scene.run(1.0, record=("energi",))  # wrong
+scene.run(1.0, dt="0.1")  # wrong
+scene.plan(1.0, threads=2)  # wrong
+scene.run()  # wrong
+vv.Drag(0.1)  # wrong
+vv.orbits.stat  # wrong
+copies.plot()  # wrong
+"""
+
+
+def test_a_type_checker_finds_the_typos_of_a_user(tmp_path: Path) -> None:
+    api = pytest.importorskip("mypy.api")
+    (tmp_path / "user.py").write_text(USER)
+    settings = tmp_path / "mypy.ini"
+    settings.write_text(
+        f"[mypy]\nstrict = True\nmypy_path = {ROOT / 'python'}\ncache_dir = {tmp_path}\n"
+        "[mypy-tqdm.*,matplotlib.*]\nignore_missing_imports = True\n"
+    )
+    found, errors, _ = api.run(["--config-file", str(settings), str(tmp_path / "user.py")])
+    assert errors == ""
+    lines = {int(line.split(":")[1]) for line in found.splitlines() if ": error: " in line}
+    wrong = {number for number, line in enumerate(USER.splitlines(), 1) if line.endswith("# wrong")}
+    assert lines == wrong, found

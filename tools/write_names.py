@@ -1,0 +1,53 @@
+"""Write the names that ``visviva.typing`` spells out, from what the core has registered.
+
+python tools/write_names.py            # after a method or a column was added, with the package built
+python tools/write_names.py --check    # says by its exit code whether that was done
+"""
+
+import re
+import sys
+from pathlib import Path
+
+import visviva as vv
+
+FILE = Path(__file__).parent.parent / "python" / "visviva" / "typing.py"
+BEGIN, END = (f"# written by tools/write_names.py: {word}\n" for word in ("begin", "end"))
+
+
+def columns() -> list[str]:
+    """The columns that can be recorded, from the words with which the core refuses another."""
+    try:
+        vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]])).plan(1.0, record="?")  # type: ignore[arg-type]
+    except vv.InvalidInput as error:
+        return re.findall(r"\b[a-z_]+\b", error.message.removeprefix("expected one of").partition(", got")[0])
+    raise AssertionError("the core took '?' for a column")
+
+
+def literal(name: str, words: list[str]) -> str:
+    """A type alias as ruff would lay it out."""
+    quoted = [f'"{word}"' for word in words]
+    line = f"{name}: TypeAlias = Literal[{', '.join(quoted)}]\n"
+    if len(line) <= 121:
+        return line
+    inner = f"    {', '.join(quoted)}\n"
+    if len(inner) > 121:
+        inner = "".join(f"    {word},\n" for word in quoted)
+    return f"{name}: TypeAlias = Literal[\n{inner}]\n"
+
+
+def main() -> int:
+    """Write the file, or compare it."""
+    text = FILE.read_text(encoding="utf-8")
+    before, rest = text.split(BEGIN)
+    _, after = rest.split(END)
+    names = literal("MethodName", ["auto", *sorted(method.name for method in vv.methods())])
+    names += literal("ColumnName", sorted(columns()))
+    wanted = before + BEGIN + names + END + after
+    if "--check" in sys.argv:
+        return int(text != wanted)
+    FILE.write_text(wanted, encoding="utf-8")
+    return 0
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
