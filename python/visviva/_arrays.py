@@ -11,6 +11,7 @@ from typing import Any, TypeAlias, TypeVar
 import numpy as np
 from numpy.typing import NDArray
 
+from visviva._text import article
 from visviva.errors import InvalidInput
 
 __all__ = ["Shape", "Sizes", "float_array", "in_range", "mass_array", "number", "positive", "whole_number"]
@@ -238,24 +239,23 @@ def whole_number(name: str, value: object, low: int = -(2**63), high: int = 2**6
 
 def _real(name: str, value: object) -> NDArray[np.floating | np.integer]:
     """Give an array of a type that float64 holds exactly."""
+    came = article(type(value).__name__)
     if hasattr(value, "units") or hasattr(value, "unit"):
         raise InvalidInput(
             name,
-            f"expected plain numbers, got {_article(value)} with a unit; pass its value in the scene's units",
+            f"expected plain numbers, got {came} with a unit; pass its value in the scene's units",
         )
     if isinstance(value, np.ndarray) and hasattr(value, "mask"):  # not np.ma, which would be imported for this
         raise InvalidInput(name, "expected plain numbers, got a masked array; pass x.compressed() or x.filled(…)")
     try:
         array = np.asarray(value)
     except (ValueError, TypeError, OverflowError) as error:
-        raise InvalidInput(
-            name, f"expected an array of real numbers, got {_article(value)} that is none: {error}"
-        ) from None
+        raise InvalidInput(name, f"expected an array of real numbers, got {came} that is none: {error}") from None
     if not isinstance(value, np.ndarray | np.generic) or array.dtype.kind == "O":
         array = _rounded(name, array)
     kind, dtype = array.dtype.kind, array.dtype
     if kind in _ADVICE:
-        what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{_article(value)} (dtype {dtype.name})"
+        what = f"dtype {dtype.name}" if isinstance(value, np.ndarray) else f"{came} (dtype {dtype.name})"
         raise InvalidInput(name, f"expected real numbers, got {what}; {_ADVICE[kind]}")
     if kind == "f" and dtype.itemsize > 8:
         raise InvalidInput(name, f"expected at most float64, got {dtype.name}; round it with x.astype(np.float64)")
@@ -283,11 +283,6 @@ def _rounded(name: str, array: NDArray[Any]) -> NDArray[Any]:
         return array.astype(np.float64)
     except OverflowError:
         raise InvalidInput(name, "expected numbers within the range of float64, got a larger integer") from None
-
-
-def _article(value: object) -> str:
-    kind = type(value).__name__
-    return f"an {kind}" if kind[0] in "aeiou" else f"a {kind}"
 
 
 def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -> None:

@@ -12,6 +12,7 @@ from types import FunctionType
 from typing import TYPE_CHECKING, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
+from visviva._text import article
 from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword
 
 if TYPE_CHECKING:
@@ -98,7 +99,7 @@ def frozen(target: type[_T]) -> type[_T]:
             advice = f"make a changed one with dataclasses.replace({word.lower()}, {name}=…)"
         else:
             advice = "make a new one instead" + did_you_mean(name, known)
-        raise FrozenAttribute(name, f"{_article(word)} {word} is frozen; {advice}")
+        raise FrozenAttribute(name, f"{article(word)} is frozen; {advice}")
 
     target.__setattr__ = refused  # type: ignore[method-assign]
     target.__delattr__ = refused  # type: ignore[method-assign]
@@ -120,10 +121,6 @@ def refuse_subclass(made: type, advice: str) -> None:
         raise InvalidInput(
             base, f"expected no class derived from it, got {made.__name__}: the core knows its own only; {advice}"
         )
-
-
-def _article(word: str) -> str:
-    return "an" if word[0] in "AEIOU" else "a"
 
 
 def did_you_mean(word: str, names: Iterable[str]) -> str:

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["count", "table"]
+__all__ = ["article", "count", "table"]
 
 
 def count(number: int, one: str, many: str | None = None) -> str:
@@ -23,6 +23,18 @@ def count(number: int, one: str, many: str | None = None) -> str:
     ('1 body', '3 times')
     """
     return f"{number} {one if number == 1 else many or one + 's'}"
+
+
+def article(noun: str) -> str:
+    """A noun and its article.
+
+    Examples
+    --------
+    >>> from visviva._text import article
+    >>> article("list"), article("int"), article("EnsembleScene")
+    ('a list', 'an int', 'an EnsembleScene')
+    """
+    return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"  # a UniformField
 
 
 def table(record: DataclassInstance) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -55,13 +56,20 @@ def _parser() -> argparse.ArgumentParser:
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     demo = commands.add_parser("demo", help="the outer Solar System, and Rutherford's experiment")
     demo.add_argument("--output", type=Path, default=Path("demo-output"), help="folder for pictures and the saved run")
-    demo.add_argument("--days", type=float, default=1e6, help="how long to follow the planets (default: 1e6)")
-    demo.add_argument("--events", type=float, default=1e8, help="alpha particles to scatter (default: 1e8)")
+    demo.add_argument("--days", type=_finite, default=1e6, help="how long to follow the planets (default: 1e6)")
+    demo.add_argument("--events", type=_finite, default=1e8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
     commands.add_parser("info", help="version, SIMD tier, threads, build profile").set_defaults(command=_info)
     return parser
+
+
+def _finite(text: str) -> float:
+    value = float(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number, got {text}")
+    return value
 
 
 def _demo(options: argparse.Namespace) -> None:

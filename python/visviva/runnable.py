@@ -79,7 +79,7 @@ class Runnable(ABC, Generic[_Result]):
             Of a scene: the step control gave up, or `max_steps` was reached; ``.trajectory`` likewise. A copy of
             an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
         visviva.Interrupted
-            Ctrl-C; ``.trajectory`` likewise.
+            Ctrl-C; ``.trajectory`` likewise. It is a `KeyboardInterrupt`, which ``except Exception`` lets pass.
 
         Examples
         --------

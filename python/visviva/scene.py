@@ -15,6 +15,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, in_range, number
 from visviva._keywords import known_keywords
+from visviva._text import article
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
@@ -78,7 +79,7 @@ class Scene(Runnable[Trajectory]):
         found = [part for part in all_parts if isinstance(part, Particles)]
         for part in all_parts:
             if not isinstance(part, Particles | Force):
-                came = f"the class {part.__name__}" if isinstance(part, type) else f"a {type(part).__name__}"
+                came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
                 raise InvalidInput(
                     "parts", f"expected Particles and forces (Gravity, UniformField, CentralField), got {came}"
                 )

@@ -35,6 +35,13 @@ def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFi
     assert isinstance(vv.load(tmp_path / "outer_solar_system.npz"), vv.Trajectory)
 
 
+@pytest.mark.parametrize("given", [["--events", "inf"], ["--days", "nan"], ["--days", "soon"]])
+def test_a_number_that_is_none_is_refused(given: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["demo", *given])
+    assert f"argument {given[0]}: " in capsys.readouterr().err
+
+
 def test_demo_with_too_few_events_says_so(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["demo", "--output", str(tmp_path), "--days", "2000", "--events", "10"]) == 0
     shown = capsys.readouterr().out
