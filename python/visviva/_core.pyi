@@ -41,6 +41,14 @@ def conserved(
     about: NDArray[np.float64],
     columns: list[str],
 ) -> dict[str, NDArray[np.float64]]: ...
+def conserves(
+    *,
+    mass: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    about: NDArray[np.float64],
+) -> dict[str, bool]: ...
 def acceleration(
     *,
     mass: NDArray[np.float64],
@@ -50,8 +58,10 @@ def acceleration(
 ) -> NDArray[np.float64]: ...
 def methods() -> list[dict[str, Any]]: ...
 def potentials() -> list[dict[str, Any]]: ...
+def forces() -> list[dict[str, Any]]: ...
+def dimensions(description: dict[str, Any]) -> list[tuple[float, float, float]]: ...
 def potential(
-    name: str, parameters: list[float], r: NDArray[np.float64]
+    description: dict[str, Any], r: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def monte_carlo(
     *,

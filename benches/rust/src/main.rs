@@ -3,12 +3,14 @@
 //! Minima over repeats, since the machine is noisy. Under `valgrind --tool=callgrind` with one repeat
 //! (`VISVIVA_BENCH_REPEATS=1`) the same program counts instructions.
 
+use std::sync::Arc;
 use std::time::Instant;
+use visviva_core::forces::gravity::newton::Gravity;
 use visviva_core::parallel::{Control, Ticker};
+use visviva_core::scene::Scene;
 use visviva_core::scene::request::Request;
 use visviva_core::scene::room::give_back;
 use visviva_core::scene::run::run;
-use visviva_core::scene::{ForceSpec, Scene};
 
 fn repeats() -> usize {
     std::env::var("VISVIVA_BENCH_REPEATS").ok().and_then(|text| text.parse().ok()).unwrap_or(7)
@@ -38,7 +40,7 @@ fn cluster(particles: usize, solar: bool) -> Scene {
         mass,
         position,
         velocity,
-        forces: vec![ForceSpec::Gravity { constant: 1.0, softening: if solar { 0.0 } else { 0.01 } }],
+        forces: vec![Arc::new(Gravity::new(1.0, if solar { 0.0 } else { 0.01 }))],
         t0: 0.0,
     }
 }
@@ -60,7 +62,7 @@ fn figure_eights(copies: usize) -> Scene {
         mass: vec![1.0; 3 * copies],
         position,
         velocity: [v, v, scaled(v, -2.0)].repeat(copies),
-        forces: vec![ForceSpec::Gravity { constant: 1.0, softening: 0.0 }],
+        forces: vec![Arc::new(Gravity::new(1.0, 0.0))],
         t0: 0.0,
     }
 }

@@ -15,6 +15,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use visviva_core::Error;
 use visviva_core::conservation::{self, Body};
+use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
@@ -97,6 +98,35 @@ pub(crate) fn conserved<'py>(
         let shape = [times, 3];
         dict.set_item(name, moved(py, values, if scalar { &shape[..1] } else { &shape[..] })?)?;
     }
+    Ok(dict)
+}
+
+/// What the forces on bodies leave constant.
+#[pyfunction]
+#[pyo3(signature = (*, mass, forces, position, velocity, about))]
+pub(crate) fn conserves<'py>(
+    py: Python<'py>,
+    mass: Array<'py>,
+    forces: Bound<'py, PyList>,
+    position: Array<'py>,
+    velocity: Array<'py>,
+    about: Array<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let scene = snapshot(&mass, &position, &velocity, &forces)?;
+    let about = points(&copied("about", &about, [Some(3)])?.0)[0];
+    let conserves = conserved_by(&scene.forces, &scene.bodies());
+    let dict = PyDict::new(py);
+    dict.set_item("momentum", conserves.momentum)?;
+    dict.set_item(
+        "angular_momentum",
+        match conserves.angular_momentum {
+            About::Nowhere => false,
+            About::Point(point) => point == about,
+            About::Everywhere => true,
+        },
+    )?;
+    dict.set_item("spin", conserves.spin)?;
+    dict.set_item("energy", conserves.energy)?;
     Ok(dict)
 }
 

@@ -3,10 +3,19 @@
 //! The one idea: a force evaluation is one indirect call per force ([`Force::apply`]); everything hot is
 //! inside it. A state is two blocks of coordinates laid out by [`Shape`]; lanes are particles (packed) or
 //! trajectories (batch), which only the pair kernels and the reductions need to know.
+//!
+//! A force is described by a [`ForceTerm`], which makes its kernel; to add one, write a file with both and add its
+//! line to [`registry::FORCES`](crate::registry::FORCES).
 
+pub mod body;
 pub mod central_field;
+pub mod context;
 pub mod gravity;
+pub mod term;
 pub mod uniform_field;
+
+pub use body::Body;
+pub use term::{ForceDeclaration, ForceTerm};
 
 use crate::error::Result;
 use crate::numerics::element::{Element, Nodes, Shape};
@@ -17,8 +26,17 @@ use crate::parallel::Ticker;
 pub struct Phase<'a, S> {
     /// Coordinates.
     pub q: &'a [S],
-    /// Velocities, for a force that [needs](Force::needs_velocity) them; for another they may be of any time.
+    /// Velocities, for a force that [needs](Force::needs) them; for another they may be of any time.
     pub v: &'a [S],
+}
+
+/// What a force looks at beside positions.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// Time.
+    pub time: bool,
+    /// Velocities.
+    pub velocity: bool,
 }
 
 /// Systems of bodies on which nothing acts but their own pulls.
@@ -44,9 +62,9 @@ pub trait Force<S: Element>: Send {
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
 
-    /// Whether it looks at velocities. If no force does, none may be there in the middle of a step.
-    fn needs_velocity(&self) -> bool {
-        false
+    /// What it looks at. If no force looks at velocities, none may be there in the middle of a step.
+    fn needs(&self) -> Needs {
+        Needs::default()
     }
 
     /// The closed systems that the state consists of, if the force is what their bodies pull each other with and it
@@ -81,7 +99,7 @@ pub struct Dynamics<S: Element> {
 impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
     pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
-        let needs_velocity = forces.iter().any(|force| force.needs_velocity());
+        let needs_velocity = forces.iter().any(|force| force.needs().velocity);
         Self { shape, forces, evaluations: 0, needs_velocity }
     }
 

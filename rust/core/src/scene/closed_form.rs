@@ -78,7 +78,8 @@ fn orbit(mu: f64, from: ([f64; 3], [f64; 3]), to: ([f64; 3], [f64; 3])) -> Resul
 fn motion(scene: &Scene, plan: &Plan, copy: usize) -> Result<Motion> {
     let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
     let state = |i: usize| (position[i], velocity[i]);
-    let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
+    let gravity = plan.forces.iter().find_map(|force| force.as_newtonian());
+    let constant = gravity.map_or(0.0, |(constant, _)| constant);
     let all = 0..scene.particles;
     let paths: Result<Vec<Path>> = match &plan.solution {
         Solution::TwoBody => {

@@ -2,7 +2,7 @@
 
 use super::support::{Problem, advance, distance};
 use super::{Make, PROBLEMS, reference};
-use visviva_core::forces::{Dynamics, Force, Phase};
+use visviva_core::forces::{Dynamics, Force, Needs, Phase};
 use visviva_core::integrators::fixed::{FixedStep, Place, run};
 use visviva_core::integrators::state::State;
 use visviva_core::integrators::{Method, Scheme};
@@ -119,8 +119,8 @@ impl Force<DoubleDouble> for Resisted {
         a[0] = -(q[0] * q[0] * q[0]) - (v[0] * v[0] * v[0]).scale(0.25);
         Ok(())
     }
-    fn needs_velocity(&self) -> bool {
-        true
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
     }
 }
 

@@ -12,7 +12,9 @@
 //! A massless body exerts nothing, so pairs of them are never formed.
 
 mod closed;
+pub mod energy;
 pub mod few;
+pub mod newton;
 mod pair;
 mod passive;
 pub mod ring;
