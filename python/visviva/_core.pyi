@@ -15,11 +15,23 @@ class _Scene(TypedDict):
     forces: list[dict[str, Any]]
     t0: float
 
-# A scene and what is asked of it: `visviva.request` makes the dictionary.
+class _Request(_Scene):
+    """A scene and what is asked of it."""
+
+    times: NDArray[np.float64]
+    end_only: bool
+    method: str
+    dt: float | None
+    rtol: float
+    atol: float | None
+    max_step: float | None
+    max_steps: int | None
+    record: list[str]
+
 def run(
-    asked: dict[str, Any], *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
+    asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
 ) -> dict[str, Any]: ...
-def plan(asked: dict[str, Any]) -> dict[str, Any]: ...
+def plan(asked: _Request) -> dict[str, Any]: ...
 def conserved(
     *,
     mass: NDArray[np.float64],
@@ -30,6 +42,14 @@ def conserved(
     columns: list[str],
 ) -> dict[str, NDArray[np.float64]]: ...
 def columns() -> list[tuple[str, str, int, bool]]: ...
+def conserves(
+    *,
+    mass: NDArray[np.float64],
+    forces: list[dict[str, Any]],
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    about: NDArray[np.float64],
+) -> dict[str, bool]: ...
 def acceleration(
     *,
     mass: NDArray[np.float64],
@@ -39,8 +59,10 @@ def acceleration(
 ) -> NDArray[np.float64]: ...
 def methods() -> list[dict[str, Any]]: ...
 def potentials() -> list[dict[str, Any]]: ...
+def forces() -> list[dict[str, Any]]: ...
+def dimensions(description: dict[str, Any]) -> list[tuple[float, float, float]]: ...
 def potential(
-    name: str, parameters: list[float], r: NDArray[np.float64]
+    description: dict[str, Any], r: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def monte_carlo(
     *,
@@ -65,14 +87,13 @@ def orbit_elements(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]: ...
 def orbit_state(
-    name: str,
     mu: NDArray[np.float64],
-    pericenter: NDArray[np.float64],
+    pericentre: NDArray[np.float64],
     eccentricity: NDArray[np.float64],
     inclination: NDArray[np.float64],
     node: NDArray[np.float64],
-    argument_of_pericenter: NDArray[np.float64],
-    anomaly: NDArray[np.float64],
+    argument_of_pericentre: NDArray[np.float64],
+    true_anomaly: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def orbit_propagate(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64], t: NDArray[np.float64]

@@ -16,7 +16,7 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.invariants import conserved, internal_motion, of_scene, reference_point
+from visviva.invariants import conserved, internal_motion, kept_by_forces, of_scene, reference_point
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -111,7 +111,8 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     speeds = _lengths(velocity - (start.center_of_mass_velocity if point is None else 0.0))
     distances = _lengths(position - origin)
     spread = float(_lengths(position - start.center_of_mass).max())
-    closed = all(force.conserves_momentum for force in scene.forces)
+    kept = kept_by_forces(scene, origin)
+    closed, steady = kept["momentum"], kept["spin" if point is None else "angular_momentum"]
 
     t = trajectory.t
     cancelled = start.kinetic_energy + abs(start.potential_energy)
@@ -122,12 +123,8 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     else:
         angular = trajectory.angular_momentum_about("center_of_mass" if point is None else point)
     uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
-    if point is None:
-        steady = all(force.conserves_spin for force in scene.forces)
-    else:
-        steady = all(force.conserves_angular_momentum(point) for force in scene.forces)
     return Conservation(
-        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, conserved=True),
+        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, conserved=kept["energy"]),
         momentum=_drift(
             "momentum",
             t,

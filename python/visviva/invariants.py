@@ -87,6 +87,14 @@ def conserved(
     )
 
 
+def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
+    """What the forces leave constant: energy, momentum, angular momentum about a point at rest, and spin."""
+    p = scene.particles
+    return _core.conserves(
+        mass=p.mass, forces=scene._keywords["forces"], position=p.position, velocity=p.velocity, about=about
+    )
+
+
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
     """The fixed point asked for; None stands for the centre of mass."""
     if about is None:

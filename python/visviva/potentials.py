@@ -2,16 +2,16 @@
 
 The classes are made from the core's registry, so a potential that is added there (one file, one line)
 appears here with its parameters, its documentation and its tests. `potentials.pyi` spells them out for
-editors and type checkers; a test compares the two.
+editors and type checkers; `tools/write_stubs.py` writes it.
 """
 
 from __future__ import annotations
 
-from dataclasses import make_dataclass
-from typing import TYPE_CHECKING, Any, ClassVar, cast
+from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
-from visviva._arrays import float_array, number, positive
+from visviva._arrays import float_array
+from visviva._declared import Declared, make
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-class Potential:
+class Potential(Declared):
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
@@ -32,21 +32,32 @@ class Potential:
     __slots__ = ()
 
     name: ClassVar[str]
-    _fields: ClassVar[tuple[str, ...]]
-    _positive: ClassVar[tuple[str, ...]]
 
-    def __init_subclass__(cls) -> None:
-        refuse_subclass(cls, "a force along the line to a fixed centre is CentralField(one of visviva.potentials)")
-
-    def __post_init__(self) -> None:
-        for field in self._fields:
-            check = positive if field in self._positive else number
-            object.__setattr__(self, field, check(field, getattr(self, field)))
+    def __init_subclass__(cls, **arguments: Any) -> None:
+        super().__init_subclass__(**arguments)
+        if "_parameters" not in vars(cls):
+            refuse_subclass(cls, "a force along the line to a fixed center is CentralField(one of visviva.potentials)")
 
     @property
-    def parameters(self) -> tuple[float, ...]:
+    def parameters(self) -> tuple[Any, ...]:
         """The parameters, in the order of the constructor."""
-        return tuple(getattr(self, field) for field in self._fields)
+        return tuple(self._values().values())
+
+    def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
+        """The potential in units of which ``length``, ``mass`` and ``time`` make one old unit.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a scale is not positive, or a number would leave the range of float64.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.potentials.Coulomb(k=2.0).rescaled(length=10.0)
+        Coulomb(k=2000.0)
+        """
+        return self._rescaled(length, mass, time)
 
     def value(self, r: ArrayLike) -> NDArray[np.float64]:
         """V(r).
@@ -93,39 +104,13 @@ class Potential:
 
     def _evaluate(self, r: ArrayLike, which: int) -> NDArray[np.float64]:
         distances = float_array("r", r, None)
-        results = _core.potential(self.name, list(self.parameters), distances.ravel())
+        results = _core.potential(self._to_core(), distances.ravel())
         return results[which].reshape(distances.shape)
 
 
-def _make(entry: dict[str, Any]) -> type[Potential]:
-    fields = tuple(parameter["name"] for parameter in entry["parameters"])
-    made = make_dataclass(
-        entry["class_name"],
-        [(field, "float") for field in fields],
-        bases=(Potential,),
-        namespace={
-            "__module__": __name__,
-            "name": entry["name"],
-            "_fields": fields,
-            "_positive": tuple(p["name"] for p in entry["parameters"] if p["positive"]),
-            "__doc__": _document(entry),
-        },
-        frozen=True,
-        slots=True,
-    )
-    return cast("type[Potential]", known_keywords(made))
-
-
-def _document(entry: dict[str, Any]) -> str:
-    lines = [f"{entry['summary']}: V(r) = {entry['formula']}.", "", "Parameters", "----------"]
-    for parameter in entry["parameters"]:
-        positive = ", positive" if parameter["positive"] else ""
-        lines += [f"{parameter['name']} : float{positive}", f"    {parameter['description']}"]
-    lines += ["", "Raises", "------", "visviva.InvalidInput", "    If a parameter is not finite or has the wrong sign."]
-    return "\n".join(lines)
-
-
-_BY_NAME = {entry["name"]: _make(entry) for entry in _core.potentials()}
+_BY_NAME = {
+    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"]}) for entry in _core.potentials()
+}
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
 globals().update(_CLASSES)
 __all__ = ["Potential", "potential_by_name"]
@@ -146,10 +131,23 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
         hint = did_you_mean(str(name), _BY_NAME)
         raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
     made = _BY_NAME[name]
-    if len(parameters) != len(made._fields):
-        expected = f"{len(made._fields)} ({', '.join(made._fields)})"
+    names = [parameter.name for parameter in made._parameters]
+    if len(parameters) != len(names):
+        expected = f"{len(names)} ({', '.join(names)})"
         raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
-    return made(*parameters)
+    found: Potential = made(*parameters)
+    return found
+
+
+def potential_from_core(description: dict[str, Any]) -> Potential:
+    """The potential of a dictionary made by ``_to_core``; used when a file is loaded."""
+    kind = description["kind"]
+    if kind not in _BY_NAME:
+        raise InvalidInput(
+            "path", f"the file holds a potential {kind!r} that this version does not know; use a newer visviva"
+        )
+    found: Potential = _BY_NAME[kind]._from_core(description)
+    return found
 
 
 def __dir__() -> list[str]:

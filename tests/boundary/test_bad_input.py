@@ -134,7 +134,7 @@ scene.rescaled(length=1e-300, mass=1e-300)          | G           | 1.0 becomes 
 vv.problems.kepler().scene.particles.rescaled(length=1e-200, time=1e200) | velocity    | becomes -?0.0
 vv.Gravity(1.0).rescaled(length=0, mass=1, time=1)  | length      | positive number of new units
 scene.rescaled(mass=-1)                             | mass        | positive number of new units per old one, got -1
-center.shifted(velocity=[1, 0, 0])                  | velocity    | fixed centre
+center.shifted(velocity=[1, 0, 0])                  | velocity    | fixed center
 vv.problems.kepler(e="round")                       | e           | expected real numbers
 vv.problems.kepler(e=1.0)                           | e           | 0 ≤ e < 1, got 1.0
 vv.problems.kepler(mass_ratio="one")                | mass_ratio  | expected real numbers

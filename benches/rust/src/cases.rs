@@ -1,12 +1,16 @@
 //! What is run: the one place of the benches that speaks the core's language.
 
+use std::sync::Arc;
+use visviva_core::forces::ForceTerm;
+use visviva_core::forces::gravity::newton::Gravity;
 use visviva_core::parallel::{Control, Ticker};
+use visviva_core::potentials::parameters::Value;
 use visviva_core::registry;
 use visviva_core::scattering::monte_carlo::{Beam, Quantity, monte_carlo};
+use visviva_core::scene::Scene;
 use visviva_core::scene::request::Request;
 use visviva_core::scene::room::give_back;
 use visviva_core::scene::run::run;
-use visviva_core::scene::{ForceSpec, Scene};
 
 /// A scene of the core.
 pub type Bodies = Scene;
@@ -19,8 +23,13 @@ fn noise(state: &mut u64) -> f64 {
     (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
 }
 
-fn gravity(softening: f64) -> Vec<ForceSpec> {
-    vec![ForceSpec::Gravity { constant: 1.0, softening }]
+fn gravity(softening: f64) -> Vec<Arc<dyn ForceTerm>> {
+    vec![Arc::new(Gravity::new(1.0, softening))]
+}
+
+/// A force of the registry.
+fn force(name: &str, values: &[Value]) -> Vec<Arc<dyn ForceTerm>> {
+    registry::force(name).and_then(|declared| (declared.make)(values).ok()).into_iter().collect()
 }
 
 /// `particles` bodies of equal mass in a cube; a heavy one in the middle if `solar`.
@@ -51,17 +60,19 @@ pub fn soft_cluster(particles: usize, massive: usize) -> Bodies {
 
 /// Bodies around the Yukawa potential of a fixed center.
 pub fn around_a_center(particles: usize) -> Bodies {
-    let potential = registry::potential("yukawa").map(|declared| (declared.make)(&[-2.0, 1.5]));
+    let values = [-2.0, 1.5].map(Value::Number);
+    let potential = registry::potential("yukawa").and_then(|declared| (declared.make)(&values).ok());
     let forces = potential
-        .into_iter()
-        .map(|potential| ForceSpec::CentralField { potential, center: [3.0, 0.0, 0.0] })
-        .collect();
+        .map(|potential| {
+            force("central_field", &[Value::Potential(potential), Value::Vector([3.0, 0.0, 0.0])])
+        })
+        .unwrap_or_default();
     Scene { forces, ..cluster(particles, false) }
 }
 
 /// Bodies on which nothing acts, or a uniform field.
 pub fn free(particles: usize, field: bool) -> Bodies {
-    let forces = if field { vec![ForceSpec::UniformField { g: [0.0, 0.3, -9.81] }] } else { Vec::new() };
+    let forces = if field { force("uniform_field", &[Value::Vector([0.0, 0.3, -9.81])]) } else { Vec::new() };
     Scene { forces, ..cluster(particles, false) }
 }
 

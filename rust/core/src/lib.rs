@@ -15,6 +15,7 @@ pub mod potentials;
 pub mod registry;
 pub mod scattering;
 pub mod scene;
+pub mod units;
 pub mod words;
 
 pub use error::{Error, Result};

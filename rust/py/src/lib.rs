@@ -32,11 +32,11 @@ mod _core {
         orbit_period, orbit_propagate, orbit_state,
     };
     #[pymodule_export]
-    use crate::registry::{methods, potential, potentials};
+    use crate::registry::{dimensions, forces, methods, potential, potentials};
     #[pymodule_export]
     use crate::scattering::{monte_carlo, scattering_function, solid_angles};
     #[pymodule_export]
-    use crate::scene::{acceleration, columns, conserved, plan, run};
+    use crate::scene::{acceleration, columns, conserved, conserves, plan, run};
     #[pymodule_export]
     use crate::words::nearest;
 

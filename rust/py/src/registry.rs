@@ -1,4 +1,4 @@
-//! What the registry offers: methods and potentials, as Python's tables and classes are made from them.
+//! What the registry offers: methods, potentials and forces, as Python's tables and classes are made from them.
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
@@ -7,7 +7,10 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
+use visviva_core::Error;
+use visviva_core::forces::ForceTerm;
 use visviva_core::potentials::Potential;
+use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::registry;
 use visviva_core::words::unknown;
 
@@ -33,48 +36,160 @@ pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
 /// What every potential declares about itself.
 #[pyfunction]
 pub(crate) fn potentials(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |declaration: &&'static visviva_core::potentials::Declaration| {
-        let dict = PyDict::new(py);
-        dict.set_item("name", declaration.name)?;
-        dict.set_item("class_name", declaration.class_name)?;
-        dict.set_item("summary", declaration.summary)?;
-        dict.set_item("formula", declaration.formula)?;
-        let parameters = declaration.parameters.iter().map(|parameter| {
-            let dict = PyDict::new(py);
-            dict.set_item("name", parameter.name)?;
-            dict.set_item("description", parameter.description)?;
-            dict.set_item("positive", parameter.positive)?;
-            Ok(dict)
-        });
-        dict.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
-        Ok(dict)
-    };
-    registry::POTENTIALS.iter().map(row).collect()
+    registry::POTENTIALS.iter().map(|declaration| row(py, declaration)).collect()
 }
 
-/// The potential of a registry name.
+/// What every force declares about itself.
+#[pyfunction]
+pub(crate) fn forces(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    registry::FORCES.iter().map(|declaration| row(py, declaration)).collect()
+}
+
+fn row<'py, T: ?Sized>(py: Python<'py>, declaration: &Declaration<T>) -> PyResult<Bound<'py, PyDict>> {
+    let dict = PyDict::new(py);
+    for (key, text) in [
+        ("name", declaration.name),
+        ("class_name", declaration.class_name),
+        ("summary", declaration.summary),
+        ("formula", declaration.formula),
+        ("notes", declaration.notes),
+        ("source", declaration.source),
+        ("example", declaration.example),
+    ] {
+        dict.set_item(key, text)?;
+    }
+    let parameters = declaration.parameters.iter().map(|parameter| {
+        let dict = PyDict::new(py);
+        let (kind, sign) = match parameter.kind {
+            Kind::Number(sign) => ("number", sign),
+            Kind::Numbers(sign) => ("numbers", sign),
+            Kind::Indices => ("indices", Sign::Any),
+            Kind::Vector => ("vector", Sign::Any),
+            Kind::AxialVector => ("axial_vector", Sign::Any),
+            Kind::Point => ("point", Sign::Any),
+            Kind::Potential => ("potential", Sign::Any),
+            Kind::Choice(_) => ("choice", Sign::Any),
+        };
+        let sign = match sign {
+            Sign::Any => "any",
+            Sign::NotNegative => "not_negative",
+            Sign::Positive => "positive",
+        };
+        dict.set_item("name", parameter.name)?;
+        dict.set_item("description", parameter.description)?;
+        dict.set_item("kind", kind)?;
+        dict.set_item("sign", sign)?;
+        dict.set_item("choices", if let Kind::Choice(words) = parameter.kind { words } else { &[] })?;
+        dict.set_item("default", parameter.default)?;
+        dict.set_item(
+            "dimension",
+            match parameter.dimensions {
+                Dimensions::Fixed(dimension) => Some((dimension[0], dimension[1], dimension[2])),
+                Dimensions::Of(_) => None,
+            },
+        )?;
+        Ok(dict)
+    });
+    dict.set_item("parameters", parameters.collect::<PyResult<Vec<_>>>()?)?;
+    Ok(dict)
+}
+
+/// The exponents of length, mass and time of each parameter of a potential or a force.
+#[pyfunction]
+pub(crate) fn dimensions<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+) -> PyResult<Vec<(f64, f64, f64)>> {
+    let kind: String = get(description, "kind")?;
+    let exponents = match (registry::force(&kind), registry::potential(&kind)) {
+        (Some(force), _) => force.exponents(&values(force, description)?),
+        (_, Some(potential)) => potential.exponents(&values(potential, description)?),
+        _ => return Err(raised(py, Error::invalid("kind", format!("unknown: '{kind}'")))),
+    };
+    Ok(exponents.into_iter().map(|[length, mass, time]| (length, mass, time)).collect())
+}
+
+/// The force of a description.
 ///
 /// # Errors
-/// `InvalidInput` for an unknown name or parameters that cannot be.
-pub(crate) fn build(py: Python<'_>, name: &str, parameters: &[f64]) -> PyResult<Arc<dyn Potential>> {
-    let names = registry::POTENTIALS.iter().map(|declaration| declaration.name);
-    registry::potential(name)
-        .ok_or_else(|| unknown("potential", name, names))
-        .and_then(|declaration| declaration.build(parameters))
-        .map_err(|error| raised(py, error))
+/// `InvalidInput` for an unknown kind or parameters that cannot be.
+pub(crate) fn force(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn ForceTerm>> {
+    let kind: String = get(description, "kind")?;
+    let names = registry::FORCES.iter().map(|declaration| declaration.name);
+    let declaration = registry::force(&kind).ok_or_else(|| unknown("forces", &kind, names));
+    built(description, declaration)
 }
 
-type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
+/// The potential of a description.
+///
+/// # Errors
+/// As [`force`].
+fn described_potential(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Potential>> {
+    let kind: String = get(description, "kind")?;
+    let names = registry::POTENTIALS.iter().map(|declaration| declaration.name);
+    let declaration = registry::potential(&kind).ok_or_else(|| unknown("potential", &kind, names));
+    built(description, declaration)
+}
+
+fn built<T: ?Sized>(
+    description: &Bound<'_, PyDict>,
+    declaration: visviva_core::Result<&'static Declaration<T>>,
+) -> PyResult<Arc<T>> {
+    let py = description.py();
+    let declaration = declaration.map_err(|error| raised(py, error))?;
+    declaration.build(&values(declaration, description)?).map_err(|error| raised(py, error))
+}
+
+/// The parameters of a description, by their names.
+fn values<T: ?Sized>(declaration: &Declaration<T>, description: &Bound<'_, PyDict>) -> PyResult<Vec<Value>> {
+    declaration.parameters.iter().map(|parameter| value(parameter, description)).collect()
+}
+
+fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Value> {
+    let (name, py) = (parameter.name, description.py());
+    Ok(match parameter.kind {
+        Kind::Number(_) => Value::Number(get(description, name)?),
+        Kind::Numbers(_) => Value::Numbers(copied(name, &get::<Column<'_>>(description, name)?, [None])?.0),
+        Kind::Indices => {
+            let (indices, _) = copied(name, &get::<PyReadonlyArrayDyn<'_, i64>>(description, name)?, [None])?;
+            let index = |i: &i64| usize::try_from(*i);
+            let indices: Result<Vec<usize>, _> = indices.iter().map(index).collect();
+            let negative = |_| raised(py, Error::invalid(name, "expected indices of bodies, from 0 on"));
+            Value::Indices(indices.map_err(negative)?)
+        }
+        Kind::Vector | Kind::AxialVector | Kind::Point => {
+            let (values, _) = copied(name, &get::<Column<'_>>(description, name)?, [Some(3)])?;
+            Value::Vector([values[0], values[1], values[2]])
+        }
+        Kind::Potential => {
+            Value::Potential(described_potential(&get::<Bound<'_, PyDict>>(description, name)?)?)
+        }
+        Kind::Choice(_) => Value::Word(get(description, name)?),
+    })
+}
+
+/// An entry of a description.
+fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
+    description: &Bound<'py, PyDict>,
+    key: &str,
+) -> PyResult<T> {
+    let value = description.get_item(key)?.ok_or_else(|| {
+        raised(description.py(), Error::invalid("forces", format!("a description lacks '{key}'")))
+    })?;
+    value.extract().map_err(Into::into)
+}
+
+type Column<'py> = PyReadonlyArrayDyn<'py, f64>;
+type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// V(r), −dV/dr and d²V/dr² of a potential at each distance.
 #[pyfunction]
 pub(crate) fn potential<'py>(
     py: Python<'py>,
-    name: &str,
-    parameters: Vec<f64>,
-    r: PyReadonlyArrayDyn<'py, f64>,
-) -> PyResult<(Column<'py>, Column<'py>, Column<'py>)> {
-    let potential = build(py, name, &parameters)?;
+    description: &Bound<'py, PyDict>,
+    r: Column<'py>,
+) -> PyResult<(Values<'py>, Values<'py>, Values<'py>)> {
+    let potential = described_potential(description)?;
     let (r, shape) = copied("r", &r, [None])?;
     let [value, force, curvature] = compute(py, 0, None, |_| Ok(potential.evaluate(&r)))?.whole(py)?;
     Ok((moved(py, value, &shape)?, moved(py, force, &shape)?, moved(py, curvature, &shape)?))

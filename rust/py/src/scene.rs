@@ -14,8 +14,9 @@ use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use visviva_core::Error;
-use visviva_core::conservation::Bodies;
+use visviva_core::conservation::PreciseBodies;
 use visviva_core::conservation::columns::{COLUMNS, State, column};
+use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::plan::Plan;
@@ -77,7 +78,7 @@ pub(crate) fn conserved<'py>(
     let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let values = compute(py, times as u64, None, |ticker| {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-        let mut bodies = Bodies::default();
+        let mut bodies = PreciseBodies::default();
         for time in 0..times {
             bodies.clear(particles);
             for (i, &mass) in mass.iter().enumerate() {
@@ -110,6 +111,35 @@ pub(crate) fn columns() -> Vec<(&'static str, &'static str, usize, bool)> {
         .iter()
         .map(|column| (column.name, column.description, column.width, column.needs_velocity))
         .collect()
+}
+
+/// What the forces on bodies leave constant.
+#[pyfunction]
+#[pyo3(signature = (*, mass, forces, position, velocity, about))]
+pub(crate) fn conserves<'py>(
+    py: Python<'py>,
+    mass: Array<'py>,
+    forces: Bound<'py, PyList>,
+    position: Array<'py>,
+    velocity: Array<'py>,
+    about: Array<'py>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let scene = snapshot(&mass, &position, &velocity, &forces)?;
+    let about = points(&copied("about", &about, [Some(3)])?.0)[0];
+    let conserves = conserved_by(&scene.forces, &scene.bodies());
+    let dict = PyDict::new(py);
+    dict.set_item("momentum", conserves.momentum)?;
+    dict.set_item(
+        "angular_momentum",
+        match conserves.angular_momentum {
+            About::Nowhere => false,
+            About::Point(point) => point == about,
+            About::Everywhere => true,
+        },
+    )?;
+    dict.set_item("spin", conserves.spin)?;
+    dict.set_item("energy", conserves.energy)?;
+    Ok(dict)
 }
 
 /// The acceleration of every particle.

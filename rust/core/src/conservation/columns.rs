@@ -3,12 +3,14 @@
 //! To add one, write its line in [`COLUMNS`]. The list of names that `record` takes, the shapes of the arrays and the
 //! names and descriptions that Python shows follow from it.
 
-use super::{Bodies, angular_momentum, center_of_mass, kinetic_energy, momentum, potential_and_virial};
+use super::{PreciseBodies, angular_momentum, center_of_mass, kinetic_energy, momentum};
 use crate::error::Result;
+use crate::forces::ForceTerm;
+use crate::forces::term::potential_and_virial;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
-use crate::scene::ForceSpec;
 use crate::words::unknown;
+use std::sync::Arc;
 
 /// A derived column.
 #[derive(Debug)]
@@ -93,8 +95,8 @@ pub fn column(argument: &str, name: &str) -> Result<&'static Column> {
 
 /// A state whose columns are computed, those that share a sum over pairs from one sum.
 pub struct State<'a, 't> {
-    forces: &'a [ForceSpec],
-    bodies: &'a Bodies,
+    forces: &'a [Arc<dyn ForceTerm>],
+    bodies: &'a PreciseBodies,
     about: [f64; 3],
     threads: usize,
     ticker: &'a mut Ticker<'t>,
@@ -102,10 +104,10 @@ pub struct State<'a, 't> {
 }
 
 impl<'a, 't> State<'a, 't> {
-    /// Of bodies that were [settled](Bodies::settle).
+    /// Of bodies that were [settled](PreciseBodies::settle).
     pub fn new(
-        forces: &'a [ForceSpec],
-        bodies: &'a Bodies,
+        forces: &'a [Arc<dyn ForceTerm>],
+        bodies: &'a PreciseBodies,
         about: [f64; 3],
         threads: usize,
         ticker: &'a mut Ticker<'t>,

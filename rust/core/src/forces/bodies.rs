@@ -18,14 +18,14 @@ const LEAST: f64 = 1.0 / MOST;
 /// A vector of numbers that are unevaluated sums.
 pub type Vector = [DoubleDouble; 3];
 
-/// Bodies of one state.
+/// PreciseBodies of one state.
 #[derive(Clone, Debug, Default)]
-pub struct Bodies {
+pub struct PreciseBodies {
     /// Array after array, each padded with zeros to whole rows and one row more.
     numbers: Vec<f64>,
     stride: usize,
     len: usize,
-    /// Bodies from here on are massless.
+    /// PreciseBodies from here on are massless.
     massive: usize,
     /// The exponents of the units of mass, length and speed in which the arrays are.
     pub units: Exponents,
@@ -51,7 +51,7 @@ pub enum Of {
     Velocity,
 }
 
-impl Bodies {
+impl PreciseBodies {
     /// Makes place for so many bodies, none of them set; to be [settled](Self::settle) once they are.
     pub fn clear(&mut self, len: usize) {
         let stride = len.next_multiple_of(WIDTH) + WIDTH;
@@ -179,12 +179,14 @@ impl Bodies {
 }
 
 tiered! {
-    fn largest[][](bodies: &Bodies) -> [f64; 3] = largest_sizes;
+    /// Σ m q, or Σ q.
+    pub fn vector_sum[][](bodies: &PreciseBodies, of: Of, weighted: bool) -> [FusedDouble<Lanes>; 3] = mass_times_vector;
+    fn largest[][](bodies: &PreciseBodies) -> [f64; 3] = largest_sizes;
 }
 
 /// The largest finite mass, coordinate and component of a velocity.
 #[inline(always)]
-fn largest_sizes<V: Vector8>(bodies: &Bodies) -> [f64; 3] {
+fn largest_sizes<V: Vector8>(bodies: &PreciseBodies) -> [f64; 3] {
     let mut largest = [V::zero(); 3];
     for body in (0..bodies.len).step_by(WIDTH) {
         larger(&mut largest[0], bodies.masses_from(body));
@@ -226,4 +228,30 @@ pub fn joined(sum: FusedDouble<Lanes>) -> DoubleDouble {
         total.gather(FusedDouble { high: sum.high.0[lane], low: sum.low.0[lane] });
     }
     DoubleDouble::sum(total.high, total.low)
+}
+
+#[inline(always)]
+fn mass_times_vector<V: Vector8>(bodies: &PreciseBodies, of: Of, weighted: bool) -> [FusedDouble<Lanes>; 3] {
+    let mut sum = [FusedDouble::<V>::zero(); 3];
+    for body in (0..if weighted { bodies.massive() } else { bodies.len() }).step_by(WIDTH) {
+        let mass = mass::<V>(bodies, body);
+        for c in 0..3 {
+            let value = bodies.coordinates_from::<V>(of, c, body);
+            sum[c].gather(if weighted { mass.times(value) } else { value });
+        }
+    }
+    let [x, y, z] = sum;
+    [stored(x), stored(y), stored(z)]
+}
+
+/// The masses of eight bodies from one on.
+#[inline(always)]
+pub fn mass<V: Vector8>(bodies: &PreciseBodies, body: usize) -> FusedDouble<V> {
+    FusedDouble { high: bodies.masses_from(body), low: V::zero() }
+}
+
+/// A running sum, in memory.
+#[inline(always)]
+pub fn stored<V: Vector8>(sum: FusedDouble<V>) -> FusedDouble<Lanes> {
+    FusedDouble { high: sum.high.store(), low: sum.low.store() }
 }

@@ -1,63 +1,143 @@
-//! A fixed centre: the force −dV/dr along the line to it, on every particle.
+//! A fixed center: the force −dV/dr along the line to it, on every particle.
 
+use super::bodies::{Of, PreciseBodies, Vector};
+use super::context::Context;
+use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
-use crate::error::Result;
-use crate::numerics::element::Shape;
-use crate::numerics::elementary::Exponential;
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lanes::Lanes;
+use crate::numerics::points::distance;
+use crate::numerics::power_of_two::scale;
+use crate::numerics::real::Real;
+use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
-use crate::potentials::Formula;
-use crate::tiered;
+use crate::potentials::Potential;
+use crate::potentials::kernels::Around;
+use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::units::Units;
+use crate::words::numbers;
+use std::sync::Arc;
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "central_field",
+    class_name: "CentralField",
+    summary: "A potential V(r) around a fixed point, felt by every body",
+    formula: "F = −dV/dr r̂",
+    notes: "It acts by its force, so every mass must be positive.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.1",
+    example: ">>> vv.CentralField(vv.potentials.Coulomb(k=-1.0))\n\
+              CentralField(potential=Coulomb(k=-1.0), center=(0.0, 0.0, 0.0))",
+    parameters: &[
+        Parameter::new("potential", Kind::Potential, "The potential energy of one body at the distance r"),
+        Parameter::new("center", Kind::Point, "The fixed point").of([1, 0, 0]).or(0.0),
+    ],
+    make: |values| {
+        Ok(Arc::new(CentralField { potential: values[0].potential()?, center: values[1].vector() }))
+    },
+};
+
+/// A fixed center with a potential energy `V(r)`.
+#[derive(Debug)]
+pub struct CentralField {
+    potential: Arc<dyn Potential>,
+    center: [f64; 3],
+}
+
+impl ForceTerm for CentralField {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let field = Around {
+            shape: context.shape,
+            center: context.units.take_vector(self.center, [1, 0, 0]),
+            inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
+        };
+        Box::new(Kernel { potential: self.potential.scaled(context.units), field })
+    }
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        _: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
+        let units = bodies.units;
+        for body in 0..bodies.len() {
+            let place = bodies.vector(Of::Position, body);
+            let d: Vector =
+                core::array::from_fn(|c| place[c] - DoubleDouble::from(scale(self.center[c], -units.length)));
+            let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
+            let distance = Scaled::new(r, units.length).to_double_double();
+            let (value, force) = self.potential.precise(distance);
+            energy = energy.plus(Scaled::new(value, 0));
+            // At the center of what is not singular there is no pull.
+            if r.to_f64() != 0.0 {
+                // The pull along d, and what of it the place sees.
+                let along = d[0] * place[0] + d[1] * place[1] + d[2] * place[2];
+                let pull = Scaled::new(force, units.length);
+                work = work.plus(pull.by(Scaled::new(along, 0).over(Scaled::new(r, 0))));
+            }
+            ticker.tick()?;
+        }
+        Ok((energy, work))
+    }
+
+    fn validate(&self, bodies: &Bodies<'_>) -> Result<()> {
+        if !self.potential.singular() {
+            return Ok(());
+        }
+        match bodies.position.iter().position(|&position| position == self.center) {
+            None => Ok(()),
+            Some(index) => Err(Error::invalid(
+                "position",
+                format!(
+                    "{} = {} is the singular center of CentralField; move one of the two",
+                    bodies.name("position", index),
+                    numbers(&self.center)
+                ),
+            )),
+        }
+    }
+    fn needs_mass(&self, _: usize) -> bool {
+        true
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.potential.inverse_distance_strength() != Some(0.0)
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { momentum: false, angular_momentum: About::Point(self.center), spin: false, energy: true }
+    }
+    fn keeps_plane(&self) -> bool {
+        self.center[2] == 0.0
+    }
+    fn center(&self) -> Option<[f64; 3]> {
+        Some(self.center)
+    }
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        let (potential, center) = (self.potential.scaled(units), units.take_vector(self.center, [1, 0, 0]));
+        let mut strongest = 0.0_f64;
+        for &(_, mass, position) in bodies {
+            let [_, force, _] = potential.evaluate(&[distance(position, center)]);
+            strongest = strongest.max(force[0].abs() / mass);
+        }
+        strongest
+    }
+    fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
+        self.potential.inverse_distance_strength().map(|k| (k, self.center))
+    }
+}
 
 /// The force of a potential fixed at a point.
 #[derive(Debug)]
-pub struct CentralField<P> {
-    potential: P,
-    shape: Shape,
-    center: [f64; 3],
-    /// 1/m of each row's particles.
-    inverse_mass: Vec<Lanes>,
+struct Kernel {
+    potential: Arc<dyn Potential>,
+    field: Around,
 }
 
-impl<P: Formula> CentralField<P> {
-    /// From the potential, the place of the centre, and 1/m of the particles of each row.
-    pub fn new(potential: P, shape: Shape, center: [f64; 3], inverse_mass: Vec<Lanes>) -> Self {
-        Self { potential, shape, center, inverse_mass }
-    }
-}
-
-#[inline(always)]
-fn kernel<V: Vector8 + Exponential, P: Formula>(
-    field: &CentralField<P>,
-    q: &[Lanes],
-    a: &mut [Lanes],
-    first: bool,
-) {
-    let Shape { rows, components } = field.shape;
-    let (q, a) = (V::view(q), V::view_mut(a));
-    let inverse_mass = V::view(&field.inverse_mass);
-    for row in 0..rows {
-        let mut d = [V::zero(); 3];
-        let mut r2 = V::zero();
-        for c in 0..components {
-            d[c] = q[c * rows + row] - V::splat(field.center[c]);
-            r2 += d[c] * d[c];
-        }
-        let r = r2.sqrt();
-        let pull = field.potential.force(r) / r * inverse_mass[row];
-        for c in 0..components {
-            let a = &mut a[c * rows + row];
-            let term = pull * d[c];
-            *a = if first { term } else { *a + term };
-        }
-    }
-}
-
-tiered! {
-    fn kernel_tier[P: Formula][P](field: &CentralField<P>, q: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
-}
-
-impl<P: Formula> Force<Lanes> for CentralField<P> {
+impl Force<Lanes> for Kernel {
     fn apply(
         &mut self,
         phase: &Phase<'_, Lanes>,
@@ -65,7 +145,7 @@ impl<P: Formula> Force<Lanes> for CentralField<P> {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        kernel_tier(self, phase.q, a, first);
+        self.potential.around(&self.field, phase.q, a, first);
         Ok(())
     }
 }

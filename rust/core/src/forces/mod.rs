@@ -3,11 +3,18 @@
 //! The one idea: a force evaluation is one indirect call per force ([`Force::apply`]); everything hot is
 //! inside it. A state is two blocks of coordinates laid out by [`Shape`]; lanes are particles (packed) or
 //! trajectories (batch), which only the pair kernels and the reductions need to know.
+//!
+//! A force is described by a [`ForceTerm`], which makes its kernel; to add one, write a file with both and add its
+//! line to [`registry::FORCES`](crate::registry::FORCES).
 
 pub mod bodies;
 pub mod central_field;
+pub mod context;
 pub mod gravity;
+pub mod term;
 pub mod uniform_field;
+
+pub use term::{ForceDeclaration, ForceTerm};
 
 use crate::error::Result;
 use crate::numerics::element::{Element, Shape};

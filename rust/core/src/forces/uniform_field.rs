@@ -1,9 +1,75 @@
 //! A uniform field: the same acceleration everywhere.
 
+use super::bodies::{Of, PreciseBodies, joined, vector_sum};
+use super::context::Context;
+use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::{Element, Shape};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in an acceleration.
+const ACCELERATION: [i32; 3] = [1, 0, -2];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "uniform_field",
+    class_name: "UniformField",
+    summary: "The same acceleration everywhere",
+    formula: "V = −Σ mᵢ g·rᵢ",
+    notes: "",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.1",
+    example: ">>> ball = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 2.0]]), \
+              vv.UniformField([0, 0, -8]))\n>>> ball.run(t=0.5).position[-1, 0]\narray([0.5, 0. , 0. ])",
+    parameters: &[Parameter::new("g", Kind::Vector, "The acceleration").of(ACCELERATION)],
+    make: |values| Ok(Arc::new(Uniform { g: values[0].vector() })),
+};
+
+/// The acceleration `g` of a scene.
+#[derive(Debug)]
+pub struct Uniform {
+    g: [f64; 3],
+}
+
+impl ForceTerm for Uniform {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(UniformField::new(context.shape, context.units.take_vector(self.g, ACCELERATION)))
+    }
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        let moments = vector_sum(bodies, Of::Position, true);
+        let unit = bodies.units.mass + bodies.units.length;
+        let mut work = Scaled::ZERO;
+        for c in 0..3 {
+            work = work.plus(Scaled::new(joined(moments[c]), unit).times(self.g[c]));
+        }
+        Ok((work.times(-1.0), work))
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.g.iter().any(|&g| g != 0.0)
+    }
+    fn conserves(&self) -> Conserves {
+        // The torque about a fixed point a is M (R − a) × g, about the centre of mass none.
+        Conserves { momentum: false, angular_momentum: About::Nowhere, spin: true, energy: true }
+    }
+    fn keeps_plane(&self) -> bool {
+        self.g[2] == 0.0
+    }
+    fn as_uniform(&self) -> Option<[f64; 3]> {
+        Some(self.g)
+    }
+}
 
 /// The acceleration `g` on every particle.
 #[derive(Debug)]

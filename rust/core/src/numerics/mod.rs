@@ -9,6 +9,7 @@ pub mod fused_double;
 pub mod inverse_cube;
 pub mod lanes;
 pub mod philox;
+pub mod points;
 pub mod power_of_two;
 pub mod real;
 pub mod scaled;

@@ -1,9 +1,8 @@
 //! V = k/r: charges, and gravity with k = −G·m·M.
 
-use super::{Declaration, Formula, Parameter};
+use super::parameters::{Declaration, Parameter, Value};
+use super::{Formula, PotentialDeclaration, held};
 use crate::numerics::elementary::Exponential;
-use crate::numerics::power_of_two::scale;
-use std::sync::Arc;
 
 /// V = k/r.
 #[derive(Clone, Copy, Debug)]
@@ -12,22 +11,29 @@ pub struct Coulomb {
 }
 
 /// What it declares about itself.
-pub static DECLARATION: Declaration = Declaration {
+pub static DECLARATION: PotentialDeclaration = Declaration {
     name: "coulomb",
     class_name: "Coulomb",
     summary: "Inverse-distance potential energy of two charges, or of gravity with k = -G m M.",
     formula: "V(r) = k / r",
-    parameters: &[Parameter {
-        name: "k",
-        description: "strength, energy times length; positive repels, negative attracts",
-        positive: false,
-    }],
-    make: |parameters| Arc::new(Coulomb { k: parameters[0] }),
+    notes: "",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.7",
+    example: ">>> vv.potentials.Coulomb(k=2.0).value([1.0, 4.0])\narray([2. , 0.5])",
+    parameters: &[Parameter::number(
+        "k",
+        [3, 1, -2],
+        "strength, energy times length; positive repels, negative attracts",
+    )],
+    make: held::<Coulomb>,
 };
 
 impl Formula for Coulomb {
-    const DECLARATION: &'static Declaration = &DECLARATION;
+    const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = true;
+
+    fn new(values: &[Value]) -> Self {
+        Self { k: values[0].number() }
+    }
 
     #[inline(always)]
     fn value<S: Exponential>(&self, r: S) -> S {
@@ -40,9 +46,6 @@ impl Formula for Coulomb {
     #[inline(always)]
     fn curvature<S: Exponential>(&self, r: S) -> S {
         S::splat(2.0 * self.k) / (r * r * r)
-    }
-    fn scaled(&self, length: i32, energy: i32) -> Self {
-        Self { k: scale(self.k, -length - energy) }
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         Some(self.k)

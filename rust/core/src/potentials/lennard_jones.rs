@@ -1,9 +1,8 @@
 //! V = 4ε[(σ/r)¹² − (σ/r)⁶]: neutral atoms.
 
-use super::{Declaration, Formula, Parameter};
+use super::parameters::{Declaration, Parameter, Value};
+use super::{Formula, PotentialDeclaration, held};
 use crate::numerics::elementary::Exponential;
-use crate::numerics::power_of_two::scale;
-use std::sync::Arc;
 
 /// V = 4ε[(σ/r)¹² − (σ/r)⁶].
 #[derive(Clone, Copy, Debug)]
@@ -13,16 +12,19 @@ pub struct LennardJones {
 }
 
 /// What it declares about itself.
-pub static DECLARATION: Declaration = Declaration {
+pub static DECLARATION: PotentialDeclaration = Declaration {
     name: "lennard_jones",
     class_name: "LennardJones",
     summary: "The 12-6 potential energy of two neutral atoms.",
     formula: "V(r) = 4 epsilon ((sigma / r)^12 - (sigma / r)^6)",
+    notes: "",
+    source: "J. E. Jones, Proc. R. Soc. A 106 (1924) 463",
+    example: ">>> vv.potentials.LennardJones(epsilon=1.0, sigma=1.0).value([1.0, 2.0 ** (1 / 6)]).round(12) + 0.0\narray([ 0., -1.])",
     parameters: &[
-        Parameter { name: "epsilon", description: "depth of the well, energy", positive: true },
-        Parameter { name: "sigma", description: "distance at which V = 0", positive: true },
+        Parameter::positive("epsilon", [2, 1, -2], "depth of the well, energy"),
+        Parameter::positive("sigma", [1, 0, 0], "distance at which V = 0"),
     ],
-    make: |parameters| Arc::new(LennardJones { epsilon: parameters[0], sigma: parameters[1] }),
+    make: held::<LennardJones>,
 };
 
 impl LennardJones {
@@ -36,8 +38,12 @@ impl LennardJones {
 }
 
 impl Formula for LennardJones {
-    const DECLARATION: &'static Declaration = &DECLARATION;
+    const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = true;
+
+    fn new(values: &[Value]) -> Self {
+        Self { epsilon: values[0].number(), sigma: values[1].number() }
+    }
 
     #[inline(always)]
     fn value<S: Exponential>(&self, r: S) -> S {
@@ -54,8 +60,5 @@ impl Formula for LennardJones {
         let sixth = self.sixth_power(r);
         let bracket = sixth * (S::splat(26.0) * sixth - S::splat(7.0));
         S::splat(24.0 * self.epsilon) * bracket / (r * r)
-    }
-    fn scaled(&self, length: i32, energy: i32) -> Self {
-        Self { epsilon: scale(self.epsilon, -energy), sigma: scale(self.sigma, -length) }
     }
 }

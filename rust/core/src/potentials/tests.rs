@@ -1,16 +1,28 @@
 //! What every registered potential must satisfy.
 
+use super::parameters::{Kind, Parameter, Sign};
 use super::*;
 use crate::registry::POTENTIALS;
 use proptest::prelude::*;
 
-fn parameters(declaration: &Declaration, seeds: &[f64; 4]) -> Vec<f64> {
-    declaration
-        .parameters
-        .iter()
-        .zip(seeds)
-        .map(|(parameter, seed)| if parameter.positive { seed.abs() + 0.3 } else { *seed })
-        .collect()
+/// A value for each parameter from seeds; none for a potential that takes what no seed can make.
+fn parameters(declaration: &PotentialDeclaration, seeds: &[f64; 4]) -> Option<Vec<Value>> {
+    let seeds = seeds.iter().cycle();
+    let value = |(parameter, seed): (&Parameter, &f64)| match parameter.kind {
+        Kind::Number(Sign::Any) => Some(Value::Number(*seed)),
+        Kind::Number(_) => Some(Value::Number(seed.abs() + 0.3)),
+        Kind::Choice(words) => Some(Value::Word((*words.first()?).to_owned())),
+        _ => None,
+    };
+    declaration.parameters.iter().zip(seeds).map(value).collect()
+}
+
+/// Every potential of the registry that seeds can make.
+fn all(seeds: &[f64; 4]) -> Vec<Arc<dyn Potential>> {
+    let make = |declaration: &&'static PotentialDeclaration| {
+        parameters(declaration, seeds).map(|values| declaration.build(&values).unwrap())
+    };
+    POTENTIALS.iter().filter_map(make).collect()
 }
 
 proptest! {
@@ -18,24 +30,22 @@ proptest! {
     /// h⁴/30 of the fifth derivative plus rounding over h.
     #[test]
     fn force_and_curvature_are_derivatives(seeds in prop::array::uniform4(-2.0..2.0f64), r in 0.7..3.0f64) {
-        for declaration in POTENTIALS {
-            let potential = declaration.build(&parameters(declaration, &seeds)).unwrap();
+        for potential in all(&seeds) {
             let h = 1e-3 * r;
             let points: Vec<f64> = (-2..=2).map(|i| r + f64::from(i) * h).collect();
             let [value, force, curvature] = potential.evaluate(&points);
             let slope = |f: &[f64]| (f[0] - 8.0 * f[1] + 8.0 * f[3] - f[4]) / (12.0 * h);
             let size = value.iter().chain(&force).chain(&curvature).fold(1e-3f64, |m, x| m.max(x.abs()));
-            prop_assert!((slope(&value) + force[2]).abs() < 2e-6 * size, "{declaration:?}");
-            prop_assert!((slope(&force) + curvature[2]).abs() < 2e-5 * size, "{declaration:?}");
+            prop_assert!((slope(&value) + force[2]).abs() < 2e-6 * size, "{potential:?}");
+            prop_assert!((slope(&force) + curvature[2]).abs() < 2e-5 * size, "{potential:?}");
         }
     }
 
     /// Units by powers of two change no bit.
     #[test]
     fn scaling_is_exact(seeds in prop::array::uniform4(-2.0..2.0f64), r in 0.7..3.0f64, length in -30..30i32, energy in -30..30i32) {
-        for declaration in POTENTIALS {
-            let potential = declaration.build(&parameters(declaration, &seeds)).unwrap();
-            let scaled = potential.scaled(length, energy);
+        for potential in all(&seeds) {
+            let scaled = potential.scaled(Units { length, mass: energy - 2 * length, time: 0 });
             let factor = |exponent: i32| 2.0f64.powi(exponent);
             let here = potential.evaluate(&[r]);
             let there = scaled.evaluate(&[r * factor(-length)]);
@@ -49,19 +59,40 @@ proptest! {
 #[test]
 fn bad_parameters_are_refused_by_name() {
     for declaration in POTENTIALS {
-        let good = vec![1.5; declaration.parameters.len()];
+        let Some(good) = parameters(declaration, &[1.5; 4]) else { continue };
         assert!(declaration.build(&good[1..]).is_err());
         for (index, parameter) in declaration.parameters.iter().enumerate() {
             for bad in [f64::NAN, f64::INFINITY, -1.0] {
+                let Kind::Number(sign) = parameter.kind else { continue };
                 let mut values = good.clone();
-                values[index] = bad;
+                values[index] = Value::Number(bad);
                 let outcome = declaration.build(&values);
-                if bad == -1.0 && !parameter.positive {
+                if bad == -1.0 && sign == Sign::Any {
                     assert!(outcome.is_ok());
                 } else {
                     assert!(outcome.unwrap_err().to_string().contains(parameter.name));
                 }
             }
         }
+    }
+}
+
+/// The strength of k/rⁿ has a dimension that depends on n; a fractional power of two is rounded, a whole one exact.
+#[test]
+fn a_dimension_may_depend_on_another_parameter() {
+    static POWER: PotentialDeclaration = Declaration {
+        parameters: &[
+            Parameter::new("k", Kind::Number(Sign::Any), "strength")
+                .depending(|values| [2.0 + values[1].number(), 1.0, -2.0]),
+            Parameter::number("n", [0; 3], "power"),
+        ],
+        ..coulomb::DECLARATION
+    };
+    let units = Units { length: 3, mass: 1, time: 2 };
+    for (n, exponent) in [(2.0, 12.0 + 1.0 - 4.0), (0.5, 7.5 + 1.0 - 4.0)] {
+        let scaled = POWER.scaled(&[Value::Number(1.0), Value::Number(n)], units);
+        let expected = 2.0f64.powf(-exponent);
+        assert!((scaled[0].number() / expected - 1.0).abs() < 4e-16);
+        assert_eq!(scaled[1].number(), n);
     }
 }

@@ -1,9 +1,8 @@
 //! V = k·exp(−r/length)/r: a charge screened over a length.
 
-use super::{Declaration, Formula, Parameter};
+use super::parameters::{Declaration, Parameter, Value};
+use super::{Formula, PotentialDeclaration, held};
 use crate::numerics::elementary::Exponential;
-use crate::numerics::power_of_two::scale;
-use std::sync::Arc;
 
 /// V = k·exp(−r/length)/r.
 #[derive(Clone, Copy, Debug)]
@@ -13,25 +12,32 @@ pub struct Yukawa {
 }
 
 /// What it declares about itself.
-pub static DECLARATION: Declaration = Declaration {
+pub static DECLARATION: PotentialDeclaration = Declaration {
     name: "yukawa",
     class_name: "Yukawa",
     summary: "Screened Coulomb potential energy.",
     formula: "V(r) = k exp(-r / length) / r",
+    notes: "",
+    source: "H. Yukawa, Proc. Phys.-Math. Soc. Japan 17 (1935) 48",
+    example: ">>> vv.potentials.Yukawa(k=-1.0, length=2.0).rescaled(length=10.0)\nYukawa(k=-1000.0, length=20.0)",
     parameters: &[
-        Parameter {
-            name: "k",
-            description: "strength at r << length, energy times length; positive repels, negative attracts",
-            positive: false,
-        },
-        Parameter { name: "length", description: "screening length", positive: true },
+        Parameter::number(
+            "k",
+            [3, 1, -2],
+            "strength at r << length, energy times length; positive repels, negative attracts",
+        ),
+        Parameter::positive("length", [1, 0, 0], "screening length"),
     ],
-    make: |parameters| Arc::new(Yukawa { k: parameters[0], length: parameters[1] }),
+    make: held::<Yukawa>,
 };
 
 impl Formula for Yukawa {
-    const DECLARATION: &'static Declaration = &DECLARATION;
+    const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = true;
+
+    fn new(values: &[Value]) -> Self {
+        Self { k: values[0].number(), length: values[1].number() }
+    }
 
     #[inline(always)]
     fn value<S: Exponential>(&self, r: S) -> S {
@@ -48,8 +54,5 @@ impl Formula for Yukawa {
         let s = r / S::splat(self.length);
         let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
         S::splat(self.k) * (-s).exp() * polynomial / (r * r * r)
-    }
-    fn scaled(&self, length: i32, energy: i32) -> Self {
-        Self { k: scale(self.k, -length - energy), length: scale(self.length, -length) }
     }
 }

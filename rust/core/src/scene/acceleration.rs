@@ -2,7 +2,7 @@
 
 use super::Scene;
 use super::layout::Layout;
-use super::plan::Plan;
+use super::plan::{Groups, Plan};
 use super::request::Request;
 use super::unit::{self, Prepared};
 use crate::error::Result;
@@ -29,7 +29,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         threads,
     };
     let mut plan = Plan::new(scene, &request)?;
-    if plan.gravity.is_some() {
+    if plan.groups == Groups::All {
         // Whatever the layout of a run would be: this is one state of one unit.
         plan.layout = Layout::Packed;
     }

@@ -8,7 +8,7 @@ use super::columns::{Entry, Writer};
 use super::plan::{Plan, Solution};
 use super::run::Reached;
 use crate::error::Result;
-use crate::forces::bodies::Bodies;
+use crate::forces::bodies::PreciseBodies;
 use crate::nbody::kepler::KeplerOrbit;
 use crate::nbody::two_body::{ExactState, TwoBody};
 use crate::numerics::double_double::DoubleDouble;
@@ -79,7 +79,8 @@ fn orbit(mu: f64, from: ([f64; 3], [f64; 3]), to: ([f64; 3], [f64; 3])) -> Resul
 fn motion(scene: &Scene, plan: &Plan, copy: usize) -> Result<Motion> {
     let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
     let state = |i: usize| (position[i], velocity[i]);
-    let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
+    let gravity = plan.forces.iter().find_map(|force| force.as_newtonian());
+    let constant = gravity.map_or(0.0, |(constant, _)| constant);
     let all = 0..scene.particles;
     let paths: Result<Vec<Path>> = match &plan.solution {
         Solution::TwoBody => {
@@ -124,7 +125,7 @@ pub fn run(
     writer: &Writer<'_>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Reached> {
-    let mut bodies = Bodies::default();
+    let mut bodies = PreciseBodies::default();
     let mut reached = Reached { position: Vec::new(), velocity: Vec::new() };
     for copy in 0..scene.copies {
         let motion = motion(scene, plan, copy)?;

@@ -4,15 +4,17 @@
 //! mass in its ensemble member. Where there is none (bodies that do not act on each other are units by themselves), the
 //! states are kept, and the columns derived when all of them are there.
 
+use super::Scene;
 use super::room;
-use super::{ForceSpec, Scene};
 use crate::conservation::columns::{Column, State};
 use crate::error::Result;
-use crate::forces::bodies::Bodies;
+use crate::forces::ForceTerm;
+use crate::forces::bodies::PreciseBodies;
 use crate::numerics::lanes::{Bits, Vector8, WIDTH};
 use crate::numerics::simd::prefetch;
 use crate::parallel::Ticker;
 use core::marker::PhantomData;
+use std::sync::Arc;
 
 /// What is recorded, and how.
 #[derive(Clone, Debug)]
@@ -179,7 +181,7 @@ pub struct Writer<'a> {
     velocity_rest: (*mut f64, usize),
     derived: Vec<(&'static Column, (*mut f64, usize))>,
     masses: &'a [f64],
-    forces: &'a [ForceSpec],
+    forces: &'a [Arc<dyn ForceTerm>],
     members: Option<&'a [usize]>,
     threads: usize,
     columns: PhantomData<&'a mut Columns>,
@@ -279,7 +281,7 @@ impl Output<'_> {
     ///
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted), and then not all are written.
-    pub fn derive(&self, bodies: &Bodies, ticker: &mut Ticker<'_>) -> Result<()> {
+    pub fn derive(&self, bodies: &PreciseBodies, ticker: &mut Ticker<'_>) -> Result<()> {
         let Writer { derived, forces, threads, .. } = self.writer;
         let mut state = State::new(forces, bodies, [0.0; 3], *threads, ticker);
         for &(column, (array, len)) in derived {

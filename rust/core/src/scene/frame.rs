@@ -5,20 +5,11 @@
 //! a whole, is integrated about its centre of mass: the small differences that matter then keep their
 //! digits. The centre is only moved away from the origin where that saves some.
 
-use super::{ForceSpec, Scene};
-use crate::numerics::double_double::two_sum;
-use crate::numerics::power_of_two::{exponent, scale};
+pub use crate::units::Units;
 
-/// Units, as exponents of two.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Units {
-    /// Of length.
-    pub length: i32,
-    /// Of time.
-    pub time: i32,
-    /// Of mass.
-    pub mass: i32,
-}
+use super::Scene;
+use crate::numerics::double_double::two_sum;
+use crate::numerics::power_of_two::exponent;
 
 impl Units {
     /// Units near the scene's own sizes.
@@ -34,43 +25,16 @@ impl Units {
                 }
             }
         }
-        let softening = scene.forces.iter().map(|force| match force {
-            ForceSpec::Gravity { softening, .. } => *softening,
-            _ => 0.0,
-        });
-        let length = exponent(softening.fold(size, f64::max));
+        let length = exponent(scene.forces.iter().map(|force| force.length()).fold(size, f64::max));
         let mass = exponent(scene.mass.iter().copied().fold(0.0, f64::max));
-        // The free-fall time of the largest mass, else the crossing time.
-        let gravity = scene.forces.iter().find_map(|force| match force {
-            ForceSpec::Gravity { constant, .. } if *constant != 0.0 => Some(exponent(*constant)),
-            _ => None,
-        });
-        let time = match gravity {
-            Some(constant) if scene.mass.iter().any(|&mass| mass > 0.0) => {
-                (3 * length - constant - mass).div_euclid(2)
-            }
-            _ if speed > 0.0 => length - exponent(speed),
-            _ => 0,
-        };
+        // The time in which a force moves the largest mass over that length, else the crossing time.
+        let massive = scene.mass.iter().any(|&mass| mass > 0.0);
+        let given =
+            scene.forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
+        let time = given.unwrap_or(if speed > 0.0 { length - exponent(speed) } else { 0 });
         // One factor then takes a length or a velocity back to the scene's units.
         let time = time.clamp(length - 1000, length + 1000);
         Self { length, time, mass }
-    }
-    /// The exponent that turns a velocity of the scene into one of these units.
-    pub fn velocity(self) -> i32 {
-        self.time - self.length
-    }
-    /// As [`velocity`](Self::velocity), of an acceleration.
-    pub fn acceleration(self) -> i32 {
-        2 * self.time - self.length
-    }
-    /// The unit of energy, mass · length² / time².
-    pub fn energy(self) -> i32 {
-        self.mass - 2 * self.velocity()
-    }
-    /// `G·m` of these units.
-    pub fn strength(self, constant: f64, mass: f64) -> f64 {
-        scale(constant, 2 * self.time - 3 * self.length + self.mass) * scale(mass, -self.mass)
     }
 }
 

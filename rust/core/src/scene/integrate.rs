@@ -77,7 +77,7 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
 pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     // Units share lanes with units of the same make-up; massive bodies alone differ from those with
     // massless ones beside them.
-    units.sort_by_key(|unit| (unit.active, unit.bodies.len()));
+    units.sort_by_key(|unit| unit.make_up);
     let (over, inside) = job.plan.threads;
     let lanes = job.plan.layout.units();
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
@@ -85,7 +85,7 @@ pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -
     let per_chunk =
         if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.layout.in_lockstep()) } else { per_chunk };
     let mut runs: Vec<&[Unit]> = Vec::new();
-    for run in units.chunk_by(|a, b| (a.active, a.bodies.len()) == (b.active, b.bodies.len())) {
+    for run in units.chunk_by(|a, b| a.make_up == b.make_up) {
         runs.extend(run.chunks(per_chunk));
     }
     ticker.control().add_total(job.total_progress(&runs));

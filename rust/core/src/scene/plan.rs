@@ -1,19 +1,22 @@
 //! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
 
+mod coupling;
 mod explain;
 
+pub use coupling::Groups;
 pub use explain::Row;
 
+use super::Scene;
 use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
-use super::{ForceSpec, Scene};
 use crate::error::Result;
+use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
+use crate::forces::term::Coupling;
 use crate::ode::Method;
-use core::ops::Range;
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -57,12 +60,12 @@ pub struct Plan {
     /// How the motion is found.
     pub solution: Solution,
     /// The forces that do something, in order.
-    pub forces: Vec<ForceSpec>,
-    /// Gravity among them: (constant, softening).
-    pub gravity: Option<(f64, f64)>,
-    /// Bodies that attract.
+    pub forces: Vec<Arc<dyn ForceTerm>>,
+    /// What they make depend on each other.
+    pub groups: Groups,
+    /// Bodies on which others depend.
     pub active: Vec<usize>,
-    /// Bodies that do not.
+    /// Bodies on which none does.
     pub passive: Vec<usize>,
     /// Whether everything stays in the plane z = 0.
     pub planar: bool,
@@ -94,21 +97,28 @@ impl Plan {
         let Checked { method, automatic, direction, dt } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
-        let gravity = forces.iter().find_map(|force| match force {
-            ForceSpec::Gravity { constant, softening } => Some((*constant, *softening)),
-            _ => None,
-        });
-        let (active, passive) = match gravity {
-            Some(_) => (0..scene.particles).partition(massive),
-            None => (Vec::new(), (0..scene.particles).collect()),
+        let groups = Groups::of(scene.particles, &forces);
+        let (active, passive) = match &groups {
+            Groups::All => (0..scene.particles).partition(massive),
+            Groups::Listed(groups) => {
+                let coupled = |i: &usize| groups.iter().any(|group| group.binary_search(i).is_ok());
+                (0..scene.particles).partition(coupled)
+            }
+            Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
         let solution = if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
-        let closed =
-            !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
+        let closed = !forces.is_empty()
+            && forces.iter().all(|force| force.coupling() != Coupling::None && force.conserves().momentum);
         let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
-        let relative = closed && forces.len() == 1 && serves(method, active.len());
+        let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
+            && groups == Groups::All
+            && serves(method, active.len());
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
-        let batched = gravity.is_none() || relative || (scene.copies > 1 && scene.particles <= RING_MAX);
+        let batched = match groups {
+            Groups::Single => true,
+            Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),
+            Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
+        };
         let layout = if batched { Layout::Batched } else { Layout::Packed };
         let mut plan = Self {
             method,
@@ -118,7 +128,7 @@ impl Plan {
             planar: planar(scene, &forces),
             units: Units::of(scene, &origins),
             forces,
-            gravity,
+            groups,
             active,
             passive,
             origins,
@@ -152,55 +162,75 @@ impl Plan {
 
     /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
     pub fn passive_apart(&self) -> bool {
-        (self.method.adaptive() || self.relative) && !self.active.is_empty() && !self.passive.is_empty()
+        self.groups == Groups::All
+            && (self.method.adaptive() || self.relative)
+            && !self.active.is_empty()
+            && !self.passive.is_empty()
     }
 
     /// The units of the integration, in the order in which they are begun.
     pub fn unit_list(&self) -> Vec<Unit> {
-        let active = self.active.len();
-        // What each copy is made of: bodies, how many of them attract, which are recorded.
-        let kinds: Vec<(Arc<[usize]>, usize, Range<usize>)> = if self.gravity.is_none() {
-            self.passive.iter().map(|&i| (Arc::from([i]), 0, 0..1)).collect()
-        } else if self.passive_apart() {
-            let with_active = |run: &[usize]| {
-                let bodies: Arc<[usize]> = self.active.iter().chain(run).copied().collect();
-                let recorded = active..bodies.len();
-                (bodies, active, recorded)
-            };
-            let massive = (Arc::from(&self.active[..]), active, 0..active);
-            core::iter::once(massive).chain(self.passive.chunks(PASSIVE_PER_UNIT).map(with_active)).collect()
-        } else {
-            let bodies: Arc<[usize]> = self.active.iter().chain(&self.passive).copied().collect();
-            let recorded = 0..bodies.len();
-            vec![(bodies, active, recorded)]
-        };
+        let kinds = self.kinds();
+        let kinds = &kinds;
         (0..self.copies)
-            .flat_map(|copy| kinds.iter().map(move |kind| (copy, kind)))
-            .map(|(copy, (bodies, active, recorded))| Unit {
-                copy,
-                bodies: Arc::clone(bodies),
-                active: *active,
-                recorded: recorded.clone(),
-            })
+            .flat_map(|copy| kinds.iter().map(move |kind| Unit { copy, ..kind.clone() }))
             .collect()
+    }
+
+    /// What each copy is made of: a unit for each group of bodies.
+    fn kinds(&self) -> Vec<Unit> {
+        let kind = |bodies: Arc<[usize]>, active, recorded, make_up| Unit {
+            copy: 0,
+            bodies,
+            active,
+            recorded,
+            make_up,
+        };
+        let active = self.active.len();
+        // Bodies by themselves are all of one make-up, whichever they are.
+        let alone = |&body: &usize| kind(Arc::from([body]), 0, 0..1, 0);
+        match &self.groups {
+            Groups::Single => self.passive.iter().map(alone).collect(),
+            Groups::Listed(groups) => {
+                let group = |(index, bodies): (usize, &Arc<[usize]>)| {
+                    kind(Arc::clone(bodies), bodies.len(), 0..bodies.len(), 1 + index)
+                };
+                groups.iter().enumerate().map(group).chain(self.passive.iter().map(alone)).collect()
+            }
+            Groups::All if self.passive_apart() => {
+                let with_active = |run: &[usize]| {
+                    let bodies: Arc<[usize]> = self.active.iter().chain(run).copied().collect();
+                    let recorded = active..bodies.len();
+                    kind(bodies, active, recorded, run.len())
+                };
+                let massive = kind(Arc::from(&self.active[..]), active, 0..active, 0);
+                let massless = self.passive.chunks(PASSIVE_PER_UNIT).map(with_active);
+                core::iter::once(massive).chain(massless).collect()
+            }
+            Groups::All => {
+                let bodies: Arc<[usize]> = self.active.iter().chain(&self.passive).copied().collect();
+                let recorded = 0..bodies.len();
+                vec![kind(bodies, active, recorded, 0)]
+            }
+        }
     }
 
     /// Pairs that one force evaluation of one copy forms.
     pub fn pairs_per_evaluation(&self) -> u64 {
         let (active, passive) = (self.active.len() as u64, self.passive.len() as u64);
-        if self.gravity.is_some() { active * active.saturating_sub(1) / 2 + active * passive } else { 0 }
+        let of = |force: &Arc<dyn ForceTerm>| match force.coupling() {
+            Coupling::None => 0,
+            Coupling::AllPairs => active * active.saturating_sub(1) / 2 + active * passive,
+            Coupling::Listed(pairs) => pairs.len() as u64,
+        };
+        self.forces.iter().map(of).sum()
     }
 }
 
 /// The forces that do anything in this scene.
-fn effective_forces(scene: &Scene) -> Vec<ForceSpec> {
-    let attracts = scene.particles > 1 && scene.mass.iter().any(|&mass| mass > 0.0);
-    let does_something = |force: &&ForceSpec| match force {
-        ForceSpec::Gravity { constant, .. } => *constant != 0.0 && attracts,
-        ForceSpec::UniformField { g } => g.iter().any(|&g| g != 0.0),
-        ForceSpec::CentralField { potential, .. } => potential.inverse_distance_strength() != Some(0.0),
-    };
-    scene.forces.iter().filter(does_something).cloned().collect()
+fn effective_forces(scene: &Scene) -> Vec<Arc<dyn ForceTerm>> {
+    let bodies = scene.bodies();
+    scene.forces.iter().filter(|force| force.acts(&bodies)).cloned().collect()
 }
 
 fn outputs_between(scene: &Scene, request: &Request) -> usize {
@@ -208,45 +238,25 @@ fn outputs_between(scene: &Scene, request: &Request) -> usize {
     request.times.iter().filter(|&&t| (t != scene.t0) & (t != end)).count()
 }
 
-fn planar(scene: &Scene, forces: &[ForceSpec]) -> bool {
+fn planar(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> bool {
     scene.position.iter().chain(&scene.velocity).all(|x| x[2] == 0.0)
-        && forces.iter().all(|force| match force {
-            ForceSpec::Gravity { .. } => true,
-            ForceSpec::UniformField { g } => g[2] == 0.0,
-            ForceSpec::CentralField { center, .. } => center[2] == 0.0,
-        })
+        && forces.iter().all(|force| force.keeps_plane())
 }
 
-fn closed_form(scene: &Scene, forces: &[ForceSpec], active: &[usize]) -> Solution {
+fn closed_form(scene: &Scene, forces: &[Arc<dyn ForceTerm>], active: &[usize]) -> Solution {
     if forces.is_empty() {
         return Solution::Free;
     }
-    let mut g = [0.0; 3];
-    let mut uniform = true;
-    for force in forces {
-        match force {
-            ForceSpec::UniformField { g: term } => {
-                for c in 0..3 {
-                    g[c] += term[c];
-                }
-            }
-            _ => uniform = false,
-        }
+    let fields: Option<Vec<[f64; 3]>> = forces.iter().map(|force| force.as_uniform()).collect();
+    if let Some(fields) = fields {
+        let add = |sum: [f64; 3], g: [f64; 3]| core::array::from_fn(|c| sum[c] + g[c]);
+        return Solution::Uniform(fields.into_iter().fold([0.0; 3], add));
     }
-    if uniform {
-        return Solution::Uniform(g);
-    }
-    match forces {
-        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && scene.particles == 2 => {
-            Solution::TwoBody
-        }
-        [ForceSpec::Gravity { softening, .. }] if *softening == 0.0 && active.len() == 1 => {
-            Solution::OneMassive(active[0])
-        }
-        [ForceSpec::CentralField { potential, center }] => match potential.inverse_distance_strength() {
-            Some(k) => Solution::FixedCenter { k, center: *center },
-            None => Solution::Integration,
-        },
+    let [force] = forces else { return Solution::Integration };
+    match (force.as_newtonian(), force.as_inverse_distance_center()) {
+        (Some((_, 0.0)), _) if scene.particles == 2 => Solution::TwoBody,
+        (Some((_, 0.0)), _) if active.len() == 1 => Solution::OneMassive(active[0]),
+        (_, Some((k, center))) => Solution::FixedCenter { k, center },
         _ => Solution::Integration,
     }
 }

@@ -15,14 +15,14 @@ use super::Scene;
 use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
-use crate::forces::bodies::Bodies;
+use crate::forces::bodies::PreciseBodies;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
 use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
 
-/// Bodies that are integrated together: massive ones first.
+/// PreciseBodies that are integrated together: massive ones first.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Which copy of the scene.
@@ -33,6 +33,8 @@ pub struct Unit {
     pub active: usize,
     /// Which of them, by their place in `bodies`, are recorded from this unit.
     pub recorded: core::ops::Range<usize>,
+    /// Units of the same make-up may share lanes: forces see no difference but in numbers.
+    pub make_up: usize,
 }
 
 impl Unit {
@@ -58,7 +60,7 @@ pub struct Prepared {
     pub position: Vec<[f64; 3]>,
     /// Velocities.
     pub velocity: Vec<[f64; 3]>,
-    /// `G·m` of the active bodies.
+    /// `G·m` of the active bodies; zero without gravity.
     pub strength: Vec<f64>,
     /// Masses.
     pub mass: Vec<f64>,
@@ -74,7 +76,7 @@ pub struct Prepared {
     units: Units,
     reading: Reading,
     /// Where columns are derived.
-    scratch: RefCell<Bodies>,
+    scratch: RefCell<PreciseBodies>,
 }
 
 impl Prepared {
@@ -92,9 +94,9 @@ impl Prepared {
         let velocity: Vec<[f64; 3]> =
             unit.bodies.iter().map(|&i| relative(velocities[i], origin.drift, units.velocity())).collect();
         let mass: Vec<f64> = unit.bodies.iter().map(|&i| scale(masses[i], -units.mass)).collect();
-        let constant = plan.gravity.map_or(0.0, |(constant, _)| constant);
-        let strength =
-            unit.bodies[..unit.active].iter().map(|&i| units.strength(constant, masses[i])).collect();
+        let constants = plan.forces.iter().filter_map(|force| force.as_newtonian());
+        let constant: f64 = constants.map(|(constant, _)| units.take(constant, [3, -1, -2])).sum();
+        let strength = mass[..unit.active].iter().map(|mass| constant * mass).collect();
         let mut prepared = Self {
             shape: lanes::shape(&unit, plan),
             reading: Reading::new(&unit, plan.layout, &origin, units),

@@ -6,11 +6,12 @@ use crate::registry;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
 use visviva_core::Error;
+use visviva_core::forces::ForceTerm;
 use visviva_core::parallel::thread_count;
+use visviva_core::scene::Scene;
 use visviva_core::scene::request::Request;
-use visviva_core::scene::{ForceSpec, Scene};
-use visviva_core::words::unknown;
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 
@@ -86,39 +87,6 @@ pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {
 ///
 /// # Errors
 /// `InvalidInput` for a kind, a parameter or a potential that is not known.
-pub(super) fn forces(specs: &Bound<'_, PyList>) -> PyResult<Vec<ForceSpec>> {
-    specs.iter().map(|spec| force(spec.cast::<PyDict>()?)).collect()
-}
-
-fn force(spec: &Bound<'_, PyDict>) -> PyResult<ForceSpec> {
-    let kind: String = get(spec, "kind")?;
-    match kind.as_str() {
-        "gravity" => Ok(ForceSpec::Gravity { constant: get(spec, "G")?, softening: get(spec, "softening")? }),
-        "uniform_field" => Ok(ForceSpec::UniformField { g: vector(spec, "g")? }),
-        "central_field" => {
-            let (name, parameters): (String, Vec<f64>) = (get(spec, "potential")?, get(spec, "parameters")?);
-            let potential = registry::build(spec.py(), &name, &parameters)?;
-            Ok(ForceSpec::CentralField { potential, center: vector(spec, "center")? })
-        }
-        other => {
-            let kinds = ["gravity", "uniform_field", "central_field"].into_iter();
-            Err(raised(spec.py(), unknown("forces", other, kinds)))
-        }
-    }
-}
-
-fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
-    dict: &Bound<'py, PyDict>,
-    key: &str,
-) -> PyResult<T> {
-    let value = dict
-        .get_item(key)?
-        .ok_or_else(|| raised(dict.py(), Error::invalid("forces", format!("a force lacks '{key}'"))))?;
-    value.extract().map_err(Into::into)
-}
-
-/// A vector of a force's description, given as an array.
-fn vector(dict: &Bound<'_, PyDict>, key: &str) -> PyResult<[f64; 3]> {
-    let (values, _) = copied(key, &get::<Array<'_>>(dict, key)?, [Some(3)])?;
-    Ok([values[0], values[1], values[2]])
+pub(super) fn forces(specs: &Bound<'_, PyList>) -> PyResult<Vec<Arc<dyn ForceTerm>>> {
+    specs.iter().map(|spec| registry::force(spec.cast::<PyDict>()?)).collect()
 }

@@ -4,7 +4,7 @@
 //! than 2^-450 of the extent, say) is summed by itself, in units of its own.
 
 use crate::error::Result;
-use crate::forces::bodies::{Bodies, Exponents, Of, joined};
+use crate::forces::bodies::{Exponents, Of, PreciseBodies, joined};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::fused_double::FusedDouble;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -36,7 +36,7 @@ struct Sums {
 /// # Errors
 /// [`Error::Interrupted`](crate::Error::Interrupted).
 pub fn potential_and_virial(
-    bodies: &Bodies,
+    bodies: &PreciseBodies,
     constant: f64,
     softening: f64,
     threads: usize,
@@ -92,7 +92,7 @@ fn blocks(massive: usize) -> Vec<Range<usize>> {
     blocks
 }
 
-fn sums_of(bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums {
+fn sums_of(bodies: &PreciseBodies, rows: Range<usize>, softening: f64) -> Sums {
     if softening == 0.0 {
         row_sums::<false>(bodies, rows, softening)
     } else {
@@ -101,11 +101,15 @@ fn sums_of(bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums {
 }
 
 tiered! {
-    fn row_sums[const SOFT: bool][SOFT](bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums = rows_of_pairs;
+    fn row_sums[const SOFT: bool][SOFT](bodies: &PreciseBodies, rows: Range<usize>, softening: f64) -> Sums = rows_of_pairs;
 }
 
 #[inline(always)]
-fn rows_of_pairs<V: Vector8, const SOFT: bool>(bodies: &Bodies, rows: Range<usize>, softening: f64) -> Sums {
+fn rows_of_pairs<V: Vector8, const SOFT: bool>(
+    bodies: &PreciseBodies,
+    rows: Range<usize>,
+    softening: f64,
+) -> Sums {
     let massive = bodies.massive();
     let soft = FusedDouble::product(V::splat(softening), V::splat(softening));
     let (least, most) = (V::splat(power_of_two(-RANGE)), V::splat(power_of_two(RANGE)));
@@ -163,7 +167,7 @@ fn only<V: Vector8>(mask: Bits, value: FusedDouble<V>) -> FusedDouble<V> {
 /// A pair in units of its own.
 #[cold]
 #[inline(never)]
-fn pair_apart(bodies: &Bodies, (i, j): (usize, usize), softening: f64, sums: &mut [Scaled; 2]) {
+fn pair_apart(bodies: &PreciseBodies, (i, j): (usize, usize), softening: f64, sums: &mut [Scaled; 2]) {
     let (from, to) = (bodies.vector(Of::Position, i), bodies.vector(Of::Position, j));
     let d: [DoubleDouble; 3] = core::array::from_fn(|c| to[c] - from[c]);
     let largest = d.iter().fold(0.0_f64, |largest, x| largest.max(x.to_f64().abs()));

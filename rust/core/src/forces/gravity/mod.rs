@@ -14,6 +14,7 @@
 pub mod closed;
 pub mod energy;
 pub mod few;
+pub mod newton;
 mod pair;
 mod passive;
 mod relative;

@@ -2,7 +2,8 @@
 
 use super::super::layout::Layout;
 use super::super::request::columns;
-use super::{Plan, Solution};
+use super::{Groups, Plan, Solution};
+use crate::forces::term::Coupling;
 use crate::ode::Scheme;
 use core::fmt;
 
@@ -37,20 +38,17 @@ impl Plan {
                 self.method.stages.to_string(),
                 "the method's stages".to_owned(),
             );
-            if self.gravity.is_some() {
-                row(
-                    "pairs per evaluation",
-                    self.pairs_per_evaluation().to_string(),
-                    format!("{} massive, {} massless bodies", self.active.len(), self.passive.len()),
-                );
+            if self.groups != Groups::Single {
+                row("pairs per evaluation", self.pairs_per_evaluation().to_string(), self.describe_pairs());
             }
-            let reason = match (self.layout, self.gravity.is_some()) {
+            let reason = match (self.layout, &self.groups) {
                 (Layout::Packed, _) => "one system at a time",
-                (Layout::Batched, true) if self.copies == 1 => {
+                (Layout::Batched, Groups::Listed(_)) => "groups of coupled bodies, each with its own steps",
+                (Layout::Batched, Groups::All) if self.copies == 1 => {
                     "one small system, in the first of eight lanes"
                 }
-                (Layout::Batched, true) => "small systems, each with its own steps",
-                (Layout::Batched, false) => "they do not interact: each has its own steps",
+                (Layout::Batched, Groups::All) => "small systems, each with its own steps",
+                (Layout::Batched, Groups::Single) => "they do not interact: each has its own steps",
             };
             row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
             let (over, inside) = self.threads;
@@ -63,13 +61,27 @@ impl Plan {
         rows
     }
 
+    fn describe_pairs(&self) -> String {
+        let pairing = self.forces.iter().filter(|force| force.coupling() != Coupling::None).count();
+        let bodies = match &self.groups {
+            Groups::Listed(groups) => format!(
+                "{} coupled bodies in groups of up to {}, {} by themselves",
+                self.active.len(),
+                groups.iter().map(|group| group.len()).max().unwrap_or_default(),
+                self.passive.len()
+            ),
+            _ => format!("{} massive, {} massless bodies", self.active.len(), self.passive.len()),
+        };
+        if pairing > 1 { format!("{bodies}, {pairing} forces between them") } else { bodies }
+    }
+
     /// What the SIMD lanes are.
     pub fn lanes(&self) -> &'static str {
-        match (self.solution == Solution::Integration, self.layout, self.gravity.is_some()) {
+        match (self.solution == Solution::Integration, self.layout, &self.groups) {
             (false, ..) => "none",
             (_, Layout::Packed, _) => "over bodies",
-            (_, Layout::Batched, true) => "over copies",
-            (_, Layout::Batched, false) => "over particles",
+            (_, Layout::Batched, Groups::Single) => "over particles",
+            (_, Layout::Batched, _) => "over copies",
         }
     }
 
@@ -92,17 +104,23 @@ impl Plan {
                 let why = "the others tell where it is, as the centre of mass moves uniformly";
                 skip("steps of the first massive body", why.to_owned());
             }
-            if matches!(self.gravity, Some((_, softening)) if softening == 0.0) {
-                skip("softening terms", "softening is 0".to_owned());
+            for (index, force) in self.forces.iter().enumerate() {
+                match force.skipped() {
+                    // Two forces that leave out the same are told once.
+                    Some(told) if !self.forces[..index].iter().any(|other| other.skipped() == Some(told)) => {
+                        skip(told.0, told.1.to_owned());
+                    }
+                    _ => {}
+                }
             }
-            if !self.passive.is_empty() && self.gravity.is_some() {
+            if !self.passive.is_empty() && self.groups == Groups::All {
                 let massless = self.passive.len() as u64;
                 skip(
                     "pairs of massless bodies",
                     format!("{} pairs exert nothing", massless * (massless - 1) / 2),
                 );
             }
-            if self.gravity.is_none() && self.particles > 1 {
+            if self.groups == Groups::Single && self.particles > 1 {
                 skip("pairs", "the particles do not interact".to_owned());
             }
             if self.method.adaptive() && self.outputs_between == 0 {

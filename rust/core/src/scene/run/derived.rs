@@ -4,7 +4,7 @@ use super::super::Scene;
 use super::super::columns::{Columns, Derived};
 use crate::conservation::columns::State;
 use crate::error::Result;
-use crate::forces::bodies::Bodies;
+use crate::forces::bodies::PreciseBodies;
 use crate::parallel::{Ticker, for_chunks};
 
 /// Numbers of a state that one thread takes at a time, about: a state of many particles is a chunk by itself.
@@ -32,7 +32,7 @@ pub(super) fn derive(
     let widths: Vec<&'static _> = columns.derived.iter().map(|derived| derived.column).collect();
     let parts = for_chunks(threads, chunks.len(), ticker, |chunk, ticker| {
         let (copy, first) = chunks[chunk];
-        let mut bodies = Bodies::default();
+        let mut bodies = PreciseBodies::default();
         let mut values: Vec<f64> = Vec::new();
         for time in first..rows[copy].min(first + together) {
             if ticker.tick().is_err() {
@@ -66,7 +66,7 @@ pub(super) fn derive(
     Ok(())
 }
 
-fn read(scene: &Scene, columns: &Columns, copy: usize, time: usize, bodies: &mut Bodies) {
+fn read(scene: &Scene, columns: &Columns, copy: usize, time: usize, bodies: &mut PreciseBodies) {
     bodies.clear(scene.particles);
     for (particle, &mass) in scene.masses(copy).iter().enumerate() {
         let at = ((copy * columns.times + time) * columns.particles + particle) * 3;

@@ -6,9 +6,10 @@
 use super::super::integrate::Ending;
 use super::super::request::Request;
 use super::{Outcome, Part, Reached};
-use crate::conservation::{kinetic_energy, potential_and_virial};
+use crate::conservation::kinetic_energy;
 use crate::error::Result;
-use crate::forces::bodies::Bodies;
+use crate::forces::bodies::PreciseBodies;
+use crate::forces::term::potential_and_virial;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 
@@ -35,7 +36,7 @@ pub(super) fn look(
         return Ok(());
     }
     let pairs = plan.pairs_per_evaluation();
-    let mut bodies = Bodies::default();
+    let mut bodies = PreciseBodies::default();
     for copy in 0..scene.copies {
         let member = part.member(copy);
         let outcome = &mut outcomes[member];

@@ -5,6 +5,7 @@
 
 use super::super::columns::Entry;
 use super::{Layout, Origin, Plan, Prepared, Unit, scale};
+use crate::forces::context::packed_place;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
@@ -27,11 +28,9 @@ pub(super) fn shape(unit: &Unit, plan: &Plan) -> Shape {
 impl Prepared {
     /// Row and lane of a body, of a unit that has the place `unit_lane` among the units of a state if batched.
     pub(in crate::scene) fn locate(&self, slot: usize, unit_lane: usize) -> (usize, usize) {
-        let active = self.unit.active;
         match self.layout {
             Layout::Batched => (unit_lane / WIDTH * self.shape.rows + slot, unit_lane % WIDTH),
-            Layout::Packed if slot < active => (slot / WIDTH, slot % WIDTH),
-            Layout::Packed => (active.div_ceil(WIDTH) + (slot - active) / WIDTH, (slot - active) % WIDTH),
+            Layout::Packed => packed_place(slot, self.unit.active),
         }
     }
 

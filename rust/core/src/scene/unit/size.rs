@@ -1,7 +1,7 @@
 //! What the errors of an adaptive step are measured against: the place, the drift and the size of a unit.
 
-use super::super::{ForceSpec, distance};
-use super::{Origin, Plan, Prepared, scale};
+use super::super::distance;
+use super::{Origin, Plan, Prepared};
 
 /// Above this many bodies the smallest separation is estimated from the mean density instead.
 const ALL_PAIRS: usize = 8192;
@@ -35,26 +35,27 @@ impl Prepared {
     /// exactly, in steps of any length. Nothing about it would tell a size either, it being its own reference; one of
     /// the plan's units instead would make its steps depend on the other copies of an ensemble.
     fn moves_as_a_polynomial(&self, plan: &Plan) -> bool {
-        let gentle = |force: &ForceSpec| !matches!(force, ForceSpec::CentralField { .. });
-        self.unit.active == 1 && self.position.len() == 1 && plan.forces.iter().all(gentle)
+        let mut forces = plan.forces.iter();
+        let gentle = forces.all(|force| force.as_uniform().is_some() || force.as_newtonian().is_some());
+        self.unit.active == 1 && self.position.len() == 1 && gentle
     }
 
     /// A fixed centre if there is one, else the centre of mass.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
-        let center = plan.forces.iter().find_map(|force| match force {
-            ForceSpec::CentralField { center, .. } => Some(*center),
-            _ => None,
-        });
+        let center = plan.forces.iter().find_map(|force| force.center());
         if let Some(center) = center {
-            reference.center = center.map(|x| scale(x, -self.units.length));
+            reference.center = self.units.take_vector(center, [1, 0, 0]);
             return reference;
         }
         let total: f64 = self.strength.iter().sum();
-        for (i, strength) in self.strength.iter().enumerate() {
+        // Other forces than gravity, or two that cancel, leave the masses.
+        let weights = if total == 0.0 { &self.mass[..self.unit.active] } else { &self.strength };
+        let total: f64 = weights.iter().sum();
+        for (i, weight) in weights.iter().enumerate() {
             for c in 0..3 {
-                reference.center[c] += strength / total * self.position[i][c];
-                reference.drift[c] += strength / total * self.velocity[i][c];
+                reference.center[c] += weight / total * self.position[i][c];
+                reference.drift[c] += weight / total * self.velocity[i][c];
             }
         }
         reference
@@ -77,22 +78,14 @@ impl Prepared {
                 }
             }
         }
-        separation.max(plan.gravity.map_or(0.0, |(_, softening)| scale(softening, -self.units.length)))
+        let length = plan.forces.iter().map(|force| force.length()).fold(0.0, f64::max);
+        separation.max(self.units.take(length, [1, 0, 0]))
     }
 
-    /// The largest acceleration that the central fields give to a body of the unit.
+    /// The largest acceleration that a force gives to a body of the unit, at rest where it is.
     fn field_strength(&self, plan: &Plan) -> f64 {
-        let mut strongest = 0.0_f64;
-        for force in &plan.forces {
-            if let ForceSpec::CentralField { potential, center } = force {
-                let potential = potential.scaled(self.units.length, self.units.energy());
-                let center = center.map(|x| scale(x, -self.units.length));
-                for (position, mass) in self.position.iter().zip(&self.mass) {
-                    let [_, force, _] = potential.evaluate(&[distance(*position, center)]);
-                    strongest = strongest.max(force[0].abs() / mass);
-                }
-            }
-        }
-        strongest
+        let bodies = self.unit.bodies.iter().zip(&self.mass).zip(&self.position);
+        let bodies: Vec<_> = bodies.map(|((&body, &mass), &position)| (body, mass, position)).collect();
+        plan.forces.iter().map(|force| force.strongest(&bodies, self.units)).fold(0.0, f64::max)
     }
 }

@@ -1,7 +1,7 @@
 //! Why a step fell to zero: the closest bodies, or a state that is no longer finite.
 
+use super::super::super::distance;
 use super::super::super::unit::Prepared;
-use super::super::super::{ForceSpec, distance};
 use super::super::{Ending, Job};
 use crate::numerics::lanes::Lanes;
 use crate::ode::state::State;
@@ -21,9 +21,9 @@ pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: us
         }
     }
     for force in &job.plan.forces {
-        if let ForceSpec::CentralField { center, .. } = force {
+        if let Some(center) = force.center() {
             for (slot, &body) in bodies.iter().enumerate() {
-                let distance = distance(places[slot], *center);
+                let distance = distance(places[slot], center);
                 if distance < closest.0 {
                     closest = (distance, (body, body));
                 }

@@ -1,0 +1,303 @@
+"""Classes made from what the core declares: forces and potentials.
+
+The one idea: a parameter's kind says how it is checked, printed, compared, written into a file, turned with the bodies
+and changed to other units. A force or a potential that the core registers needs nothing here.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, make_dataclass
+from typing import TYPE_CHECKING, Any, ClassVar, Self
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array, in_range, number, positive, whole_number
+from visviva._keywords import did_you_mean, known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import NDArray
+
+__all__ = ["Declared", "Parameter", "make"]
+
+_VECTORS = ("vector", "axial_vector", "point")
+_TYPES = {
+    "number": "float",
+    "numbers": "float or array_like",
+    "indices": "int or array_like of int",
+    "vector": "array_like, shape (3,)",
+    "axial_vector": "array_like, shape (3,)",
+    "point": "array_like, shape (3,)",
+    "potential": "visviva.potentials.Potential",
+    "choice": "str",
+}
+_SIGNS = {"positive": ", positive", "not_negative": ", not negative"}
+
+
+@dataclass(frozen=True, slots=True)
+class Parameter:
+    """What the core declares of a parameter."""
+
+    name: str
+    description: str
+    kind: str
+    sign: str
+    choices: tuple[str, ...]
+    default: float | None
+    dimension: tuple[int, int, int] | None
+
+    @property
+    def missing(self) -> Any:
+        """The value of a parameter that is not given; None if it has to be."""
+        if self.default is None:
+            return None
+        return (self.default,) * 3 if self.kind in _VECTORS else self.default
+
+    def check(self, value: Any) -> Any:
+        """The value as it is kept: frozen, comparable, of one type for each kind."""
+        if self.kind in _VECTORS:
+            return tuple(float_array(self.name, value, (3,)).tolist())
+        if self.kind == "number":
+            return self._signed(number(self.name, value))
+        if self.kind == "numbers":
+            return self._numbers(value)
+        if self.kind == "indices":
+            return self._indices(value)
+        if self.kind == "potential":
+            return _potential(self.name, value)
+        if value not in self.choices:
+            hint = did_you_mean(str(value), self.choices)
+            raise InvalidInput(self.name, f"expected one of {', '.join(self.choices)}, got {value!r}{hint}")
+        return value
+
+    def _signed(self, value: float) -> float:
+        if self.sign == "positive":
+            return positive(self.name, value)
+        if self.sign == "not_negative" and value < 0.0:
+            raise InvalidInput(self.name, f"expected a number of at least 0, got {value!r}")
+        return value
+
+    def _numbers(self, value: Any) -> float | NDArray[np.float64]:
+        array = float_array(self.name, value, None)
+        if array.ndim == 0:
+            return self._signed(float(array))
+        if array.ndim > 1:
+            raise InvalidInput(self.name, f"expected one number or an array of one axis, got shape {array.shape}")
+        for wrong in array[array <= 0.0 if self.sign == "positive" else array < 0.0] if self.sign != "any" else ():
+            self._signed(float(wrong))
+        kept: NDArray[np.float64] = _frozen(array, value)
+        return kept
+
+    def _indices(self, value: Any) -> int | NDArray[np.int64]:
+        if not isinstance(value, np.ndarray | list | tuple):
+            return whole_number(self.name, value, low=0)
+        array = np.asarray(value)
+        if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
+            raise InvalidInput(
+                self.name,
+                f"expected the index of a body or a one-dimensional array of them, "
+                f"got an array of {array.dtype.name} of shape {array.shape}",
+            )
+        if array.min() < 0:
+            raise InvalidInput(self.name, f"expected indices of bodies, from 0 on, got {array.min()}")
+        kept: NDArray[np.int64] = _frozen(array.astype(np.int64), value)
+        return kept
+
+    def to_core(self, value: Any) -> Any:
+        """What the core and a file know it by."""
+        if self.kind in ("numbers", *_VECTORS):
+            return np.atleast_1d(np.array(value, dtype=float))
+        if self.kind == "indices":
+            return np.atleast_1d(np.array(value, dtype=np.int64))
+        return value._to_core() if self.kind == "potential" else value
+
+    def from_core(self, value: Any) -> Any:
+        """The value that `to_core` described, from a file."""
+        if self.kind in ("numbers", "indices"):
+            return value[0] if len(value) == 1 else value
+        if self.kind == "potential":
+            from visviva.potentials import potential_from_core
+
+            return potential_from_core(value)
+        return value
+
+    def document(self) -> list[str]:
+        """Its entry in the documentation."""
+        optional = "" if self.default is None else ", optional"
+        kind = "{" + ", ".join(f'"{word}"' for word in self.choices) + "}" if self.choices else _TYPES[self.kind]
+        text = self.description + ("" if self.description.endswith(".") else ".")
+        if self.dimension is not None and any(self.dimension):
+            text += f" Dimension: {_dimension(self.dimension)}."
+        if self.default is not None:
+            text += f" {self.missing!r} if not given."
+        return [f"{self.name} : {kind}{_SIGNS.get(self.sign, '')}{optional}", f"    {text}"]
+
+
+class Declared:
+    """What a class made from a declaration has: frozen values that are checked, compared, printed and described."""
+
+    __slots__ = ()
+
+    kind: ClassVar[str]
+    _parameters: ClassVar[tuple[Parameter, ...]]
+
+    def __post_init__(self) -> None:
+        for parameter in self._parameters:
+            object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
+
+    def _values(self) -> dict[str, Any]:
+        return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}
+
+    def __repr__(self) -> str:
+        shown = (f"{name}={_plain(value)!r}" for name, value in self._values().items())
+        return f"{type(self).__name__}({', '.join(shown)})"
+
+    def __eq__(self, other: object) -> bool:
+        if type(other) is not type(self):
+            return NotImplemented
+        theirs = other._values()
+        return all(np.array_equal(value, theirs[name]) for name, value in self._values().items())
+
+    def __hash__(self) -> int:
+        # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
+        keys = (
+            value.tobytes() if isinstance(value, np.ndarray) else value
+            for value in map(_zeroed, self._values().values())
+        )
+        return hash((type(self).__name__, *keys))
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), tuple(self._values().values())
+
+    def _to_core(self) -> dict[str, Any]:
+        """The dictionary by which the core and a file know it."""
+        return {"kind": self.kind} | {p.name: p.to_core(getattr(self, p.name)) for p in self._parameters}
+
+    @classmethod
+    def _from_core(cls, description: dict[str, Any]) -> Self:
+        return cls(**{p.name: p.from_core(description[p.name]) for p in cls._parameters if p.name in description})
+
+    def _rescaled(self, length: float, mass: float, time: float) -> Self:
+        """The same in units of which ``length``, ``mass`` and ``time`` make one old unit."""
+        scales = tuple(
+            positive(unit, scale, "number of new units per old one")
+            for unit, scale in (("length", length), ("mass", mass), ("time", time))
+        )
+        new: dict[str, Any] = {}
+        for parameter, powers in zip(self._parameters, _core.dimensions(self._to_core()), strict=True):
+            name, value = parameter.name, getattr(self, parameter.name)
+            if parameter.kind == "potential":
+                value = value.rescaled(length=length, mass=mass, time=time)
+            elif parameter.kind not in ("indices", "choice") and any(powers):
+                factor = _scaled(name, powers, scales)
+                value = _each(value, factor)
+            new[name] = value
+        return type(self)(**new)
+
+
+def make(entry: dict[str, Any], base: type[Any], module: str, law: str, namespace: dict[str, Any]) -> type[Any]:
+    """The class of an entry of the registry; ``law`` is what its formula is called in the documentation."""
+    parameters = tuple(Parameter(**(row | {"choices": tuple(row["choices"])})) for row in entry["parameters"])
+    made = make_dataclass(
+        entry["class_name"],
+        [
+            (p.name, _TYPES[p.kind]) if p.default is None else (p.name, _TYPES[p.kind], field(default=p.missing))
+            for p in parameters
+        ],
+        bases=(base,),
+        namespace={"kind": entry["name"], "_parameters": parameters, "__doc__": _document(entry, parameters, law)}
+        | namespace,
+        frozen=True,
+        slots=True,
+        eq=False,
+        repr=False,
+    )
+    made.__module__ = module
+    return known_keywords(made)
+
+
+def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...], law: str) -> str:
+    lines = [f"{entry['summary'].rstrip('.')}: {law}{entry['formula']}.", ""]
+    if entry["notes"]:
+        lines += [entry["notes"], ""]
+    lines += ["Parameters", "----------"]
+    for parameter in parameters:
+        lines += parameter.document()
+    lines += [
+        "",
+        "Raises",
+        "------",
+        "visviva.InvalidInput",
+        "    If a parameter is not what is said above, or not finite.",
+    ]
+    lines += ["", "References", "----------", entry["source"] + "."]
+    lines += ["", "Examples", "--------", ">>> import visviva as vv", *entry["example"].splitlines()]
+    return "\n".join(lines) + "\n"
+
+
+def _dimension(powers: tuple[int, ...]) -> str:
+    units = [(name, power) for name, power in zip(("length", "mass", "time"), powers, strict=True) if power]
+    above = " · ".join(name if power == 1 else f"{name}^{power}" for name, power in units if power > 0) or "1"
+    below = " · ".join(name if power == -1 else f"{name}^{-power}" for name, power in units if power < 0)
+    if not below:
+        return above
+    return f"{above} / ({below})" if "·" in below else f"{above} / {below}"
+
+
+def _scaled(name: str, powers: tuple[float, float, float], scales: tuple[float, ...]) -> Callable[[float], float]:
+    """What brings a number of the dimension length^p mass^q time^r to other units, rounded once if p, q, r are whole.
+
+    The product is exact: scales of 1e±150 that together make a moderate factor do not overflow or vanish on the way.
+    """
+    from fractions import Fraction
+
+    exact, rest = Fraction(1), 1.0
+    for scale, power in zip(scales, powers, strict=True):
+        whole = int(power)
+        exact *= Fraction(scale) ** whole
+        rest *= scale ** (power - whole)
+
+    def scaled(value: float) -> float:
+        try:
+            result = float(Fraction(value) * exact) * rest
+        except OverflowError:
+            result = float("inf")
+        return in_range(name, value, result)
+
+    return scaled
+
+
+def _each(value: Any, change: Callable[[float], float]) -> Any:
+    if isinstance(value, np.ndarray):
+        return np.array([change(x) for x in value.tolist()])
+    return tuple(map(change, value)) if isinstance(value, tuple) else change(value)
+
+
+def _potential(name: str, value: Any) -> Any:
+    from visviva.potentials import Potential
+
+    if not isinstance(value, Potential):
+        raise InvalidInput(
+            name, f"expected one of visviva.potentials, for example Coulomb(k=-1.0), got {type(value).__name__}"
+        )
+    return value
+
+
+def _frozen(array: NDArray[Any], given: object) -> Any:
+    if array.flags.writeable or array is given:
+        array = array.copy()
+        array.flags.writeable = False
+    return array
+
+
+def _plain(value: Any) -> Any:
+    return value.tolist() if isinstance(value, np.ndarray) else value
+
+
+def _zeroed(value: Any) -> Any:
+    if isinstance(value, np.ndarray) and value.dtype.kind == "f":
+        return value + 0.0
+    return value

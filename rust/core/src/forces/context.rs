@@ -1,0 +1,95 @@
+//! What a kernel is made for: bodies in lanes, in the units of the integration.
+
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::real::Real;
+use crate::units::Units;
+
+/// What the lanes are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arrangement {
+    /// The bodies of one system: those that attract first, each kind from the beginning of a row.
+    Packed,
+    /// Systems of the same make-up, a row for each body; those beyond eight in further blocks of rows.
+    Batched,
+}
+
+/// The bodies of a system that is integrated by itself.
+#[derive(Clone, Copy, Debug)]
+pub struct System<'a> {
+    /// Their places in the scene.
+    pub bodies: &'a [usize],
+    /// Their masses, in the units of the integration.
+    pub mass: &'a [f64],
+}
+
+/// What a kernel is made for.
+#[derive(Debug)]
+pub struct Context<'a> {
+    /// What the lanes are.
+    pub arrangement: Arrangement,
+    /// How coordinates lie.
+    pub shape: Shape,
+    /// How many bodies of each system attract; they come first.
+    pub active: usize,
+    /// The systems: one if packed.
+    pub systems: &'a [System<'a>],
+    /// The units of the integration.
+    pub units: Units,
+    /// Threads that one evaluation may use.
+    pub threads: usize,
+}
+
+/// Row and lane of a body of a packed system.
+pub fn packed_place(slot: usize, active: usize) -> (usize, usize) {
+    if slot < active {
+        (slot / WIDTH, slot % WIDTH)
+    } else {
+        (active.div_ceil(WIDTH) + (slot - active) / WIDTH, (slot - active) % WIDTH)
+    }
+}
+
+impl<'a> Context<'a> {
+    /// The first system, by whose make-up all go.
+    pub fn first(&self) -> System<'a> {
+        self.systems.first().copied().unwrap_or(System { bodies: &[], mass: &[] })
+    }
+    /// Blocks of rows, each with the bodies of a system for every lane.
+    pub fn blocks(&self) -> usize {
+        match self.arrangement {
+            Arrangement::Packed => 1,
+            Arrangement::Batched => self.systems.len().div_ceil(WIDTH),
+        }
+    }
+
+    /// A number of each body (of a system, by its place there) in its row and lane. Lanes without a body have zero,
+    /// those without a system repeat the last.
+    pub fn per_body(&self, of: impl Fn(&System<'a>, usize) -> f64) -> Vec<Lanes> {
+        match self.arrangement {
+            Arrangement::Batched => self.in_rows(self.first().bodies.len(), of),
+            Arrangement::Packed => {
+                let mut values = vec![Lanes::zero(); self.shape.rows];
+                let system = self.first();
+                for slot in 0..system.bodies.len() {
+                    let (row, lane) = packed_place(slot, self.active);
+                    values[row].0[lane] = of(&system, slot);
+                }
+                values
+            }
+        }
+    }
+
+    /// As [`per_body`](Self::per_body), of the first bodies of each system, batched.
+    pub fn in_rows(&self, bodies: usize, of: impl Fn(&System<'a>, usize) -> f64) -> Vec<Lanes> {
+        let system =
+            |block: usize, lane: usize| &self.systems[(block * WIDTH + lane).min(self.systems.len() - 1)];
+        let of = &of;
+        let row =
+            |block: usize, slot: usize| Lanes(core::array::from_fn(|lane| of(system(block, lane), slot)));
+        let blocks = 0..self.systems.len().div_ceil(WIDTH);
+        blocks
+            .flat_map(|block| (0..bodies).map(move |slot| (block, slot)))
+            .map(|(block, slot)| row(block, slot))
+            .collect()
+    }
+}

@@ -1,0 +1,153 @@
+//! Newton's law between all pairs: what a scene describes.
+
+use super::{FewBodies, RING_MAX, Ring, Tiles, energy};
+use crate::error::{Error, Result};
+use crate::forces::Force;
+use crate::forces::bodies::PreciseBodies;
+use crate::forces::context::{Arrangement, Context};
+use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
+use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
+use crate::numerics::power_of_two::exponent;
+use crate::numerics::real::Real;
+use crate::numerics::scaled::Scaled;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::words::numbers;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in the gravitational constant.
+const CONSTANT: [i32; 3] = [3, -1, -2];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "gravity",
+    class_name: "Gravity",
+    summary: "Newton's law between every two bodies",
+    formula: "V = −Σ G mᵢ mⱼ / √(r² + softening²)",
+    notes: "Massless bodies feel the others and exert nothing. Without softening, coincident bodies are refused.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.7; \
+             softening: H. C. Plummer, MNRAS 71 (1911) 460",
+    example: ">>> vv.Gravity(G=1.0)\nGravity(G=1.0, softening=0.0)",
+    parameters: &[
+        Parameter::number("G", CONSTANT, "The gravitational constant"),
+        Parameter::new("softening", Kind::Number(Sign::NotNegative), "Plummer softening length")
+            .of([1, 0, 0])
+            .or(0.0),
+    ],
+    make: |values| Ok(Arc::new(Gravity::new(values[0].number(), values[1].number()))),
+};
+
+/// Newtonian gravity between all pairs.
+#[derive(Debug)]
+pub struct Gravity {
+    constant: f64,
+    softening: f64,
+}
+
+impl Gravity {
+    /// From the gravitational constant and the softening length.
+    pub fn new(constant: f64, softening: f64) -> Self {
+        Self { constant, softening }
+    }
+}
+
+/// Gravity among the few bodies of each system, batched.
+pub fn few_bodies(context: &Context<'_>, constant: f64, softening: f64) -> FewBodies<Lanes> {
+    let (constant, softening) =
+        (context.units.take(constant, CONSTANT), context.units.take(softening, [1, 0, 0]));
+    let strength = context.in_rows(context.active, |system, slot| constant * system.mass[slot]);
+    FewBodies::new(context.shape, context.blocks(), strength, softening)
+}
+
+impl ForceTerm for Gravity {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let (shape, active) = (context.shape, context.active);
+        let softening = context.units.take(self.softening, [1, 0, 0]);
+        let constant = context.units.take(self.constant, CONSTANT);
+        let mass = context.first().mass;
+        match context.arrangement {
+            Arrangement::Batched => Box::new(few_bodies(context, self.constant, self.softening)),
+            Arrangement::Packed if active <= RING_MAX => {
+                let strength = mass[..active].iter().map(|mass| constant * mass).collect();
+                Box::new(Ring::new(shape, strength, softening))
+            }
+            Arrangement::Packed => {
+                let mut strength = vec![Lanes::zero(); active.div_ceil(WIDTH)];
+                for (strength, mass) in as_numbers_mut(&mut strength).iter_mut().zip(&mass[..active]) {
+                    *strength = constant * mass;
+                }
+                Box::new(Tiles::new(shape, strength, active, softening, context.threads))
+            }
+        }
+    }
+
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        energy::potential_and_virial(bodies, self.constant, self.softening, threads, ticker)
+    }
+
+    fn validate(&self, bodies: &Bodies<'_>) -> Result<()> {
+        if self.softening > 0.0 {
+            return Ok(());
+        }
+        for copy in 0..bodies.copies {
+            let (mass, position) = bodies.copy(copy);
+            // Sorted along x, bodies that coincide are neighbours: O(N log N), not O(N²).
+            let mut order: Vec<usize> = (0..bodies.particles).collect();
+            order.sort_by(|&i, &j| {
+                let (a, b) = (position[i], position[j]);
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2])).then(i.cmp(&j))
+            });
+            for pair in order.windows(2) {
+                let (i, j) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                if position[i] == position[j] && (mass[i] > 0.0 || mass[j] > 0.0) {
+                    let [first, second] =
+                        [i, j].map(|body| bodies.name("position", copy * bodies.particles + body));
+                    return Err(Error::invalid(
+                        "position",
+                        format!(
+                            "expected distinct positions for bodies that attract each other, got {first} = \
+                             {second} = {}; move one of them or give Gravity a softening",
+                            numbers(&position[i])
+                        ),
+                    ));
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn acts(&self, bodies: &Bodies<'_>) -> bool {
+        self.constant != 0.0 && bodies.particles > 1 && bodies.mass.iter().any(|&mass| mass > 0.0)
+    }
+    fn coupling(&self) -> Coupling {
+        Coupling::AllPairs
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves::EVERYTHING
+    }
+    fn keeps_plane(&self) -> bool {
+        true
+    }
+    fn length(&self) -> f64 {
+        self.softening
+    }
+    /// The free-fall time of the mass from that length.
+    fn unit_of_time(&self, length: i32, mass: i32) -> Option<i32> {
+        (self.constant != 0.0).then(|| (3 * length - exponent(self.constant) - mass).div_euclid(2))
+    }
+    fn skipped(&self) -> Option<(&'static str, &'static str)> {
+        (self.softening == 0.0).then_some(("softening terms", "softening is 0"))
+    }
+    fn as_newtonian(&self) -> Option<(f64, f64)> {
+        Some((self.constant, self.softening))
+    }
+}

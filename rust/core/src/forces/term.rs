@@ -1,0 +1,245 @@
+//! `ForceTerm`: a force as a scene describes it, before there are lanes.
+//!
+//! The one idea: whatever the rest of the core wants to know of a force, it asks here, so that a force is one file and
+//! one line of [`registry::FORCES`](crate::registry::FORCES). What a force does not answer has the answer that makes
+//! no promise: nothing is conserved, the motion fills space, no closed form applies.
+
+use super::Force;
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use crate::error::{Error, Result};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::Declaration;
+use crate::units::Units;
+use crate::words::number;
+use core::fmt::Debug;
+
+/// What a force declares about itself.
+pub type ForceDeclaration = Declaration<dyn ForceTerm>;
+
+/// Which bodies a force makes depend on each other, and so to be integrated together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Coupling {
+    /// None: it acts on each for itself.
+    None,
+    /// All that have mass with each other, and each massless body with them.
+    AllPairs,
+    /// Those of some pairs.
+    Listed(Vec<(usize, usize)>),
+}
+
+/// About which points a force leaves the angular momentum constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum About {
+    /// None.
+    Nowhere,
+    /// One.
+    Point([f64; 3]),
+    /// All.
+    Everywhere,
+}
+
+/// What a force leaves constant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Conserves {
+    /// The total momentum, and with it the uniform motion of the centre of mass.
+    pub momentum: bool,
+    /// The angular momentum about some points at rest.
+    pub angular_momentum: About,
+    /// The angular momentum about the moving centre of mass.
+    pub spin: bool,
+    /// The sum of the kinetic energy and of what [`ForceTerm::potential_and_virial`] gives.
+    pub energy: bool,
+}
+
+impl Conserves {
+    /// Nothing.
+    pub const NOTHING: Self =
+        Self { momentum: false, angular_momentum: About::Nowhere, spin: false, energy: false };
+    /// Everything, as forces between two bodies along the line from one to the other do.
+    pub const EVERYTHING: Self =
+        Self { momentum: true, angular_momentum: About::Everywhere, spin: true, energy: true };
+}
+
+/// The bodies of a scene, one copy after another, for a force to look at.
+#[derive(Clone, Copy, Debug)]
+pub struct Bodies<'a> {
+    /// Copies.
+    pub copies: usize,
+    /// Bodies of each.
+    pub particles: usize,
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Positions.
+    pub position: &'a [[f64; 3]],
+    /// Velocities.
+    pub velocity: &'a [[f64; 3]],
+}
+
+impl<'a> Bodies<'a> {
+    /// The masses and the positions of a copy.
+    pub fn copy(&self, copy: usize) -> (&'a [f64], &'a [[f64; 3]]) {
+        let own = copy * self.particles..(copy + 1) * self.particles;
+        (&self.mass[own.clone()], &self.position[own])
+    }
+    /// What a refusal calls the quantity of a body, by its place in the arrays.
+    pub fn name(&self, what: &str, index: usize) -> String {
+        let (copy, particle) = (index / self.particles, index % self.particles);
+        if self.copies == 1 { format!("{what}[{particle}]") } else { format!("{what}[{copy}, {particle}]") }
+    }
+    /// Refuses an array of a parameter that is neither one number nor one for each body.
+    ///
+    /// # Errors
+    /// By the name of the parameter.
+    pub fn check_count(&self, name: &str, count: usize) -> Result<()> {
+        if count == 1 || count == self.particles {
+            return Ok(());
+        }
+        let expected = format!("expected one number, or one for each of {} bodies", self.particles);
+        Err(Error::invalid(name, format!("{expected}, got {count}")))
+    }
+}
+
+/// A force of a scene, as described.
+pub trait ForceTerm: Debug + Send + Sync {
+    /// What it declares about itself.
+    fn declaration(&self) -> &'static ForceDeclaration;
+
+    /// The kernel for lanes laid out and scaled as the context says.
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>>;
+
+    /// Its potential energy of these bodies, zero if it has none, and Σ r·F; the same on any number of threads.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`].
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)>;
+
+    /// Refuses bodies that it cannot act on.
+    ///
+    /// # Errors
+    /// By name.
+    fn validate(&self, _: &Bodies<'_>) -> Result<()> {
+        Ok(())
+    }
+    /// Whether it acts on a body by a force, so that the body must have mass to be moved.
+    fn needs_mass(&self, _particle: usize) -> bool {
+        false
+    }
+    /// Whether it does anything to these bodies.
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        true
+    }
+    /// What it looks at beside positions.
+    fn needs(&self) -> Needs {
+        Needs::default()
+    }
+    /// Which bodies it makes depend on each other.
+    fn coupling(&self) -> Coupling {
+        Coupling::None
+    }
+    /// What it leaves constant.
+    fn conserves(&self) -> Conserves {
+        Conserves::NOTHING
+    }
+    /// Whether bodies that move in the plane z = 0 stay there.
+    fn keeps_plane(&self) -> bool {
+        false
+    }
+    /// The point about which it acts, where it may be singular: distances are measured from there.
+    fn center(&self) -> Option<[f64; 3]> {
+        None
+    }
+    /// A length below which it has no structure, or zero.
+    fn length(&self) -> f64 {
+        0.0
+    }
+    /// The unit of time that goes with units of length and mass, all as exponents of two, if the force has one.
+    fn unit_of_time(&self, _length: i32, _mass: i32) -> Option<i32> {
+        None
+    }
+    /// The largest acceleration that it gives to one of some bodies at rest, by which a step is chosen if nothing else
+    /// tells: their places in the scene, masses and positions in those units.
+    fn strongest(&self, _: &[(usize, f64, [f64; 3])], _: Units) -> f64 {
+        0.0
+    }
+    /// What its kernel leaves out, and why.
+    fn skipped(&self) -> Option<(&'static str, &'static str)> {
+        None
+    }
+
+    /// The acceleration, if it is the same for every body everywhere and always.
+    fn as_uniform(&self) -> Option<[f64; 3]> {
+        None
+    }
+    /// The gravitational constant and the softening length, if it is Newton's gravity.
+    fn as_newtonian(&self) -> Option<(f64, f64)> {
+        None
+    }
+    /// `k` and the center, if it is that of a potential energy k/r about a fixed point.
+    fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
+        None
+    }
+}
+
+/// Refuses a massless body on which a force acts that moves only what has mass.
+///
+/// # Errors
+/// By name.
+pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
+    let massless = |&(index, &mass): &(usize, &f64)| mass == 0.0 && term.needs_mass(index % bodies.particles);
+    match bodies.mass.iter().enumerate().find(massless) {
+        None => Ok(()),
+        Some((index, &mass)) => Err(Error::invalid(
+            "mass",
+            format!(
+                "{} acts by its force, so every mass must be positive, got {} = {}",
+                term.declaration().class_name,
+                bodies.name("mass", index),
+                number(mass)
+            ),
+        )),
+    }
+}
+
+/// What all the forces together leave constant of these bodies.
+pub fn conserved_by(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>) -> Conserves {
+    let mut all = Conserves::EVERYTHING;
+    for term in terms.iter().filter(|term| term.acts(bodies)) {
+        let own = term.conserves();
+        all.momentum &= own.momentum;
+        all.spin &= own.spin;
+        all.energy &= own.energy;
+        all.angular_momentum = match (all.angular_momentum, own.angular_momentum) {
+            (About::Everywhere, other) | (other, About::Everywhere) => other,
+            (About::Point(a), About::Point(b)) if a == b => About::Point(a),
+            _ => About::Nowhere,
+        };
+    }
+    all
+}
+
+/// Potential energy and Σ r·F of all the forces.
+///
+/// # Errors
+/// [`Error::Interrupted`].
+pub fn potential_and_virial(
+    terms: &[std::sync::Arc<dyn ForceTerm>],
+    bodies: &PreciseBodies,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<(Scaled, Scaled)> {
+    let (mut potential, mut virial) = (Scaled::ZERO, Scaled::ZERO);
+    for term in terms {
+        let (energy, work) = term.potential_and_virial(bodies, threads, ticker)?;
+        (potential, virial) = (potential.plus(energy), virial.plus(work));
+    }
+    Ok((potential, virial))
+}

@@ -1,0 +1,61 @@
+//! What has to be integrated together: the connected parts of the graph of which body depends on which.
+
+use crate::forces::ForceTerm;
+use crate::forces::term::Coupling;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// How the bodies of a copy hang together.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum Groups {
+    /// Each by itself.
+    Single,
+    /// All together: every body that has mass acts on every other one.
+    All,
+    /// By listed pairs: the groups of more than one, each in order of index.
+    Listed(Vec<Arc<[usize]>>),
+}
+
+impl Groups {
+    /// Of so many bodies under these forces.
+    pub fn of(particles: usize, forces: &[Arc<dyn ForceTerm>]) -> Self {
+        let mut parent: Vec<usize> = (0..particles).collect();
+        for force in forces {
+            match force.coupling() {
+                Coupling::None => {}
+                Coupling::AllPairs => return Self::All,
+                Coupling::Listed(pairs) => {
+                    for (i, j) in pairs {
+                        let (i, j) = (root(&mut parent, i), root(&mut parent, j));
+                        parent[i.max(j)] = i.min(j);
+                    }
+                }
+            }
+        }
+        let mut groups: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for body in 0..particles {
+            groups.entry(root(&mut parent, body)).or_default().push(body);
+        }
+        let listed: Vec<Arc<[usize]>> =
+            groups.into_values().filter(|group| group.len() > 1).map(Arc::from).collect();
+        if listed.is_empty() { Self::Single } else { Self::Listed(listed) }
+    }
+
+    /// The most bodies of a group.
+    pub fn largest(&self, particles: usize) -> usize {
+        match self {
+            Self::Single => 1,
+            Self::All => particles,
+            Self::Listed(groups) => groups.iter().map(|group| group.len()).max().unwrap_or(1),
+        }
+    }
+}
+
+/// The body by which the group of a body is known; the way to it is shortened.
+fn root(parent: &mut [usize], mut body: usize) -> usize {
+    while parent[body] != body {
+        parent[body] = parent[parent[body]];
+        body = parent[body];
+    }
+    body
+}
