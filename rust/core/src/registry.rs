@@ -1,12 +1,16 @@
 //! What the package offers, one line each: methods and potentials.
 
 use crate::ode::Method;
-use crate::ode::methods::{dop853, kahan_li8, leapfrog, rk4, stormer13, yoshida4};
+use crate::ode::methods::{
+    bogacki_shampine32, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+};
 use crate::potentials::{Declaration, coulomb, lennard_jones, yukawa};
 
 /// Every integration method, in the order of the documentation.
 pub static METHODS: &[&Method] = &[
     &rk4::METHOD,
+    &bogacki_shampine32::METHOD,
+    &dormand_prince54::METHOD,
     &dop853::METHOD,
     &leapfrog::METHOD,
     &yoshida4::METHOD,
