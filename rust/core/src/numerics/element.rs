@@ -11,6 +11,7 @@ pub(crate) mod batch;
 mod loops;
 pub(crate) mod multistep;
 mod relative;
+mod scalar;
 
 use super::double_double::DoubleDouble;
 use super::inverse_cube::InverseCube;
@@ -47,6 +48,15 @@ pub struct Weighted<'a, S> {
     pub terms: &'a [Term<S>],
     /// The accelerations.
     pub a: &'a [S],
+}
+
+/// Tolerances of the numbers of a state, one by one.
+#[derive(Clone, Copy, Debug)]
+pub struct Tolerances<'a, S> {
+    /// Absolute.
+    pub atol: &'a [S],
+    /// Relative.
+    pub rtol: &'a [S],
 }
 
 /// The accelerations of nodes gone by, as their backward differences; blocks like that of an acceleration.
@@ -148,6 +158,15 @@ pub trait Element: InverseCube {
         terms: &[PairTerm<Self>],
         k: (&[Self], usize),
     ) -> [Self; 2];
+    /// The mean of the squared scaled errors `(h Σ weight·k)² / (atol + rtol·|y|)²` of all numbers, `|y|` being the larger
+    /// of two states, for two sets of weights at once.
+    fn mean_errors(
+        y: [&[Self]; 2],
+        tolerances: Tolerances<'_, Self>,
+        h: &Self,
+        terms: &[PairTerm<Self>],
+        k: (&[Self], usize),
+    ) -> [Self; 2];
     /// `d += h²·a + Σ weight·∇²a`, the oldest first, then `q += d`, both compensated: a step of a multistep method.
     /// The present accelerations join the past.
     fn multistep(nodes: Nodes<'_, Self>);
@@ -188,7 +207,7 @@ impl Shape {
 }
 
 macro_rules! plain_element {
-    ($type:ty) => {
+    ($type:ty, $sums:ident) => {
         impl Element for $type {
             fn kick_drift(
                 q: (&mut [Self], &mut [Self]),
@@ -208,7 +227,7 @@ macro_rules! plain_element {
                 slope: (&[Self], &Self),
                 stages: Weighted<'_, Self>,
             ) {
-                loops::combine(out, q, slope, stages);
+                $sums::combine(out, q, slope, stages);
             }
             fn combine_compensated(
                 out: (&mut [Self], &mut [Self]),
@@ -216,17 +235,17 @@ macro_rules! plain_element {
                 slope: (&[Self], &Self),
                 stages: Weighted<'_, Self>,
             ) {
-                loops::combine_compensated(out, q, slope, stages);
+                $sums::combine_compensated(out, q, slope, stages);
             }
             fn combine_velocity(out: &mut [Self], v: (&[Self], &[Self]), stages: Weighted<'_, Self>) {
-                loops::combine_velocity(out, v, stages);
+                $sums::combine_velocity(out, v, stages);
             }
             fn combine_velocity_compensated(
                 out: (&mut [Self], &mut [Self]),
                 v: (&[Self], &[Self]),
                 stages: Weighted<'_, Self>,
             ) {
-                loops::combine_velocity_compensated(out, v, stages);
+                $sums::combine_velocity_compensated(out, v, stages);
             }
             fn largest_errors(
                 shape: Shape,
@@ -238,6 +257,15 @@ macro_rules! plain_element {
                 k: (&[Self], usize),
             ) -> [Self; 2] {
                 loops::largest_errors(shape, y, reference, (*tolerance.0, *tolerance.1), *h, terms, k)
+            }
+            fn mean_errors(
+                y: [&[Self]; 2],
+                tolerances: Tolerances<'_, Self>,
+                h: &Self,
+                terms: &[PairTerm<Self>],
+                k: (&[Self], usize),
+            ) -> [Self; 2] {
+                $sums::mean_errors(y, tolerances, h, terms, k)
             }
             fn multistep(nodes: Nodes<'_, Self>) {
                 multistep::step(nodes);
@@ -261,5 +289,6 @@ macro_rules! plain_element {
         }
     };
 }
-plain_element!(f64);
-plain_element!(DoubleDouble);
+// What a step of one trajectory spends most of its time with is compiled for every tier: `f64` has no other lanes.
+plain_element!(f64, scalar);
+plain_element!(DoubleDouble, loops);

@@ -1,8 +1,8 @@
 //! The loops over [`Lanes`], compiled for every tier.
 
 use super::{
-    Differences, Element, Nodes, PairTerm, Relative, Scaled, Shape, Term, Weighted, loops, multistep,
-    relative,
+    Differences, Element, Nodes, PairTerm, Relative, Scaled, Shape, Term, Tolerances, Weighted, loops,
+    multistep, relative,
 };
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
@@ -129,6 +129,20 @@ fn largest_errors_lanes<V: Vector8 + InverseCube>(
     [first.store(), second.store()]
 }
 
+#[inline(always)]
+fn mean_errors_lanes<V: Vector8>(
+    [y, next]: [&[Lanes]; 2],
+    Tolerances { atol, rtol }: Tolerances<'_, Lanes>,
+    h: &Lanes,
+    terms: &[PairTerm<Lanes>],
+    k: (&[Lanes], usize),
+) -> [Lanes; 2] {
+    let tolerances = Tolerances { atol: V::view(atol), rtol: V::view(rtol) };
+    let y = [V::view(y), V::view(next)];
+    loops::mean_errors::<V>(y, tolerances, &V::load(*h), view_pair_terms(terms), (V::view(k.0), k.1))
+        .map(V::store)
+}
+
 /// The past as the tier's vectors.
 #[inline(always)]
 fn view_past<'a, V: Vector8>(past: Differences<'a, Lanes>) -> Differences<'a, V> {
@@ -214,6 +228,7 @@ tiered! {
     fn combine_velocity_tier[][](out: &mut [Lanes], v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_lanes;
     fn combine_velocity_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_compensated_lanes;
     fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes; 4], tolerance: (&Lanes, &Lanes), h: &Lanes, terms: &[PairTerm<Lanes>], k: (&[Lanes], usize)) -> [Lanes; 2] = largest_errors_lanes;
+    fn mean_errors_tier[][](y: [&[Lanes]; 2], tolerances: Tolerances<'_, Lanes>, h: &Lanes, terms: &[PairTerm<Lanes>], k: (&[Lanes], usize)) -> [Lanes; 2] = mean_errors_lanes;
 }
 
 impl Element for Lanes {
@@ -260,6 +275,15 @@ impl Element for Lanes {
         k: (&[Self], usize),
     ) -> [Self; 2] {
         largest_errors_tier(shape, y, reference, tolerance, h, terms, k)
+    }
+    fn mean_errors(
+        y: [&[Self]; 2],
+        tolerances: Tolerances<'_, Self>,
+        h: &Self,
+        terms: &[PairTerm<Self>],
+        k: (&[Self], usize),
+    ) -> [Self; 2] {
+        mean_errors_tier(y, tolerances, h, terms, k)
     }
     fn multistep(nodes: Nodes<'_, Self>) {
         multistep_tier(nodes);

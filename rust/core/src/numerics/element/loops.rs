@@ -2,9 +2,9 @@
 //!
 //! No closures: they would be compiled without the tier's instructions.
 
-use super::{PairTerm, Scaled, Shape, Term, Weighted};
+use super::{PairTerm, Scaled, Shape, Term, Tolerances, Weighted};
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 
 /// `y + e + increment`, again as a sum and what it leaves out. What the step's coefficient leaves out joins the increment before `e` does: so a step
 /// stays the symplectic map of its rounded coefficients. Added to `e` first it is kept or lost depending on the
@@ -204,6 +204,42 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
         }
     }
     largest
+}
+
+#[inline(always)]
+pub(super) fn mean_errors<S: Real>(
+    [y, next]: [&[S]; 2],
+    Tolerances { atol, rtol }: Tolerances<'_, S>,
+    &h: &S,
+    terms: &[PairTerm<S>],
+    (k, stride): (&[S], usize),
+) -> [S; 2] {
+    let n = y.len();
+    let (next, atol, rtol) = (&next[..n], &atol[..n], &rtol[..n]);
+    let mut sums = [S::zero(); 2];
+    for i in 0..n {
+        let scale = rtol[i].multiply_add(y[i].abs().max(next[i].abs()), atol[i]);
+        let mut errors = [S::zero(); 2];
+        for &PairTerm { stage, weights } in terms {
+            let k = k[stage * stride + i];
+            for estimate in 0..2 {
+                errors[estimate] = weights[estimate].multiply_add(k, errors[estimate]);
+            }
+        }
+        for estimate in 0..2 {
+            let error = h * errors[estimate];
+            let ratio = error / scale;
+            // Without an error any tolerance is kept, one of zero too.
+            let none = error.less_equal(S::zero()).and(S::zero().less_equal(error));
+            sums[estimate] += S::select(none, S::zero(), ratio * ratio);
+        }
+    }
+    let inverse = S::one() / S::splat(n as f64);
+    for sum in &mut sums {
+        *sum = *sum * inverse;
+        *sum = S::select(sum.less_equal(S::splat(HUGE)), *sum, S::splat(HUGE));
+    }
+    sums
 }
 
 #[inline(always)]
