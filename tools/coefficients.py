@@ -19,6 +19,7 @@ from mpmath import cbrt, mp, mpf
 
 import published_coefficients as published
 from dop853 import dop853
+from embedded_pairs import bogacki_shampine32, dormand_prince54
 from multistep import stormer
 from polish import Row, composition_residuals, polish
 
@@ -70,6 +71,8 @@ def kahan_li8() -> Table:
 
 METHODS = {
     "rk4": rk4,
+    "bogacki_shampine32": bogacki_shampine32,
+    "dormand_prince54": dormand_prince54,
     "dop853": dop853,
     "leapfrog": leapfrog,
     "yoshida4": yoshida4,

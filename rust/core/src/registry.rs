@@ -1,14 +1,21 @@
 //! What the package offers, one line each: methods, potentials and forces.
 
+use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{ForceDeclaration, central_field, uniform_field};
 use crate::ode::Method;
-use crate::ode::methods::{dop853, kahan_li8, leapfrog, rk4, stormer13, yoshida4};
+use crate::ode::methods::{
+    bogacki_shampine32, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+};
+use crate::ode::system::{Form, Needs};
 use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
+use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
 pub static METHODS: &[&Method] = &[
     &rk4::METHOD,
+    &bogacki_shampine32::METHOD,
+    &dormand_prince54::METHOD,
     &dop853::METHOD,
     &leapfrog::METHOD,
     &yoshida4::METHOD,
@@ -19,6 +26,37 @@ pub static METHODS: &[&Method] = &[
 /// The method of a name.
 pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().copied().find(|method| method.name == name)
+}
+
+/// Names of SciPy's `solve_ivp`, and ours.
+static SCIPY: [(&str, &str); 3] =
+    [("RK23", "bogacki_shampine32"), ("RK45", "dormand_prince54"), ("DOP853", "dop853")];
+/// Those of its methods that solve equations in every step.
+static IMPLICIT: [&str; 3] = ["Radau", "BDF", "LSODA"];
+
+/// The method of a name, ours or SciPy's, for equations `y' = f(t, y)`.
+///
+/// # Errors
+/// A name that is none, or of a method that does not take such equations; the message lists those that do.
+pub fn solver(name: &str) -> Result<&'static Method> {
+    let serves = |method: &&Method| method.serves(Form::FirstOrder(1), Needs { time: true, velocity: true });
+    let ours = METHODS.iter().copied().filter(serves).map(|method| method.name);
+    let names = SCIPY.iter().map(|(scipy, _)| *scipy).chain(ours);
+    let refused = |why: &str| {
+        let names = names.clone().collect::<Vec<_>>().join(", ");
+        Err(Error::invalid("method", format!("{name} {why}; use one of {names}")))
+    };
+    if IMPLICIT.contains(&name) {
+        return refused(
+            "is implicit, which scipy.integrate.solve_ivp has for stiff equations and visviva has not",
+        );
+    }
+    let own = SCIPY.iter().find(|(scipy, _)| *scipy == name).map_or(name, |(_, own)| own);
+    match method(own) {
+        None => Err(unknown("method", name, names)),
+        Some(method) if serves(&method) => Ok(method),
+        Some(_) => refused("takes equations q'' = a(q) alone, and this is y' = f(t, y)"),
+    }
 }
 
 /// Every potential, in the order of the documentation.

@@ -85,7 +85,7 @@ pub trait Element: InverseCube {
     fn pass<P: Pass<Self>>(pass: P) -> P::Output;
 }
 
-macro_rules! plain_element {
+macro_rules! own_view {
     ($($type:ty)+) => {$(
         impl View<$type> for $type {
             #[inline(always)]
@@ -109,14 +109,9 @@ macro_rules! plain_element {
                 mask
             }
         }
-        impl Element for $type {
-            fn pass<P: Pass<Self>>(pass: P) -> P::Output {
-                pass.run::<Self>()
-            }
-        }
     )+};
 }
-plain_element!(f64 DoubleDouble);
+own_view!(f64 DoubleDouble);
 
 impl<V: Vector8 + InverseCube> View<Lanes> for V {
     #[inline(always)]
@@ -146,12 +141,32 @@ fn run<V: View<Lanes>, P: Pass<Lanes>>(pass: P) -> P::Output {
     pass.run::<V>()
 }
 
+/// One number has no lanes, but the tier's instructions serve it, too: a fused multiply-add is one, and several numbers of
+/// a state go through it at a time.
+#[inline(always)]
+fn run_scalar<V: Vector8, P: Pass<f64>>(pass: P) -> P::Output {
+    pass.run::<f64>()
+}
+
 crate::tiered! {
     fn run_tier[P: Pass<Lanes>][P](pass: P) -> P::Output = run;
+    fn run_scalar_tier[P: Pass<f64>][P](pass: P) -> P::Output = run_scalar;
 }
 
 impl Element for Lanes {
     fn pass<P: Pass<Self>>(pass: P) -> P::Output {
         run_tier(pass)
+    }
+}
+
+impl Element for f64 {
+    fn pass<P: Pass<Self>>(pass: P) -> P::Output {
+        run_scalar_tier(pass)
+    }
+}
+
+impl Element for DoubleDouble {
+    fn pass<P: Pass<Self>>(pass: P) -> P::Output {
+        pass.run::<Self>()
     }
 }

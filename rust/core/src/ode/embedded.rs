@@ -46,6 +46,11 @@ pub struct EmbeddedStep<S: Element> {
 impl<S: Controlled> EmbeddedStep<S> {
     /// For a system and states like `state`, with steps of at most `max_step`.
     pub fn new(method: &Embedded, system: &dyn System<S>, state: &State<S>, max_step: S) -> Self {
+        Self::with_rule(method, system, state, Rule::new(method.error_exponent, max_step))
+    }
+
+    /// As [`new`](Self::new), with a rule for the choice of steps.
+    pub fn with_rule(method: &Embedded, system: &dyn System<S>, state: &State<S>, rule: Rule<S>) -> Self {
         let tableau = &method.tableau;
         // The derivative at the end is a stage of its own, whose row are the weights.
         let rows = tableau.a.iter().chain([&tableau.b]).chain(method.dense_a);
@@ -67,7 +72,7 @@ impl<S: Controlled> EmbeddedStep<S> {
             dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, &a)).collect(),
             dense: dense(method, &a),
             between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
-            rule: Rule::new(method.error_exponent, max_step),
+            rule,
             next: state.clone(),
         }
     }
@@ -88,7 +93,7 @@ impl<S: Controlled> EmbeddedStep<S> {
             Form::FirstOrder(_) => [self.change(first, h), self.change(second, h)],
             Form::SecondOrder(_) => [self.change(first, h * h), self.change(second, h)],
         };
-        let [main, other] = norm.sizes(state, elapsed, &changes);
+        let [main, other] = norm.sizes(state, &self.next, elapsed, &changes);
         if !self.two_estimates {
             return main;
         }
@@ -96,6 +101,46 @@ impl<S: Controlled> EmbeddedStep<S> {
         let denominator = main + S::splat(0.01) * other;
         let size2 = main * (main / denominator);
         S::select(main.less_equal(S::zero()), S::zero(), size2)
+    }
+
+    /// The first step of equations of no known geometry (Hairer, Nørsett & Wanner, II.4): a hundredth of the time in which
+    /// the numbers change by their own sizes, then what the curvature on the way allows. Sizes below 1e-5 of a tolerance
+    /// tell nothing; then, and without any slope, the step is one millionth, whatever the unit of time.
+    fn first_step(
+        &mut self,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &Clock<S>,
+        norm: &Norm<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<S> {
+        let end_stage = self.end_stage();
+        let term = |stage, weight| PairTerm { stage, weights: [weight, S::zero()] };
+        let (slope, bend) = ([term(0, S::one())], [term(end_stage, S::one()), term(0, -S::one())]);
+        let size2 = |change: Change<'_, S>| norm.sizes(state, state, clock.elapsed, &[change, change])[0];
+        let rate = self.change(&slope, S::one());
+        let numbers2 = size2(Change { k: state.all().0, ..rate });
+        let rates2 = size2(rate);
+
+        let span = (clock.end - clock.elapsed).abs();
+        let millionth = S::splat(1e-6);
+        let telling = |size2: S| S::splat(1e-10).less_equal(size2);
+        let by_size = S::splat(0.01) * (numbers2 / rates2).sqrt();
+        let trial = S::select(telling(numbers2).and(telling(rates2)), by_size, millionth).min(span);
+        let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
+        let euler =
+            Row { fraction: S::one(), position: vec![], velocity: vec![Term { stage: 0, weight: S::one() }] };
+        let step = (clock.elapsed, &(trial * direction));
+        self.stages.evaluate_at(end_stage, step, state, &euler, system, ticker)?;
+        let size2 = |change: Change<'_, S>| norm.sizes(state, state, clock.elapsed, &[change, change])[0];
+        let curvature2 = size2(self.change(&bend, S::one() / trial));
+
+        let nothing = S::splat(1e-30);
+        let straight = rates2.less_equal(nothing).and(curvature2.less_equal(nothing));
+        let by_order = root(S::splat(1e-4) / rates2.max(curvature2), &self.rule);
+        let by_order = S::select(straight, millionth.max(trial * S::splat(1e-3)), by_order);
+        let h = by_order.min(S::splat(100.0) * trial).min(span).min(self.rule.max_step);
+        Ok(h * direction)
     }
 
     /// Takes the derivative at the end for that at the start.
@@ -120,6 +165,16 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let end_stage = self.end_stage();
         self.stages.evaluate(end_stage, clock.elapsed, state, system, ticker)?;
         self.begin_with_end(fresh);
+        let chosen = S::zero().less(clock.h.abs());
+        if chosen.or(fresh.not()).all() {
+            return Ok(());
+        }
+        let fresh = fresh.and(chosen.not());
+        if norm.mean.is_some() {
+            let h = self.first_step(system, state, clock, norm, ticker)?;
+            clock.h = S::select(fresh, h, clock.h);
+            return Ok(());
+        }
 
         let second_order = matches!(self.stages.form(), Form::SecondOrder(_));
         let alone = |stage, weight| PairTerm { stage, weights: [weight, S::zero()] };
@@ -127,7 +182,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         // With a slope of zero any step will do; the span is then the step.
         let rate = self.change(&first, S::one());
         let slope = if second_order { Change { k: state.v(), ..rate } } else { rate };
-        let slope2 = norm.sizes(state, clock.elapsed, &[slope, rate])[0];
+        let slope2 = norm.sizes(state, state, clock.elapsed, &[slope, rate])[0];
         let span = (clock.end - clock.elapsed).abs();
         let longest = span.min(self.rule.max_step);
         let still = slope2.less_equal(S::zero());
@@ -143,7 +198,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         // The slope of the coordinates changes by `trial·a`, every other slope by the difference of the derivatives.
         let bend = self.change(&difference, time / trial);
         let of_q = if second_order { self.change(&first, time) } else { bend };
-        let curvature2 = norm.sizes(state, clock.elapsed, &[of_q, bend])[0];
+        let curvature2 = norm.sizes(state, state, clock.elapsed, &[of_q, bend])[0];
         // Both sizes in units of that time, so that the choice does not depend on the unit of time.
         let largest = (slope2 * time * time).max(curvature2 * time * time);
         let by_order = time * root(S::splat(1e-4) / largest, &self.rule);
@@ -210,6 +265,23 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
             }
         }
         self.stages.state_at(&self.between, state, &h, into);
+    }
+
+    fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
+        let len = self.stages.len();
+        for term in 0..self.terms() {
+            for number in 0..len.min(state.all().0.len()) {
+                let mut sum = S::zero();
+                for (stage, weights) in self.dense[1].iter().enumerate() {
+                    sum = weights[term].multiply_add(self.stages.k[stage * len + number], sum);
+                }
+                into.push(h * sum);
+            }
+        }
+    }
+
+    fn terms(&self) -> usize {
+        self.dense[1].first().map_or(0, Vec::len)
     }
 
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {

@@ -1,14 +1,18 @@
 //! Integrators of ordinary differential equations: a method is a table; the loops that run tables are written once.
 //!
-//! The one idea: problem ([`system`]), method ([`Method`]), state ([`state`]) and the loop over steps ([`fixed`], and
-//! whoever drives a [`trial`]) know each other only by what they declare. Nothing here knows particles.
+//! The one idea: problem ([`system`]), method ([`Method`]), state ([`state`]) and the loop over steps ([`fixed`], [`run`],
+//! and whoever drives a [`trial`]) know each other only by what they declare. Nothing here knows particles.
 //!
 //! To add a method, write one file in `methods` that defines `METHOD` and add its line to
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
 pub mod embedded;
+pub mod equal_steps;
+pub mod events;
+pub mod extension;
 pub mod fixed;
+pub mod initial_value;
 pub mod methods;
 pub mod multistep;
 pub mod norm;
@@ -16,12 +20,14 @@ pub mod nystrom;
 #[cfg(test)]
 mod order_conditions;
 pub mod passes;
+pub mod run;
 pub mod runge_kutta;
 pub mod splitting;
 pub mod state;
 pub mod step_control;
 pub mod stepper;
 pub mod system;
+pub mod table;
 pub mod trial;
 
 use crate::numerics::double_double::DoubleDouble;

@@ -3,8 +3,10 @@
 //! The one idea: an error is a number per vector (a place, a velocity, an angle), scaled by its own tolerance; the state
 //! is cut into blocks of such vectors, and the largest of all decides. Sizes are distances from a reference that moves
 //! uniformly, so that a system that is far away, or drifts, is held to the same error.
+//!
+//! Equations of no known geometry are held to the root mean square of all numbers instead, each by its own tolerances.
 
-use super::passes::errors::{LargestErrors, PairTerm};
+use super::passes::errors::{LargestErrors, MeanErrors, PairTerm};
 use super::state::State;
 use super::step_control::Controlled;
 use super::system::Form;
@@ -36,6 +38,17 @@ pub struct Norm<S> {
     pub blocks: Vec<Block<S>>,
     /// Whether the lanes are parts of one trajectory, and share a step.
     pub together: bool,
+    /// If there, the root mean square of all numbers of a system of the first order counts, and no vectors.
+    pub mean: Option<RootMeanSquare<S>>,
+}
+
+/// Tolerances of single numbers: `atol + rtol·|y|`, the larger `|y|` of both ends of a step.
+#[derive(Clone, Debug)]
+pub struct RootMeanSquare<S> {
+    /// Absolute tolerance of each number.
+    pub atol: Vec<S>,
+    /// Relative tolerance of each number.
+    pub rtol: Vec<S>,
 }
 
 /// A weighted sum of derivatives to be measured, and what it is multiplied with.
@@ -64,12 +77,28 @@ impl<S: Controlled> Norm<S> {
             Form::FirstOrder(_) => vec![block(false)],
             Form::SecondOrder(_) => vec![block(false), block(true)],
         };
-        Self { rtol, blocks, together }
+        Self { rtol, blocks, together, mean: None }
+    }
+
+    /// The root mean square of all numbers of a system of the first order, each scaled by its own tolerances.
+    pub fn root_mean_square(mean: RootMeanSquare<S>) -> Self {
+        Self { rtol: S::zero(), blocks: vec![], together: false, mean: Some(mean) }
     }
 
     /// The larger squared scaled size of the changes, for each of the two sets of weights: of the coordinates (or of all
-    /// numbers of a system of the first order), and of the velocities.
-    pub(super) fn sizes(&self, state: &State<S>, elapsed: S, changes: &[Change<'_, S>; 2]) -> [S; 2] {
+    /// numbers of a system of the first order), and of the velocities. `next` is the state that they lead to.
+    pub(super) fn sizes(
+        &self,
+        state: &State<S>,
+        next: &State<S>,
+        elapsed: S,
+        changes: &[Change<'_, S>; 2],
+    ) -> [S; 2] {
+        if let Some(RootMeanSquare { atol, rtol }) = &self.mean {
+            let &[Change { k, stride, terms, ref factor }, _] = changes;
+            let (y, next) = (state.all().0, next.all().0);
+            return S::pass(MeanErrors { y, next, atol, rtol, h: factor, terms, k, stride });
+        }
         let second_order = matches!(state.form(), Form::SecondOrder(_));
         let mut largest = [S::zero(); 2];
         for block in &self.blocks {

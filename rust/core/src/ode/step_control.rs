@@ -10,9 +10,10 @@ use crate::numerics::lanes::{Bits, Lanes, Vector8};
 use crate::numerics::real::{Mask, Real};
 use crate::tiered;
 
-/// Growth limits of the step, and its safety factor (the values of DOP853).
+/// By what a step may change from one to the next, unless it is said otherwise (the values of DOP853).
 const SHRINK: f64 = 1.0 / 3.0;
 const GROW: f64 = 6.0;
+/// What is left of the step that would just do.
 const SAFETY: f64 = 0.9;
 /// A step below this many units in the last place of the elapsed time is no step.
 const SMALLEST_STEP: f64 = 4.0 * f64::EPSILON;
@@ -54,6 +55,8 @@ pub struct Rule<S> {
     power: u32,
     /// Longest step.
     pub max_step: S,
+    /// The least and the most that a step is multiplied with.
+    pub limits: (f64, f64),
 }
 
 /// Places of the power that the step goes with. They tell 1/(2n) to 1.2e-4, which a step never feels: errors of 1e-12
@@ -63,7 +66,8 @@ const POWER_PLACES: u32 = 12;
 impl<S> Rule<S> {
     /// Of an estimate that goes with the step to the power `error_exponent`.
     pub fn new(error_exponent: u32, max_step: S) -> Self {
-        Self { power: ((1 << POWER_PLACES) + error_exponent) / (2 * error_exponent), max_step }
+        let power = ((1 << POWER_PLACES) + error_exponent) / (2 * error_exponent);
+        Self { power, max_step, limits: (SHRINK, GROW) }
     }
 }
 
@@ -100,8 +104,9 @@ impl<S: Real> Clock<S> {
         let accepted = size2.less_equal(S::one()).and(running);
 
         let factor = S::splat(SAFETY) / root(size2, rule);
-        let factor = factor.max(S::splat(SHRINK)).min(S::splat(GROW));
-        let factor = S::select(size2.less_equal(S::zero()), S::splat(GROW), factor);
+        let (shrink, grow) = (S::splat(rule.limits.0), S::splat(rule.limits.1));
+        let factor = factor.max(shrink).min(grow);
+        let factor = S::select(size2.less_equal(S::zero()), grow, factor);
         let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
         let from = self.elapsed;
         let (proposed, max_step) = (h * factor, rule.max_step);
@@ -185,7 +190,7 @@ fn settle_lanes<V: Vector8>(
     rule: &Rule<Lanes>,
 ) -> Outcome<Lanes> {
     let mut now = load::<V>(clock);
-    let rule = Rule { power: rule.power, max_step: V::load(rule.max_step) };
+    let rule = Rule { power: rule.power, max_step: V::load(rule.max_step), limits: rule.limits };
     let Outcome { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), &rule);
     let Clock { elapsed, error, h: next, end, rejected } = now;
     *clock =
@@ -218,7 +223,8 @@ mod tests {
     use super::*;
 
     /// That of a method with the error exponent 8.
-    const RULE: &Rule<f64> = &Rule { power: 1 << (POWER_PLACES - 4), max_step: f64::INFINITY };
+    const RULE: &Rule<f64> =
+        &Rule { power: 1 << (POWER_PLACES - 4), max_step: f64::INFINITY, limits: (SHRINK, GROW) };
 
     /// A clock under way: a step of 1 was taken, and the next is 1 again.
     fn under_way() -> Clock<f64> {

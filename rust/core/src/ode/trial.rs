@@ -29,7 +29,8 @@ pub struct Cost {
 
 /// A method that chooses its own steps, at work on one state.
 pub trait Trial<S: Controlled>: Send {
-    /// Starts the lanes of `fresh`: evaluates their first derivative and chooses their first step.
+    /// Starts the lanes of `fresh`: evaluates their first derivative and, unless the clock has one, chooses their first
+    /// step.
     ///
     /// # Errors
     /// Those of an evaluation.
@@ -75,6 +76,14 @@ pub trait Trial<S: Controlled>: Send {
     /// The state at the fraction `theta` of the step, lane by lane; needs [`dense`](Self::dense).
     fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>);
 
+    /// What the continuous extension of a system of the first order is made of, once [`dense`](Self::dense) has readied
+    /// it: a block of numbers for each of the [`terms`](Self::terms) `f` in
+    /// `y(t + θh) = y + θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`.
+    fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>);
+
+    /// How many terms the continuous extension has.
+    fn terms(&self) -> usize;
+
     /// Moves the accepted lanes to the end of their step.
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>);
 
@@ -85,7 +94,7 @@ pub trait Trial<S: Controlled>: Send {
 /// The method for a system and states like `state`, with steps of at most `max_step`.
 ///
 /// # Errors
-/// A method with a fixed step.
+/// A method with a fixed step; [`equal_steps`](super::equal_steps) has trials of those, which are never refused.
 pub fn trial<S: Controlled>(
     method: &'static Method,
     system: &dyn System<S>,

@@ -2,6 +2,7 @@
 
 use crate::numerics::element::{Element, Pass, Shape, View};
 use crate::numerics::inverse_cube::InverseCube;
+use crate::numerics::real::Mask;
 
 /// One term of two weighted sums of stages.
 #[derive(Clone, Copy, Debug)]
@@ -115,4 +116,63 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
         }
     }
     largest
+}
+
+/// The mean of the squared scaled errors `(h Σ weight·k)² / (atol + rtol·|y|)²` of all numbers, `|y|` being the larger of two
+/// states, for two sets of weights at once.
+#[derive(Debug)]
+pub struct MeanErrors<'a, S> {
+    /// The state.
+    pub y: &'a [S],
+    /// The other.
+    pub next: &'a [S],
+    /// Absolute tolerance of each number.
+    pub atol: &'a [S],
+    /// Relative tolerance of each.
+    pub rtol: &'a [S],
+    /// What the sum is multiplied with.
+    pub h: &'a S,
+    /// The weights.
+    pub terms: &'a [PairTerm<S>],
+    /// The derivatives, stage after stage.
+    pub k: &'a [S],
+    /// Numbers from one stage to the next.
+    pub stride: usize,
+}
+
+impl<S: Element> Pass<S> for MeanErrors<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> [S; 2] {
+        let (y, k, h) = (V::view(self.y), V::view(self.k), V::load(*self.h));
+        let n = y.len();
+        let (next, atol, rtol) =
+            (&V::view(self.next)[..n], &V::view(self.atol)[..n], &V::view(self.rtol)[..n]);
+        let terms = view_terms::<S, V>(self.terms);
+        let mut sums = [V::zero(); 2];
+        for i in 0..n {
+            let scale = rtol[i].multiply_add(y[i].abs().max(next[i].abs()), atol[i]);
+            let mut errors = [V::zero(); 2];
+            for &PairTerm { stage, weights } in terms {
+                let k = k[stage * self.stride + i];
+                for estimate in 0..2 {
+                    errors[estimate] = weights[estimate].multiply_add(k, errors[estimate]);
+                }
+            }
+            for estimate in 0..2 {
+                let error = h * errors[estimate];
+                let ratio = error / scale;
+                // Without an error any tolerance is kept, one of zero too.
+                let none = error.less_equal(V::zero()).and(V::zero().less_equal(error));
+                sums[estimate] += V::select(none, V::zero(), ratio * ratio);
+            }
+        }
+        let inverse = V::one() / V::splat(n as f64);
+        for sum in &mut sums {
+            *sum = *sum * inverse;
+            *sum = V::select(sum.less_equal(V::splat(HUGE)), *sum, V::splat(HUGE));
+        }
+        let [first, second] = sums;
+        [first.store(), second.store()]
+    }
 }

@@ -1,0 +1,169 @@
+//! Events: zeros of functions of time and state on the way of a run, found where a function changes its sign from one node to
+//! the next, and located on the interpolant to round-off.
+
+use super::run::Step;
+use crate::error::Result;
+
+/// When a zero counts, and when it ends the run.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Condition {
+    /// Only zeros that the function passes upwards (positive) or downwards (negative); 0 for both.
+    pub direction: f64,
+    /// The run ends with the zero of this number.
+    pub last: Option<u64>,
+}
+
+/// Functions of time and state.
+pub trait Events {
+    /// The value of one of them.
+    ///
+    /// # Errors
+    /// Those of the function.
+    fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64>;
+}
+
+/// The zeros of one function.
+#[derive(Clone, Debug, Default)]
+pub struct Zeros {
+    /// Their times.
+    pub t: Vec<f64>,
+    /// The states there, one after another.
+    pub y: Vec<f64>,
+}
+
+/// Functions under watch from node to node.
+#[derive(Clone, Debug)]
+pub struct Watch {
+    conditions: Vec<Condition>,
+    values: Vec<f64>,
+    /// What was found, function after function.
+    pub zeros: Vec<Zeros>,
+}
+
+impl Watch {
+    /// For functions with these conditions.
+    pub fn new(conditions: Vec<Condition>) -> Self {
+        let zeros = vec![Zeros::default(); conditions.len()];
+        Self { values: vec![f64::NAN; conditions.len()], conditions, zeros }
+    }
+
+    /// Takes the values at the start of the run.
+    ///
+    /// # Errors
+    /// Those of the functions.
+    pub fn start(&mut self, events: &mut dyn Events, t: f64, y: &[f64]) -> Result<()> {
+        for (which, value) in self.values.iter_mut().enumerate() {
+            *value = events.value(which, t, y)?;
+        }
+        Ok(())
+    }
+
+    /// Finds the zeros in a step; the time of the one that ends the run, if one does.
+    ///
+    /// # Errors
+    /// Those of the functions and of the interpolant.
+    pub fn look(&mut self, events: &mut dyn Events, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
+        let mut found: Vec<(f64, usize)> = vec![];
+        for which in 0..self.conditions.len() {
+            let before = self.values[which];
+            let after = events.value(which, step.to, step.end())?;
+            self.values[which] = after;
+            let (up, down) = (before <= 0.0 && after >= 0.0, before >= 0.0 && after <= 0.0);
+            let direction = self.conditions[which].direction;
+            // A zero at a node belongs to the step before it, which has told of it.
+            let told = before == 0.0 && self.zeros[which].t.last() == Some(&step.from);
+            if told || !((up && direction >= 0.0) || (down && direction <= 0.0)) {
+                continue;
+            }
+            let ends = [(step.from, before), (step.to, after)];
+            let zero = zero(ends, |t| {
+                let y = step.at(t)?;
+                events.value(which, t, y)
+            })?;
+            found.push((zero, which));
+        }
+        let forward = step.from <= step.to;
+        found.sort_by(|(a, _), (b, _)| if forward { a.total_cmp(b) } else { b.total_cmp(a) });
+        for (t, which) in found {
+            let zeros = &mut self.zeros[which];
+            zeros.t.push(t);
+            zeros.y.extend_from_slice(step.at(t)?);
+            if self.conditions[which].last.is_some_and(|last| zeros.t.len() as u64 >= last) {
+                return Ok(Some(t));
+            }
+        }
+        Ok(None)
+    }
+}
+
+/// More are never needed: each halves the interval at least every third time.
+const MOST_ITERATIONS: usize = 200;
+
+/// A zero between two points with values of different signs, to round-off: T. R. Chandrupatla, Adv. Eng. Software 28 (1997)
+/// 145, which takes inverse quadratic interpolation where that is safe and halves the interval where it is not.
+fn zero([(a, at_a), (b, at_b)]: [(f64, f64); 2], mut value: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+    if at_a == 0.0 {
+        return Ok(a);
+    }
+    if at_b == 0.0 {
+        return Ok(b);
+    }
+    let tolerance = 2.0 * f64::EPSILON * if a.abs() > b.abs() { a.abs() } else { b.abs() };
+    let ((mut x1, mut f1), (mut x2, mut f2)) = ((b, at_b), (a, at_a));
+    let mut fraction = 0.5;
+    for _ in 0..MOST_ITERATIONS {
+        let x = x1 + fraction * (x2 - x1);
+        let f = value(x)?;
+        let (x3, f3);
+        if (f < 0.0) == (f1 < 0.0) {
+            (x3, f3) = (x1, f1);
+        } else {
+            (x3, f3) = (x2, f2);
+            (x2, f2) = (x1, f1);
+        }
+        (x1, f1) = (x, f);
+        let nearest = if f2.abs() < f1.abs() { x2 } else { x1 };
+        let least = tolerance / (x2 - x1).abs();
+        if least > 0.5 || f == 0.0 {
+            return Ok(if f == 0.0 { x } else { nearest });
+        }
+        let (place, height) = ((x1 - x2) / (x3 - x2), (f1 - f2) / (f3 - f2));
+        let safe = height * height < place && (1.0 - height) * (1.0 - height) < 1.0 - place;
+        fraction = if safe {
+            f1 / (f2 - f1) * f3 / (f2 - f3) + (x3 - x1) / (x2 - x1) * f1 / (f3 - f1) * f2 / (f3 - f2)
+        } else {
+            0.5
+        };
+        fraction = if fraction > least { fraction } else { least };
+        fraction = if fraction < 1.0 - least { fraction } else { 1.0 - least };
+    }
+    Ok(if f2.abs() < f1.abs() { x2 } else { x1 })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn zeros_are_located_to_round_off() -> Result<()> {
+        let cases: [(fn(f64) -> f64, f64, f64, f64); 5] = [
+            (|x| x - 7.0, 5.0, 9.0, 7.0),
+            (|x| x * x - 2.0, 0.0, 2.0, core::f64::consts::SQRT_2),
+            (|x| x.powi(9), -1.0, 3.0, 0.0),
+            (|x| if x < 0.3 { -1e-300 } else { 1e300 }, 0.0, 1.0, 0.3),
+            (|x| 1.0 / (x - 4.0) + 2.0, 3.9, 0.0, 3.5),
+        ];
+        for (function, a, b, exact) in cases {
+            let mut calls = 0;
+            let found = zero([(a, function(a)), (b, function(b))], |x| {
+                calls += 1;
+                Ok(function(x))
+            })?;
+            // A zero of the ninth order is no better known than where its value underflows to nothing beside the rest.
+            let slack = if exact == 0.0 { 1e-15 } else { 4.0 * f64::EPSILON * exact };
+            assert!((found - exact).abs() <= slack, "{found} for {exact}");
+            assert!(calls < 120, "{calls} evaluations for {exact}");
+        }
+        Ok(())
+    }
+}

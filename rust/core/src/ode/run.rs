@@ -1,0 +1,192 @@
+//! Runs of any system from one time to another, step by step, with everything that is read on the way left to a recorder.
+//!
+//! The one idea: the loop knows a [`System`], a [`Trial`] and a [`Recorder`]. A recorder looks at each step before it is
+//! kept, at its ends and anywhere between, and may end the run there; what nobody looks at is not computed.
+
+use super::extension::Extension;
+use super::norm::Norm;
+use super::state::State;
+use super::step_control::{Clock, Outcome};
+use super::system::System;
+use super::trial::Trial;
+use crate::error::{Error, Result};
+use crate::parallel::Ticker;
+
+/// The shortest step, in units in the last place of the time.
+const SMALLEST_STEP: f64 = 10.0;
+
+/// How a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// At the end of the span.
+    Finished,
+    /// Where the recorder said.
+    Stopped,
+    /// The step fell below what can be told apart from the time.
+    StepTooSmall,
+    /// A number is infinite or none.
+    NotFinite,
+    /// Somebody asked to stop.
+    Interrupted,
+}
+
+/// What looks at the steps of a run.
+pub trait Recorder {
+    /// The state at the start.
+    ///
+    /// # Errors
+    /// Its own; [`Error::Interrupted`] ends the run with what there is.
+    fn start(&mut self, t: f64, y: &[f64]) -> Result<()>;
+
+    /// A step is about to be kept. The time at which the run ends, if it does.
+    ///
+    /// # Errors
+    /// As [`start`](Self::start).
+    fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>>;
+}
+
+/// A step that is about to be kept, and what may be asked of it.
+pub struct Step<'a, 'b> {
+    /// The time before it.
+    pub from: f64,
+    /// The time after it.
+    pub to: f64,
+    outcome: Outcome<f64>,
+    trial: &'a mut dyn Trial<f64>,
+    system: &'a mut dyn System<f64>,
+    state: &'a State<f64>,
+    between: &'a mut State<f64>,
+    ticker: &'a mut Ticker<'b>,
+    dense: bool,
+}
+
+impl Step<'_, '_> {
+    /// The state before it.
+    pub fn start(&self) -> &[f64] {
+        self.state.all().0
+    }
+
+    /// The state after it.
+    pub fn end(&self) -> &[f64] {
+        self.trial.next().all().0
+    }
+
+    /// Readies the continuous extension.
+    fn ready(&mut self) -> Result<()> {
+        if !self.dense {
+            self.trial.dense(&self.outcome, self.system, self.state, self.ticker)?;
+            self.dense = true;
+        }
+        Ok(())
+    }
+
+    /// The state at a time within it.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn at(&mut self, t: f64) -> Result<&[f64]> {
+        if t == self.to {
+            return Ok(self.end());
+        }
+        if t == self.from {
+            return Ok(self.start());
+        }
+        self.ready()?;
+        let theta = (t - self.from) / (self.to - self.from);
+        self.trial.at(self.state, self.outcome.h, theta, self.between);
+        Ok(self.between.all().0)
+    }
+
+    /// Adds its polynomial to the others; the node at its end is left to the caller.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn extend(&mut self, into: &mut Extension) -> Result<()> {
+        self.ready()?;
+        into.lengths.push(self.to - self.from);
+        into.starts.extend_from_slice(self.start());
+        self.trial.extension(self.state, self.outcome.h, &mut into.terms);
+        Ok(())
+    }
+}
+
+/// Runs a system from one time to another, neither of which need be smaller. The clock and the system count time from the
+/// first; the first step is chosen unless it is given. The state is that of the last kept step.
+///
+/// # Errors
+/// Those of the system and of the recorder but [`Error::Interrupted`].
+pub fn run(
+    trial: &mut dyn Trial<f64>,
+    system: &mut dyn System<f64>,
+    state: &mut State<f64>,
+    norm: &Norm<f64>,
+    ((t0, end), first_step): ((f64, f64), Option<f64>),
+    recorder: &mut dyn Recorder,
+    ticker: &mut Ticker<'_>,
+) -> Result<Ending> {
+    let ending = steps(trial, system, state, norm, ((t0, end), first_step), recorder, ticker);
+    if ending == Err(Error::Interrupted) { Ok(Ending::Interrupted) } else { ending }
+}
+
+fn steps(
+    trial: &mut dyn Trial<f64>,
+    system: &mut dyn System<f64>,
+    state: &mut State<f64>,
+    norm: &Norm<f64>,
+    ((t0, end), first_step): ((f64, f64), Option<f64>),
+    recorder: &mut dyn Recorder,
+    ticker: &mut Ticker<'_>,
+) -> Result<Ending> {
+    let mut clock = Clock::new(end - t0);
+    let direction = if end < t0 { -1.0 } else { 1.0 };
+    clock.h = direction * first_step.unwrap_or(0.0);
+    recorder.start(t0, state.all().0)?;
+    trial.start(true, system, state, &mut clock, norm, ticker)?;
+    let mut between = state.clone();
+    loop {
+        let from = t0 + clock.elapsed;
+        let smallest = SMALLEST_STEP * spacing(from);
+        if clock.h.abs() < smallest && clock.elapsed != clock.end {
+            clock.h = direction * smallest;
+        }
+        let outcome = loop {
+            ticker.tick()?;
+            let outcome = trial.attempt(true, system, state, &mut clock, norm, ticker)?;
+            if outcome.accepted {
+                break outcome;
+            }
+            if !(clock.h.abs() >= smallest) {
+                return Ok(Ending::StepTooSmall);
+            }
+        };
+        if !trial.next().all().0.iter().all(|y| y.is_finite()) {
+            return Ok(Ending::NotFinite);
+        }
+        let to = if outcome.finished { end } else { t0 + clock.elapsed };
+        let mut step = Step {
+            from,
+            to,
+            outcome,
+            trial: &mut *trial,
+            system: &mut *system,
+            state,
+            between: &mut between,
+            ticker: &mut *ticker,
+            dense: false,
+        };
+        let stopped = recorder.step(&mut step)?;
+        trial.keep(true, state);
+        if stopped.is_some() {
+            return Ok(Ending::Stopped);
+        }
+        if outcome.finished {
+            return Ok(Ending::Finished);
+        }
+    }
+}
+
+/// From a time to the next number.
+fn spacing(t: f64) -> f64 {
+    let t = t.abs();
+    t.next_up() - t
+}
