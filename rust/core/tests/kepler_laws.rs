@@ -146,12 +146,12 @@ proptest! {
         // e and ω feel the state's rounding by about 1/e and by 1/|1 − e cos …| near the asymptote.
         let grown = 400.0 * EPSILON * (1.0 + 1.0 / e) * (1.0 + e) / (1.0 - part.abs());
         prop_assert!((found.eccentricity - e).abs() <= grown);
-        prop_assert!((found.pericentre - q).abs() <= grown * q);
+        prop_assert!((found.pericenter - q).abs() <= grown * q);
         prop_assert!((found.inclination - i).abs() <= 60.0 * EPSILON);
         prop_assert!((found.node - node).abs() <= 60.0 * EPSILON / i.sin());
-        prop_assert!((found.argument_of_pericentre - w).abs() <= grown / i.sin());
+        prop_assert!((found.argument_of_pericenter - w).abs() <= grown / i.sin());
         prop_assert!((found.true_anomaly - part * asymptote).abs() <= grown);
-        let (r0, _) = KeplerOrbit::new(mu, r, v).unwrap().state(-found.time_since_pericentre);
+        let (r0, _) = KeplerOrbit::new(mu, r, v).unwrap().state(-found.time_since_pericenter);
         prop_assert!((r0.norm() - q).abs() <= grown * q);
     }
 }
@@ -187,10 +187,10 @@ fn golden_conics() {
     close(ellipse.semi_major_axis, 0.9542743538767395, 4.0);
     close(ellipse.semi_minor_axis, 0.8723867537459129, 4.0);
     close(ellipse.semi_latus_rectum, 0.7975260416666666, 4.0);
-    close(ellipse.pericentre, 0.5675174607829813, 4.0);
-    close(ellipse.apocentre, 1.341031246970498, 4.0);
+    close(ellipse.pericenter, 0.5675174607829813, 4.0);
+    close(ellipse.apocenter, 1.341031246970498, 4.0);
     close(ellipse.period, 4.782380394644103, 4.0);
-    close(ellipse.argument_of_pericentre, -2.6750714892799112, 4.0);
+    close(ellipse.argument_of_pericenter, -2.6750714892799112, 4.0);
     close(ellipse.areal_rate, 0.546875, 4.0);
     let hyperbola =
         Elements::from_state(1.0, Vector3::new(1.0, 0.0, 0.0), Vector3::new(0.25, 1.75, 0.0)).unwrap();
@@ -198,7 +198,7 @@ fn golden_conics() {
     close(hyperbola.semi_major_axis, 0.8888888888888888, 4.0);
     close(hyperbola.semi_minor_axis, 1.6499158227686108, 4.0);
     close(hyperbola.turning_angle, 0.988326868348944, 4.0);
-    // Repulsion from far away: L = 0.96, energy 0.72 (G7.25), here at the pericentre.
+    // Repulsion from far away: L = 0.96, energy 0.72 (G7.25), here at the pericenter.
     let q = 1.7538089173336164;
     let repulsive =
         Elements::from_state(-1.0, Vector3::new(q, 0.0, 0.0), Vector3::new(0.0, 0.96 / q, 0.0)).unwrap();

@@ -29,15 +29,15 @@ const ELEMENTS: Columns<Elements> = &[
     ("semi_major_axis", |found| found.semi_major_axis),
     ("semi_minor_axis", |found| found.semi_minor_axis),
     ("semi_latus_rectum", |found| found.semi_latus_rectum),
-    ("pericentre", |found| found.pericentre),
-    ("apocentre", |found| found.apocentre),
+    ("pericentre", |found| found.pericenter),
+    ("apocentre", |found| found.apocenter),
     ("inclination", |found| found.inclination),
     ("node", |found| found.node),
-    ("argument_of_pericentre", |found| found.argument_of_pericentre),
+    ("argument_of_pericentre", |found| found.argument_of_pericenter),
     ("true_anomaly", |found| found.true_anomaly),
     ("eccentric_anomaly", |found| found.eccentric_anomaly),
     ("mean_anomaly", |found| found.mean_anomaly),
-    ("time_since_pericentre", |found| found.time_since_pericentre),
+    ("time_since_pericentre", |found| found.time_since_pericenter),
     ("period", |found| found.period),
     ("areal_rate", |found| found.areal_rate),
     ("turning_angle", |found| found.turning_angle),
@@ -46,7 +46,7 @@ const ELEMENTS: Columns<Elements> = &[
 const ELEMENT_VECTORS: Columns<Elements, Vector3<f64>> = &[
     ("angular_momentum", |found| found.angular_momentum),
     ("laplace_runge_lenz", |found| found.laplace_runge_lenz),
-    ("hodograph_centre", |found| found.hodograph_centre),
+    ("hodograph_centre", |found| found.hodograph_center),
 ];
 
 const CONSTANTS: Columns<ConicConstants> = &[

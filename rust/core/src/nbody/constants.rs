@@ -80,8 +80,8 @@ impl ConicConstants {
             semi_major_axis: elements.semi_major_axis,
             semi_minor_axis: elements.semi_minor_axis,
             semi_latus_rectum: elements.semi_latus_rectum,
-            r_min: elements.pericentre,
-            r_max: elements.apocentre,
+            r_min: elements.pericenter,
+            r_max: elements.apocenter,
             period: elements.period,
             areal_rate: elements.areal_rate,
             turning_angle: elements.turning_angle,
@@ -144,7 +144,7 @@ impl ConicConstants {
         let (bound, parabola) = (energy < 0.0, energy == 0.0);
         let lengths = |x: DoubleDouble| scale(x.to_f64(), length);
         let infinite_unless = |finite: bool, value: f64| if finite { value } else { f64::INFINITY };
-        let pericentre = if mu.to_f64() > 0.0 { h * h / (mu + zeta) } else { (zeta - mu) / size };
+        let pericenter = if mu.to_f64() > 0.0 { h * h / (mu + zeta) } else { (zeta - mu) / size };
         Ok(Self {
             angular_momentum,
             energy,
@@ -152,7 +152,7 @@ impl ConicConstants {
             semi_major_axis: infinite_unless(!parabola, lengths(strength_size / size)),
             semi_minor_axis: infinite_unless(!parabola, lengths(h / rate)),
             semi_latus_rectum: lengths(h * h / strength_size),
-            r_min: lengths(pericentre),
+            r_min: lengths(pericenter),
             r_max: infinite_unless(bound, lengths((mu + zeta) / size)),
             period: infinite_unless(
                 bound,
@@ -168,7 +168,8 @@ impl ConicConstants {
     }
 }
 
-fn scaled(x: DoubleDouble, exponent: i32) -> DoubleDouble {
+/// x · 2^exponent.
+pub(super) fn scaled(x: DoubleDouble, exponent: i32) -> DoubleDouble {
     DoubleDouble::new(scale(x.high(), exponent), scale(x.low(), exponent))
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The one idea: the same double-double preparation as the propagator, so that e, the apsides and the anomalies are
 //! right to a few ulps even for e near 0 or 1. Attraction and repulsion share every formula through the
-//! Laplace–Runge–Lenz vector A = v×L − μ r̂ (per unit mass), which points to the pericentre and has length |μ| e.
+//! Laplace–Runge–Lenz vector A = v×L − μ r̂ (per unit mass), which points to the pericenter and has length |μ| e.
 //! Conventions: lengths a, b are positive for hyperbolas too; angles in radians; x the reference direction, z the pole.
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9; hodograph: Hamilton (1847).
 
@@ -12,23 +12,23 @@ use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::power_of_two::scale;
+use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::real::Real;
 use crate::words::{number, numbers};
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 
-/// The elements of an orbit about a fixed centre, all per unit mass.
+/// The elements of an orbit about a fixed center, all per unit mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elements {
     /// r×v.
     pub angular_momentum: Vector3<f64>,
     /// v²/2 − μ/r.
     pub energy: f64,
-    /// v×L − μ r̂: towards the pericentre, length |μ| e.
+    /// v×L − μ r̂: towards the pericenter, length |μ| e.
     pub laplace_runge_lenz: Vector3<f64>,
     /// The velocities lie on a circle about this point (radial motion has none: NaN).
-    pub hodograph_centre: Vector3<f64>,
+    pub hodograph_center: Vector3<f64>,
     /// |μ|/L; infinite for radial motion.
     pub hodograph_radius: f64,
     /// e.
@@ -40,23 +40,23 @@ pub struct Elements {
     /// L²/|μ|.
     pub semi_latus_rectum: f64,
     /// Least distance.
-    pub pericentre: f64,
+    pub pericenter: f64,
     /// Greatest distance; infinite if unbound.
-    pub apocentre: f64,
+    pub apocenter: f64,
     /// Angle of L from z, in [0, π]; radial motion: NaN, as the two angles below.
     pub inclination: f64,
     /// Angle of the ascending node from x, in (−π, π]; 0 where the orbit lies in the xy plane.
     pub node: f64,
-    /// Angle of the pericentre from the node along the motion, in (−π, π].
-    pub argument_of_pericentre: f64,
-    /// Angle of the body from the pericentre, in (−π, π].
+    /// Angle of the pericenter from the node along the motion, in (−π, π].
+    pub argument_of_pericenter: f64,
+    /// Angle of the body from the pericenter, in (−π, π].
     pub true_anomaly: f64,
     /// E of an ellipse in (−π, π], H of a hyperbola, D = tan(ν/2) of a parabola.
     pub eccentric_anomaly: f64,
     /// E − e sin E, e sinh H ∓ H, or D + D³/3.
     pub mean_anomaly: f64,
-    /// Time since the nearest pericentre (negative before it).
-    pub time_since_pericentre: f64,
+    /// Time since the nearest pericenter (negative before it).
+    pub time_since_pericenter: f64,
     /// 2π √(a³/μ); infinite if unbound.
     pub period: f64,
     /// L/2.
@@ -94,13 +94,13 @@ impl Elements {
         let bound = beta.to_f64() > 0.0;
         let (cosine, sine) = conic.true_anomaly;
 
-        // From the anchoring apsis to the pericentre: half a turn, half a period.
+        // From the anchoring apsis to the pericenter: half a turn, half a period.
         let half = if conic.epoch.to_f64() > 0.0 { -DoubleDouble::PI } else { DoubleDouble::PI };
         let mut angle = rate * conic.epoch;
         let mut since = conic.since_apsis;
         let mean_rate = size * rate / strength;
         let mut mean = mean_rate * since;
-        if let (true, Some(period)) = (conic.from_apocentre, conic.period) {
+        if let (true, Some(period)) = (conic.from_apocenter, conic.period) {
             angle += half;
             mean += half;
             since += if conic.epoch.to_f64() > 0.0 { -period.scale(0.5) } else { period.scale(0.5) };
@@ -128,26 +128,28 @@ impl Elements {
         };
         // sin(χ/2) = 1/e and cos(χ/2) = √(e² − 1)/e: tan(χ/2) = |μ|/(L √−β).
         let turning = if bound { f64::NAN } else { 2.0 * atan2(strength.to_f64(), h_size * rate.to_f64()) };
+        // Component by component: 0 · ∞ is no number where the length overflows.
+        let along = |direction: Vector3<f64>, size: f64, unit: i32| direction.map(|c| scale(c * size, unit));
         let infinite_if = |condition: bool, value: f64| if condition { f64::INFINITY } else { value };
         Self {
-            angular_momentum: normal * scale(h_size, length + speed),
+            angular_momentum: along(normal, h_size, length + speed),
             energy: scale(-0.5 * beta.to_f64(), 2 * speed),
-            laplace_runge_lenz: conic.towards * scale(zeta.to_f64(), length + 2 * speed),
-            hodograph_centre: conic.along * scale((zeta / h).to_f64(), speed),
+            laplace_runge_lenz: along(conic.towards, zeta.to_f64(), length + 2 * speed),
+            hodograph_center: along(conic.along, (zeta / h).to_f64(), speed),
             hodograph_radius: infinite_if(h_size == 0.0, scale((strength / h).to_f64(), speed)),
             eccentricity: e,
             semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
             semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
             semi_latus_rectum: lengths((h * h / strength).to_f64()),
-            pericentre: lengths(conic.pericentre.to_f64()),
-            apocentre: infinite_if(!bound, lengths(conic.apocentre)),
+            pericenter: lengths(conic.pericenter.to_f64()),
+            apocenter: infinite_if(!bound, lengths(conic.apocenter)),
             inclination,
             node,
-            argument_of_pericentre: argument,
+            argument_of_pericenter: argument,
             true_anomaly: atan2(sine, cosine),
             eccentric_anomaly: eccentric.to_f64(),
             mean_anomaly: mean.to_f64(),
-            time_since_pericentre: scale(since.to_f64(), length - speed),
+            time_since_pericenter: scale(since.to_f64(), length - speed),
             period: infinite_if(
                 !bound,
                 scale(conic.period.map_or(0.0, DoubleDouble::to_f64), length - speed),
@@ -158,19 +160,19 @@ impl Elements {
     }
 }
 
-/// Position and velocity on a conic of given pericentre distance, eccentricity, orientation and true anomaly.
+/// Position and velocity on a conic of given pericenter distance, eccentricity, orientation and true anomaly.
 ///
-/// `mu` > 0: any e ≥ 0; `mu` < 0: e > 1. For a given semi-major axis, `pericentre` = a|1 − e| (repulsive: a(e + 1)).
+/// `mu` > 0: any e ≥ 0; `mu` < 0: e > 1. For a given semi-major axis, `pericenter` = a|1 − e| (repulsive: a(e + 1)).
 ///
 /// # Errors
 /// [`Error::InvalidInput`] for arguments out of range and for a true anomaly on or beyond an asymptote.
 pub fn state_from_elements(
     mu: f64,
-    pericentre: f64,
+    pericenter: f64,
     eccentricity: f64,
     inclination: f64,
     node: f64,
-    argument_of_pericentre: f64,
+    argument_of_pericenter: f64,
     true_anomaly: f64,
 ) -> Result<(Vector3<f64>, Vector3<f64>)> {
     let e = eccentricity;
@@ -180,10 +182,10 @@ pub fn state_from_elements(
             format!("expected a finite number other than 0, got {}", number(mu)),
         ));
     }
-    if !(pericentre.is_finite() && pericentre > 0.0) {
+    if !(pericenter.is_finite() && pericenter > 0.0) {
         return Err(Error::invalid(
             "pericentre",
-            format!("expected a positive distance, got {}", number(pericentre)),
+            format!("expected a positive distance, got {}", number(pericenter)),
         ));
     }
     if !(e.is_finite() && e >= 0.0 && (mu > 0.0 || e > 1.0)) {
@@ -192,12 +194,12 @@ pub fn state_from_elements(
             format!("expected e ≥ 0 (mu < 0: e > 1), got {}", number(e)),
         ));
     }
-    let angles = [inclination, node, argument_of_pericentre, true_anomaly];
+    let angles = [inclination, node, argument_of_pericenter, true_anomaly];
     if !angles.iter().all(|angle| angle.is_finite()) {
         return Err(Error::invalid("angles", format!("expected finite angles, got {}", numbers(&angles))));
     }
     let (half_sine, half_cosine) = sin_cos(0.5 * true_anomaly);
-    // ±1 + e cos ν, without the cancellation at an apocentre far out or near ν = 0 of repulsion.
+    // ±1 + e cos ν, without the cancellation at an apocenter far out or near ν = 0 of repulsion.
     let (shape, focal) = if mu > 0.0 {
         ((1.0 - e) + 2.0 * e * half_cosine * half_cosine, 1.0 + e)
     } else {
@@ -214,13 +216,22 @@ pub fn state_from_elements(
         ));
     }
     let (sine, cosine) = sin_cos(true_anomaly);
-    let distance = pericentre * (focal / shape);
-    // v = (μ/L)(−sin ν P + cos ν Q) + (|μ| e/L) Q, and |μ|/L = √(|μ|/p).
-    let hodograph = (mu.abs() / pericentre / focal).sqrt();
+    let distance = pericenter * (focal / shape);
+    if !distance.is_finite() {
+        return Err(Error::invalid(
+            "true_anomaly",
+            format!("expected a point within the range of f64, got {}", number(true_anomaly)),
+        ));
+    }
+    // v = (μ/L)(−sin ν P + cos ν Q) + (|μ| e/L) Q, and |μ|/L = √(|μ|/p), in an even power of two.
+    let unit = (exponent(mu) - exponent(pericenter)).div_euclid(2);
+    let near = exponent(pericenter);
+    let hodograph =
+        scale((scale(mu.abs(), -near - 2 * unit) / scale(pericenter, -near) / focal).sqrt(), unit);
     let sign = mu.signum();
     let (node_sine, node_cosine) = sin_cos(node);
     let (sine_i, cosine_i) = sin_cos(inclination);
-    let (sine_w, cosine_w) = sin_cos(argument_of_pericentre);
+    let (sine_w, cosine_w) = sin_cos(argument_of_pericenter);
     let line = Vector3::new(node_cosine, node_sine, 0.0);
     let across = Vector3::new(-node_sine * cosine_i, node_cosine * cosine_i, sine_i);
     let towards = line * cosine_w + across * sine_w;
@@ -231,9 +242,9 @@ pub fn state_from_elements(
     ))
 }
 
-/// The time to fall from rest at the distance `start` to the distance `end` ≤ `start` of an attracting centre.
+/// The time to fall from rest at the distance `start` to the distance `end` ≤ `start` of an attracting center.
 ///
-/// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the centre itself π √(R³/(8μ)).
+/// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the center itself π √(R³/(8μ)).
 ///
 /// # Errors
 /// [`Error::InvalidInput`] unless `mu` > 0 and 0 ≤ `end` ≤ `start`, all finite, `start` > 0.
