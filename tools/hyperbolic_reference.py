@@ -1,6 +1,6 @@
 """Write tests/reference/hyperbolic.json: hyperbolic anomalies from their mean anomaly, to 420 digits with mpmath.
 
-    python tools/hyperbolic_reference.py
+python tools/hyperbolic_reference.py
 """
 
 import json

@@ -69,9 +69,7 @@ def monte_carlo(
     int,
     bool,
     float,
-    list[
-        tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int, NDArray[np.float64], tuple[float, float]]
-    ],
+    list[tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int, NDArray[np.float64], tuple[float, float]]],
 ]: ...
 def scattering_function(
     name: str, half_distance: float, mass_ratio: float, values: NDArray[np.float64]

@@ -90,7 +90,7 @@ class _OfEvents:
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class Tally(_OfEvents):
+class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -211,7 +211,7 @@ class Tally(_OfEvents):
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class MonteCarlo(_OfEvents, Mapping[str, Tally]):
+class MonteCarlo(_OfEvents, Mapping[str, Tally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
 
     Attributes
@@ -359,9 +359,9 @@ def monte_carlo(
     InvalidInput
         For any argument out of range, by name; edges outside the range of their quantity too.
     Interrupted
-        After Ctrl-C, or if ``progress`` raises `KeyboardInterrupt`. Its ``.result`` holds the events counted until then,
-        ``first_event`` to ``.result.next_event`` without a gap (None if there are none yet): with the run of those from
-        ``next_event`` on it adds up to the whole, bit for bit.
+        After Ctrl-C, or if ``progress`` raises `KeyboardInterrupt`. Its ``.result`` holds the events counted until
+        then, from ``first_event`` without a gap (None if there are none yet): with a run of the rest, from
+        ``.result.next_event`` on, it adds up to the whole, bit for bit.
 
     References
     ----------

@@ -213,7 +213,7 @@ fn open_motion_at_any_time_in_any_unit() {
     assert_eq!(free(1e-300, 1.0).state(1e5).0, Vector3::new(1e-300, 1e5, 0.0));
     assert_eq!(free(1.0, 1e-5).state(1e302).0, Vector3::new(1.0, 1e-5 * 1e302, 0.0));
     assert_eq!(free(1.0, 1e300).state(1e300).0, Vector3::new(1.0, f64::INFINITY, 0.0));
-    assert_eq!(free(1e308, 1e-308).state(1e308).0, Vector3::new(1e308, 1.0, 0.0));
+    assert_eq!(free(1e308, 1e-308).state(1e308).0, Vector3::new(1e308, 1e-308 * 1e308, 0.0));
     // A hyperbola and a parabola whose dynamical time is 2^-1000.
     let unit = 2f64.powi(-1000);
     let hyperbola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::y() * 2.0).unwrap();
@@ -223,8 +223,9 @@ fn open_motion_at_any_time_in_any_unit() {
     let parabola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::new(1.0, 1.0, 0.0)).unwrap();
     for t in [1e-20, 1.0, 1e10] {
         // r³ = 9μt²/2, the rest is (q/r)^½ < 2^-300 of it.
-        close(parabola(unit).state(t).0.norm(), (4.5 * unit * t * t).cbrt());
-        close(parabola(unit).state(t).1.norm(), (2.0 * unit / (4.5 * unit * t * t).cbrt()).sqrt());
+        let distance = (4.5 * t * t).cbrt() * unit.cbrt();
+        close(parabola(unit).state(t).0.norm(), distance);
+        close(parabola(unit).state(t).1.norm(), (2.0 * unit / distance).sqrt());
     }
     // In the units of the rest: the same digits.
     let (far, _) = parabola(1.0).state(2f64.powi(1000));
@@ -234,11 +235,38 @@ fn open_motion_at_any_time_in_any_unit() {
 /// Lengths that overflow are infinite or refused, and nothing is 0 · ∞.
 #[test]
 fn elements_that_overflow_are_infinite() {
-    let far = Elements::from_state(1e300, Vector3::x() * 1e200, Vector3::y() * 1e150).unwrap();
+    let far = Elements::from_state(1e308, Vector3::x() * 1e230, Vector3::y() * 1e79).unwrap();
     assert_eq!(far.angular_momentum, Vector3::new(0.0, 0.0, f64::INFINITY));
     assert!(!far.laplace_runge_lenz.iter().any(|component| component.is_nan()));
     // The speed at 1e-100 of a mass of 1e300 is 1e200, though μ/r is not a number.
     let (_, velocity) = state_from_elements(1e300, 1e-100, 0.0, 0.0, 0.0, 0.0, 0.0).unwrap();
     close(velocity.y, 1e200);
     assert!(state_from_elements(1.0, 1e300, 1.0, 0.0, 0.0, 0.0, 3.141_592_6).is_err());
+}
+
+/// An angular momentum of 2^±900 times what energy and strength make: e = √(1 + 2El²/mγ²) and the rest, of which l²
+/// would leave the range.
+#[test]
+fn constants_of_any_angular_momentum() {
+    for k in [300, 480] {
+        let l = 2f64.powi(k);
+        for strength in [1.0, -1.0] {
+            // m = 1, E = 1/2, γ = ±1: a = 1, b = l, e = √(1 + l²).
+            let wide = ConicConstants::from_constants(1.0, strength, l, 0.5).unwrap();
+            assert_eq!((wide.semi_minor_axis, wide.eccentricity, wide.r_min), (l, l, l), "{k} {strength}");
+            assert_eq!(
+                (wide.semi_latus_rectum, wide.areal_rate, wide.turning_angle),
+                (l * l, 0.5 * l, 2.0 / l)
+            );
+            let narrow = ConicConstants::from_constants(1.0, strength, 1.0 / l, 0.5).unwrap();
+            let r_min = if strength > 0.0 { 0.5 / l / l } else { 2.0 };
+            assert_eq!((narrow.semi_minor_axis, narrow.eccentricity, narrow.r_min), (1.0 / l, 1.0, r_min));
+            assert_eq!((narrow.semi_latus_rectum, narrow.areal_rate), (1.0 / l / l, 0.5 / l));
+        }
+        let fall = ConicConstants::from_constants(1.0, 1.0, 1.0 / l, -0.5).unwrap();
+        assert_eq!((fall.r_min, fall.r_max, fall.eccentricity), (0.5 / l / l, 2.0, 1.0));
+        assert!(
+            ConicConstants::from_constants(1.0, 1.0, l, -0.5).unwrap_err().to_string().starts_with("energy")
+        );
+    }
 }

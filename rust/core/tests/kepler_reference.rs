@@ -69,16 +69,22 @@ fn hyperbolic_anomalies_agree_with_420_digits() {
     let document: Value = serde_json::from_str(&std::fs::read_to_string(path).unwrap()).unwrap();
     let cases = document["cases"].as_array().unwrap();
     assert!(cases.len() > 100);
+    let mut worst = 0.0_f64;
     for case in cases {
         let number = |name: &str| case[name].as_f64().unwrap();
         let repulsive = case["repulsive"].as_bool().unwrap();
         let (mean, expected) = (number("mean"), number("hyperbolic"));
         let found = hyperbolic_anomaly(mean, number("eccentricity"), repulsive).unwrap();
-        // A few roundings: measured at most @@ ε.
-        assert!((found - expected).abs() <= 3.0 * f64::EPSILON * expected, "{found:e}: {case}");
+        worst = worst.max((found - expected).abs() / expected / f64::EPSILON);
+        // A few roundings, or that of a subnormal number.
+        assert!((found - expected).abs() <= 3.0 * f64::EPSILON * expected + 5e-324, "{found:e}: {case}");
         assert_eq!(hyperbolic_anomaly(-mean, number("eccentricity"), repulsive).unwrap(), -found);
-        // And back: M is as well known as H, times dM/dH · H/M, which is at most 1 + H.
+        // And back: M is as well known as H, times dM/dH · H/M, which is at most 1 + H; a subnormal H has fewer digits.
+        if expected < f64::MIN_POSITIVE {
+            continue;
+        }
         let back = mean_from_hyperbolic(found, number("eccentricity"), repulsive);
         assert!((back / mean - 1.0).abs() <= 4.0 * f64::EPSILON * (3.0 + expected), "{back:e}: {case}");
     }
+    println!("worst hyperbolic anomaly: {worst:.2} ε");
 }

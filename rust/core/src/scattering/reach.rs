@@ -80,8 +80,9 @@ impl Beam {
             } else {
                 0.0
             };
-            // A bin that ends where b = ∞ leads is never whole, however little of it is missing.
-            if self.ends_forward(quantity, from, to) { part.min(1.0_f64.next_down()) } else { part }
+            // A bin that is cut, or that ends where b = ∞ leads, is never whole, however narrow what is missing.
+            let cut = from < low || to > high || self.ends_forward(quantity, from, to);
+            if cut { part.min(1.0_f64.next_down()) } else { part }
         };
         edges.windows(2).map(part).collect()
     }
