@@ -166,14 +166,19 @@ class Interrupted(KeyboardInterrupt):
         What was stopped.
     trajectory : Trajectory, optional
         What was computed until then.
+    result : MonteCarlo, optional
+        The events that a Monte Carlo counted until then.
     """
 
-    def __init__(self, message: str = "interrupted", trajectory: Any = None) -> None:
-        super().__init__(message, trajectory)
+    def __init__(self, message: str = "interrupted", trajectory: Any = None, result: Any = None) -> None:
+        super().__init__(message, trajectory, result)
         self.message = message
         self.trajectory = trajectory
+        self.result = result
 
     def __str__(self) -> str:
+        if self.result is not None:
+            return f"{self.message}; .result holds what was counted"
         return self.message if self.trajectory is None else f"{self.message}; .trajectory holds what was computed"
 
 

@@ -14,7 +14,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import did_you_mean, known_keywords
-from visviva._monte_carlo import CrossSection, MonteCarlo, Tally, monte_carlo
+from visviva._monte_carlo import Beam, CrossSection, MonteCarlo, Tally, monte_carlo
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
 
@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from visviva.potentials import Potential
 
 __all__ = [
+    "Beam",
     "CrossSection",
     "MonteCarlo",
     "Tally",
@@ -321,7 +322,7 @@ def rutherford_cross_section(
 def _half_distance(potential: object, energy: object) -> float:
     if not isinstance(potential, Coulomb):
         raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
-    return potential.k / (2.0 * positive("energy", energy))
+    return _core.rutherford_half_distance(potential.k, positive("energy", energy))
 
 
 def _evaluate(

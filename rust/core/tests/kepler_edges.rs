@@ -48,7 +48,7 @@ fn elements_of_radial_escape_and_repulsion() {
     assert!(escape.semi_major_axis.is_infinite() && escape.period.is_infinite());
     close(escape.time_since_pericenter, (16.0f64 / 9.0).sqrt());
     close(escape.turning_angle, PI);
-    // Head-on against a repulsive centre: turned back at |μ|/E, e = 1 as the limit of p → 0.
+    // Head-on against a repulsive center: turned back at |μ|/E, e = 1 as the limit of p → 0.
     let back = Elements::from_state(-1.0, Vector3::new(2.0, 0.0, 0.0), Vector3::zeros()).unwrap();
     assert_eq!((back.energy, back.eccentricity, back.pericenter), (0.5, 1.0, 2.0));
     assert_eq!(back.time_since_pericenter, 0.0);
@@ -173,4 +173,108 @@ fn constants_agree_with_those_of_a_state_and_know_no_units() {
     }
     close(period(1e250, 1e-100).unwrap(), 2.0 * PI * 1e-275);
     close(free_fall_time(1e250, 1e-100, 0.0).unwrap(), PI * 0.125f64.sqrt() * 1e-275);
+}
+
+/// tan(ν/2) = √3 tanh(H/2) for e = 2, to second order at small ν; 1 + w alone keeps none of these digits.
+#[test]
+fn a_small_true_anomaly_keeps_its_digits() {
+    for nu in [1e-8, 1e-10, 1e-15, 1e-300] {
+        close(hyperbolic_from_true(nu, 2.0, false), nu / 3f64.sqrt());
+        close(hyperbolic_from_true(-nu, 2.0, false), -nu / 3f64.sqrt());
+    }
+}
+
+/// β = −2⁻⁸⁰: for 2^120 dynamical times the hyperbola is a parabola, r³ = 9μt²/2 up to terms of q/r.
+#[test]
+fn a_near_parabola_is_not_straight_before_its_time() {
+    let v = Vector3::new(1.0, 1.0, 2f64.powi(-40));
+    let orbit = KeplerOrbit::new(1.0, Vector3::x(), v).unwrap();
+    for k in [61, 75, 90] {
+        let t = 2f64.powi(k);
+        let (position, velocity) = orbit.state(t);
+        let distance = (4.5 * t * t).cbrt();
+        // Of relative order β r/μ ≤ 2^-20 and (q/r)^½ ≥ 2^-20.
+        assert!((position.norm() / distance - 1.0).abs() < 1e-5, "{:e} {distance:e}", position.norm());
+        assert!((velocity.norm() / (2.0 / distance).sqrt() - 1.0).abs() < 1e-5);
+    }
+}
+
+/// Radial escape from a force of 2^-290 of what the speed asks for: a straight line to 87 digits. On the way Kepler's
+/// equation holds the square of 10^207.
+#[test]
+fn a_weak_force_at_late_times_bends_nothing() {
+    for (start, mu) in [(1.0, 2f64.powi(-290)), (1.0, -(2f64.powi(-290))), (2f64.powi(40), 2f64.powi(-250))] {
+        let orbit = KeplerOrbit::new(mu, Vector3::x() * start, Vector3::x()).unwrap();
+        for t in [1e100, 1e119, 1e200] {
+            let (position, velocity) = orbit.state(t);
+            close(position.x, t);
+            close(velocity.x, 1.0);
+        }
+    }
+}
+
+/// Lengths, speeds and times from end to end of f64: what is a number comes out as one, what is not is infinite.
+#[test]
+fn open_motion_at_any_time_in_any_unit() {
+    // Free, from 1e-300 at speed 1.
+    let free = |r: f64, v: f64| KeplerOrbit::new(0.0, Vector3::x() * r, Vector3::y() * v).unwrap();
+    assert_eq!(free(1e-300, 1.0).state(1e5).0, Vector3::new(1e-300, 1e5, 0.0));
+    assert_eq!(free(1.0, 1e-5).state(1e302).0, Vector3::new(1.0, 1e-5 * 1e302, 0.0));
+    assert_eq!(free(1.0, 1e300).state(1e300).0, Vector3::new(1.0, f64::INFINITY, 0.0));
+    assert_eq!(free(1e308, 1e-308).state(1e308).0, Vector3::new(1e308, 1e-308 * 1e308, 0.0));
+    // A hyperbola and a parabola whose dynamical time is 2^-1000.
+    let unit = 2f64.powi(-1000);
+    let hyperbola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::y() * 2.0).unwrap();
+    let (now, _) = hyperbola(unit).state(1e5);
+    let speed = 2f64.sqrt(); // v∞² = v² − 2μ/r
+    close(now.norm(), speed * 1e5);
+    let parabola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::new(1.0, 1.0, 0.0)).unwrap();
+    for t in [1e-20, 1.0, 1e10] {
+        // r³ = 9μt²/2, the rest is (q/r)^½ < 2^-300 of it.
+        let distance = (4.5 * t * t).cbrt() * unit.cbrt();
+        close(parabola(unit).state(t).0.norm(), distance);
+        close(parabola(unit).state(t).1.norm(), (2.0 * unit / distance).sqrt());
+    }
+    // In the units of the rest: the same digits.
+    let (far, _) = parabola(1.0).state(2f64.powi(1000));
+    close(parabola(unit).state(1.0).0.norm(), far.norm() * unit);
+}
+
+/// Lengths that overflow are infinite or refused, and nothing is 0 · ∞.
+#[test]
+fn elements_that_overflow_are_infinite() {
+    let far = Elements::from_state(1e308, Vector3::x() * 1e230, Vector3::y() * 1e79).unwrap();
+    assert_eq!(far.angular_momentum, Vector3::new(0.0, 0.0, f64::INFINITY));
+    assert!(!far.laplace_runge_lenz.iter().any(|component| component.is_nan()));
+    // The speed at 1e-100 of a mass of 1e300 is 1e200, though μ/r is not a number.
+    let (_, velocity) = state_from_elements(1e300, 1e-100, 0.0, 0.0, 0.0, 0.0, 0.0).unwrap();
+    close(velocity.y, 1e200);
+    assert!(state_from_elements(1.0, 1e300, 1.0, 0.0, 0.0, 0.0, 3.141_592_6).is_err());
+}
+
+/// An angular momentum of 2^±900 times what energy and strength make: e = √(1 + 2El²/mγ²) and the rest, of which l²
+/// would leave the range.
+#[test]
+fn constants_of_any_angular_momentum() {
+    for k in [300, 480] {
+        let l = 2f64.powi(k);
+        for strength in [1.0, -1.0] {
+            // m = 1, E = 1/2, γ = ±1: a = 1, b = l, e = √(1 + l²).
+            let wide = ConicConstants::from_constants(1.0, strength, l, 0.5).unwrap();
+            assert_eq!((wide.semi_minor_axis, wide.eccentricity, wide.r_min), (l, l, l), "{k} {strength}");
+            assert_eq!(
+                (wide.semi_latus_rectum, wide.areal_rate, wide.turning_angle),
+                (l * l, 0.5 * l, 2.0 / l)
+            );
+            let narrow = ConicConstants::from_constants(1.0, strength, 1.0 / l, 0.5).unwrap();
+            let r_min = if strength > 0.0 { 0.5 / l / l } else { 2.0 };
+            assert_eq!((narrow.semi_minor_axis, narrow.eccentricity, narrow.r_min), (1.0 / l, 1.0, r_min));
+            assert_eq!((narrow.semi_latus_rectum, narrow.areal_rate), (1.0 / l / l, 0.5 / l));
+        }
+        let fall = ConicConstants::from_constants(1.0, 1.0, 1.0 / l, -0.5).unwrap();
+        assert_eq!((fall.r_min, fall.r_max, fall.eccentricity), (0.5 / l / l, 2.0, 1.0));
+        assert!(
+            ConicConstants::from_constants(1.0, 1.0, l, -0.5).unwrap_err().to_string().starts_with("energy")
+        );
+    }
 }

@@ -1,4 +1,4 @@
-//! Two bodies against a reference in double-double: mass ratios to 1e-15 and a centre of mass far away.
+//! Two bodies against a reference in double-double: mass ratios to 1e-15 and a center of mass far away.
 #![allow(clippy::unwrap_used, missing_docs)]
 
 use nalgebra::Vector3;
@@ -11,7 +11,7 @@ fn exact(x: f64) -> DoubleDouble {
     DoubleDouble::from(x)
 }
 
-/// m₁/M and m₂/M, and the centre of mass as Σmx/M: the textbook's formulas, with 31 digits for their cancellations.
+/// m₁/M and m₂/M, and the center of mass as Σmx/M: the textbook's formulas, with 31 digits for their cancellations.
 fn reference(masses: [f64; 2], states: [State; 2], t: f64) -> [[DoubleDouble; 3]; 2] {
     let total = DoubleDouble::sum(masses[0], masses[1]);
     let relative =
@@ -24,9 +24,9 @@ fn reference(masses: [f64; 2], states: [State; 2], t: f64) -> [[DoubleDouble; 3]
                     + exact(masses[1]) * exact(pick(&states[1])[c]))
                     / total
             };
-            let centre = weighted(|state| state.0) + weighted(|state| state.1) * exact(t);
+            let center = weighted(|state| state.0) + weighted(|state| state.1) * exact(t);
             let part = exact(masses[1 - body]) / total * exact(r[c]);
-            if body == 0 { centre - part } else { centre + part }
+            if body == 0 { center - part } else { center + part }
         })
     })
 }
@@ -73,7 +73,9 @@ fn the_epoch_gives_the_given_bits_and_a_massless_body_disturbs_nothing() {
     let states =
         [(Vector3::new(1.0, 0.3, 0.1), Vector3::y() * 0.1), (Vector3::new(-0.7, 0.1, 0.2), -Vector3::z())];
     assert_eq!(TwoBody::new(1.0, [0.1, 0.7], states).unwrap().states(0.0), states);
-    for heavy in 0..2 {
+    // Also where the companion is so far off that 106 bits do not hold both places.
+    let far = |k: f64| [states[0], (states[1].0 * k, states[1].1 * k)];
+    for (heavy, states) in [(0, states), (1, states), (0, far(1e40)), (1, [far(1e40)[1], states[0]])] {
         let mut masses = [0.0; 2];
         masses[heavy] = 1.0;
         let found = TwoBody::new(1.0, masses, states).unwrap().states(-2.5);
@@ -86,6 +88,31 @@ fn the_epoch_gives_the_given_bits_and_a_massless_body_disturbs_nothing() {
     }
 }
 
+/// Units from end to end of f64 give the same digits; what overflows is infinite and never 0 · ∞.
+#[test]
+fn any_unit_of_length_and_time() {
+    let states = [
+        (Vector3::new(1.0, 0.25, 0.0), Vector3::new(0.0, 0.5, 0.125)),
+        (Vector3::new(-0.75, 0.0, 0.5), Vector3::new(0.0, -0.5, 0.0)),
+    ];
+    let plain = TwoBody::new(1.0, [1.5, 0.5], states).unwrap().states(3.0);
+    // G carries length³/time².
+    for (length, time) in [(1000, 1000), (-900, -900), (1010, 980), (-600, 300), (300, -600)] {
+        let (l, s) = (2f64.powi(length), 2f64.powi(length - time));
+        let scaled = states.map(|(r, v)| (r * l, v * s));
+        let Some(g) = Some(l * s * s).filter(|g| g.is_normal()) else { continue };
+        let found = TwoBody::new(g, [1.5, 0.5], scaled).unwrap().states(3.0 * 2f64.powi(time));
+        assert_eq!(found, plain.map(|(r, v)| (r * l, v * s)), "{length} {time}");
+    }
+    // A line that leaves the range, and one that does not though its parts would.
+    let apart = [(Vector3::x(), Vector3::x() * 1e200), (-Vector3::x(), Vector3::x() * 1e200)];
+    let gone = TwoBody::new(1.0, [1.0, 1.0], apart).unwrap().states(1e200);
+    assert!(gone.iter().all(|(r, _)| r.x == f64::INFINITY && !r.y.is_nan()));
+    let slow = apart.map(|(r, _)| (r, Vector3::y() * 1e-300));
+    let moved = TwoBody::new(0.0, [1.0, 1.0], slow).unwrap().states(1e302);
+    assert_eq!(moved[0].0, Vector3::new(1.0, 1e-300 * 1e302, 0.0));
+}
+
 #[test]
 fn refusals_name_the_argument() {
     let states = [(Vector3::x(), Vector3::y()), (Vector3::z(), Vector3::zeros())];
@@ -94,6 +121,12 @@ fn refusals_name_the_argument() {
         ([1.0, f64::INFINITY], states, "mass"),
         ([0.0, 0.0], states, "mass"),
         ([1.0, 1.0], [states[0], states[0]], "position"),
+        (
+            [1.0, 1.0],
+            [(Vector3::x(), Vector3::x() * 1e308), (Vector3::y(), Vector3::x() * -1e308)],
+            "velocity: expected two",
+        ),
+        ([1e308, 1e308], states, "mass"),
     ] {
         assert!(TwoBody::new(1.0, masses, states).unwrap_err().to_string().starts_with(name));
     }

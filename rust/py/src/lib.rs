@@ -34,7 +34,7 @@ mod _core {
     #[pymodule_export]
     use crate::registry::{dimensions, forces, methods, potential, potentials};
     #[pymodule_export]
-    use crate::scattering::{monte_carlo, scattering_function, solid_angles};
+    use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
     use crate::scene::{acceleration, columns, conserved, conserves, plan, run};
     #[pymodule_export]

@@ -6,14 +6,16 @@ use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use visviva_core::parallel::thread_count;
-use visviva_core::scattering::histogram::Edges;
 use visviva_core::scattering::kinematics::{Collision, HalfAngle, solid_angle};
 use visviva_core::scattering::monte_carlo::{Beam, Quantity, monte_carlo as simulate};
 use visviva_core::scattering::rutherford;
 use visviva_core::{Error, Result};
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
-type Tally<'py> = (String, Column<'py>, Bound<'py, PyArrayDyn<u64>>, u64, u64);
+/// Name, edges, counts, underflow, overflow, how much of each bin is reachable, and the values covered.
+type Tally<'py> = (String, Column<'py>, Bound<'py, PyArrayDyn<u64>>, u64, u64, Column<'py>, (f64, f64));
+/// How many events, whether Ctrl-C ended them, the smallest deflection, and the tallies.
+type Counted<'py> = (u64, bool, f64, Vec<Tally<'py>>);
 
 /// The bins of one tally: how many, or their edges.
 #[derive(FromPyObject)]
@@ -22,7 +24,7 @@ pub(crate) enum Bins<'py> {
     Edges(PyReadonlyArrayDyn<'py, f64>),
 }
 
-/// Scatters `n_events` projectiles and gives (name, edges, counts, underflow, overflow) of each tally.
+/// Scatters `n_events` projectiles, or as many as come before Ctrl-C.
 #[pyfunction]
 #[pyo3(signature = (*, k, beam_energy, masses, b_max, n_events, seed, first_event, tallies, threads, progress))]
 pub(crate) fn monte_carlo<'py>(
@@ -37,7 +39,7 @@ pub(crate) fn monte_carlo<'py>(
     tallies: Vec<(String, Bins<'py>)>,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<Vec<Tally<'py>>> {
+) -> PyResult<Counted<'py>> {
     let refused = |error| raised(py, error);
     let threads = thread_count(threads).map_err(refused)?;
     let beam = Beam::new(k, beam_energy, masses, b_max).map_err(refused)?;
@@ -46,21 +48,29 @@ pub(crate) fn monte_carlo<'py>(
         let quantity = Quantity::named(name).map_err(refused)?;
         let edges = match bins {
             Bins::Count(bins) => beam.uniform_edges(quantity, *bins),
-            Bins::Edges(edges) => Edges::new(name, copied(name, edges, [None])?.0),
+            Bins::Edges(edges) => beam.edges(quantity, copied(name, edges, [None])?.0),
         };
         asked.push((quantity, edges.map_err(refused)?));
     }
-    let counts = compute(py, n_events, progress.as_ref(), |ticker| {
+    let (counted, interrupted) = compute(py, n_events, progress.as_ref(), |ticker| {
         simulate(&beam, &asked, seed, first_event, n_events, threads, ticker)
     })?
-    .whole(py)?;
+    .partial(py)?;
     let mut results = Vec::with_capacity(asked.len());
-    for (((name, _), (_, edges)), counts) in tallies.into_iter().zip(asked).zip(counts) {
-        let bins = edges.bins();
+    for (((name, _), (quantity, edges)), counts) in tallies.into_iter().zip(asked).zip(counted.counts) {
+        let (bins, covered) = (edges.bins(), beam.covered(quantity));
+        let reachable = moved(py, beam.reachable(quantity, edges.values()), &[bins])?;
         let edges = moved(py, edges.values().to_vec(), &[bins + 1])?;
-        results.push((name, edges, moved(py, counts.bins, &[bins])?, counts.underflow, counts.overflow));
+        let counts = (moved(py, counts.bins, &[bins])?, counts.underflow, counts.overflow);
+        results.push((name, edges, counts.0, counts.1, counts.2, reachable, covered));
     }
-    Ok(results)
+    Ok((counted.events, interrupted, beam.smallest_angle(), results))
+}
+
+/// κ = k/2E.
+#[pyfunction]
+pub(crate) fn rutherford_half_distance(k: f64, energy: f64) -> f64 {
+    rutherford::half_distance(k, energy)
 }
 
 /// A function of one array, by name, with up to two fixed numbers: see `visviva.scattering`.

@@ -4,14 +4,14 @@
 //! Angles use the library's own sine, cosine and arctangent: the same bits on every machine.
 //! Source: Danby, *Fundamentals of Celestial Mechanics* (1988) §6.3–6.8.
 
-use super::kepler_equation::{after_apocentre, after_pericentre};
+use super::kepler_equation::{after_apocenter, after_pericenter};
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::elementary::{cbrt, ln};
+use crate::numerics::elementary::{Exponential, cbrt, ln};
 use crate::numerics::stumpff::UniversalFunctions;
 use crate::words::number;
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::{FRAC_PI_2, LN_2, PI};
 
 fn check(name: &str, value: f64, good: bool, expected: &str) -> Result<()> {
     if good {
@@ -29,6 +29,11 @@ pub fn mean_from_eccentric(eccentric: f64, eccentricity: f64) -> f64 {
 
 /// M = e sinh H − H; of the repulsive branch, e sinh H + H.
 pub fn mean_from_hyperbolic(hyperbolic: f64, eccentricity: f64, repulsive: bool) -> f64 {
+    if hyperbolic.abs() > 700.0 {
+        // (e/2) eᴴ in two halves: eᴴ alone would overflow before M does.
+        let half = Exponential::exp(0.5 * hyperbolic.abs());
+        return ((0.5 * eccentricity * half) * half).copysign(hyperbolic);
+    }
     let g3 = UniversalFunctions::<f64>::new(-1.0, hyperbolic).g3;
     let linear = if repulsive { eccentricity + 1.0 } else { eccentricity - 1.0 };
     linear * hyperbolic + eccentricity * g3
@@ -41,18 +46,18 @@ pub fn mean_from_hyperbolic(hyperbolic: f64, eccentricity: f64, repulsive: bool)
 pub fn eccentric_anomaly(mean: f64, eccentricity: f64) -> Result<f64> {
     let e = eccentricity;
     check("eccentricity", e, (0.0..=1.0).contains(&e), "0 ≤ e ≤ 1")?;
-    check("mean", mean, mean.abs() < 1e300, "a finite angle")?;
+    check("mean", mean, mean.abs() < 1e300, "an angle below 1e300 in size")?;
     let turn = DoubleDouble::PI.scale(2.0);
     let turns = (mean / (2.0 * PI)).round();
     let reduced = DoubleDouble::from(mean) - turn * DoubleDouble::from(turns);
     let backwards = reduced.to_f64() < 0.0;
     let size = if backwards { -reduced } else { reduced };
     let anomaly = if size.to_f64() <= FRAC_PI_2 - e {
-        DoubleDouble::from(after_pericentre(1.0, 1.0 - e, e, 1.0, size.parts()).s)
+        DoubleDouble::from(after_pericenter(1.0, 1.0 - e, e, 1.0, size.parts()).s)
     } else {
         let rest = DoubleDouble::PI - size;
         if rest.to_f64() > 0.0 {
-            DoubleDouble::PI - DoubleDouble::from(after_apocentre(1.0 + e, e, 1.0, rest.parts()).s)
+            DoubleDouble::PI - DoubleDouble::from(after_apocenter(1.0 + e, e, 1.0, rest.parts()).s)
         } else {
             DoubleDouble::PI
         }
@@ -68,9 +73,16 @@ pub fn hyperbolic_anomaly(mean: f64, eccentricity: f64, repulsive: bool) -> Resu
     let e = eccentricity;
     let least = if repulsive { 0.0 } else { 1.0 };
     check("eccentricity", e, e.is_finite() && e >= least && e > 0.0, "a finite e ≥ 1 (repulsive: e > 0)")?;
-    check("mean", mean, mean.abs() < 1e200, "a number below 1e200")?;
+    check("mean", mean, mean.is_finite(), "a finite number")?;
+    let size = mean.abs();
+    if size > 1e100 && size / e > 1e100 {
+        // e sinh H alone: eᴴ/2 to a hundred digits, H itself to as many.
+        let ratio = size / e;
+        let logarithm = if ratio.is_finite() { ln(ratio) } else { ln(size) - ln(e) };
+        return Ok((logarithm + LN_2).copysign(mean));
+    }
     let (mu, r) = if repulsive { (-1.0, e + 1.0) } else { (1.0, e - 1.0) };
-    Ok(after_pericentre(mu, r, e, -1.0, (mean.abs(), 0.0)).s.copysign(mean))
+    Ok(after_pericenter(mu, r, e, -1.0, (size, 0.0)).s.copysign(mean))
 }
 
 /// The D = tan(ν/2) of Barker's equation D + D³/3 = M, with M = √(μ/(2q³)) t.
@@ -150,7 +162,7 @@ pub fn convert(name: &str, anomaly: f64, eccentricity: f64, repulsive: bool) -> 
         if from == "mean" || from == "true" { to } else { from },
     );
     let e = eccentricity;
-    check(argument, anomaly, anomaly.abs() < 1e300, "a finite number")?;
+    check(argument, anomaly, anomaly.abs() < 1e300, "a number below 1e300 in size")?;
     match conic {
         "eccentric" => check("eccentricity", e, (0.0..1.0).contains(&e), "0 ≤ e < 1, as ellipses have")?,
         "hyperbolic" => {

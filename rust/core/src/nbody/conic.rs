@@ -1,10 +1,10 @@
-//! One conic about a centre, anchored at its pericentre (and apocentre), made in double-double.
+//! One conic about a center, anchored at its pericenter (and apocenter), made in double-double.
 //!
 //! The one idea: counted from an apsis, Kepler's equation is a sum of terms of one sign, so `f64` loses nothing.
 //! Everything that relates the given state to the apsis is found once, to about 31 digits, from the inputs taken
 //! as exact numbers. Attraction, repulsion, every eccentricity and L = 0 are the same formulas.
 
-use super::kepler_equation::{Reached, after_apocentre, after_pericentre};
+use super::kepler_equation::{Reached, after_apocenter, after_pericenter};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::ln;
 use crate::numerics::real::Real;
@@ -38,18 +38,18 @@ pub(super) struct Conic {
     pub(super) angular_momentum: DoubleDouble,
     /// The direction of L; zero if L = 0.
     pub(super) normal: Vector3<f64>,
-    pub(super) pericentre: DoubleDouble,
-    pub(super) apocentre: f64,
-    /// Towards the pericentre.
+    pub(super) pericenter: DoubleDouble,
+    pub(super) apocenter: f64,
+    /// Towards the pericenter.
     pub(super) towards: Vector3<f64>,
     /// Along the velocity there.
     pub(super) along: Vector3<f64>,
-    /// The epoch's time since the pericentre, or since the apocentre of an ellipse if that is nearer in E.
+    /// The epoch's time since the pericenter, or since the apocenter of an ellipse if that is nearer in E.
     pub(super) since_apsis: DoubleDouble,
-    pub(super) from_apocentre: bool,
+    pub(super) from_apocenter: bool,
     /// Period of an ellipse.
     pub(super) period: Option<DoubleDouble>,
-    /// Time from the pericentre to eccentric anomaly π/2.
+    /// Time from the pericenter to eccentric anomaly π/2.
     quarter: f64,
     /// s and the true anomaly (cos, sin) of the epoch, s from the anchoring apsis.
     pub(super) epoch: DoubleDouble,
@@ -79,7 +79,7 @@ impl Conic {
             cosine = radial / zeta;
             sine = -(transverse / zeta);
         } else {
-            zeta = zero; // a circle as far as 31 digits tell: any direction is the pericentre's
+            zeta = zero; // a circle as far as 31 digits tell: any direction is the pericenter's
         }
         let out = r.map(|component| component / distance);
         let round = if h.to_f64() > 0.0 {
@@ -90,25 +90,25 @@ impl Conic {
         let towards = [0, 1, 2].map(|i| cosine * out[i] - sine * round[i]);
         let along = [0, 1, 2].map(|i| sine * out[i] + cosine * round[i]);
 
-        let pericentre = if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
+        let pericenter = if mu > 0.0 { h2 / (strength + zeta) } else { (zeta - strength) / (-beta) };
         let bound = beta.to_f64() > 0.0;
-        let apocentre = if bound { (strength + zeta) / beta } else { zero };
+        let apocenter = if bound { (strength + zeta) / beta } else { zero };
         let rate = beta.abs().sqrt();
         let period = bound.then(|| DoubleDouble::PI.scale(2.0) * strength / (beta * rate));
 
-        // G₁ and G₀ of the epoch, counted from the pericentre: sin E and cos E.
+        // G₁ and G₀ of the epoch, counted from the pericenter: sin E and cos E.
         let (mut g1, mut g0) = if bound && zeta.to_f64() < 0.5 * mu {
             (distance * sine / h, (zeta + beta * distance * cosine) / strength)
         } else {
             (eta / zeta, (strength - beta * distance) / zeta)
         };
-        let from_apocentre = bound && g0.to_f64() < 0.0;
-        let (anchor_r, anchor_zeta) = if from_apocentre {
+        let from_apocenter = bound && g0.to_f64() < 0.0;
+        let (anchor_r, anchor_zeta) = if from_apocenter {
             g1 = -g1;
             g0 = -g0;
-            (apocentre, -zeta)
+            (apocenter, -zeta)
         } else {
-            (pericentre, zeta)
+            (pericenter, zeta)
         };
         let (functions, s) = invert(beta, g1, g0);
         let since_apsis = anchor_r * s + anchor_zeta * functions.g3;
@@ -126,12 +126,12 @@ impl Conic {
             } else {
                 Vector3::zeros()
             },
-            pericentre,
-            apocentre: apocentre.to_f64(),
+            pericenter,
+            apocenter: apocenter.to_f64(),
             towards: rounded(&towards),
             along: rounded(&along),
             since_apsis,
-            from_apocentre,
+            from_apocenter,
             period,
             quarter,
             epoch: s,
@@ -142,7 +142,7 @@ impl Conic {
     /// Position and velocity at a time since the epoch.
     pub(super) fn state(&self, time: f64) -> (Vector3<f64>, Vector3<f64>) {
         let mut since = self.since_apsis + DoubleDouble::from(time);
-        let mut at_apocentre = false;
+        let mut at_apocenter = false;
         if let Some(period) = self.period {
             // Each pass takes 52 bits off; the phase keeps its meaning up to 2^106 periods, its range always.
             for _ in 0..32 {
@@ -154,28 +154,28 @@ impl Conic {
             }
             let half = period.scale(0.5);
             let size = since.to_f64().abs();
-            let limit = if self.from_apocentre { half.to_f64() - self.quarter } else { self.quarter };
-            at_apocentre = self.from_apocentre;
+            let limit = if self.from_apocenter { half.to_f64() - self.quarter } else { self.quarter };
+            at_apocenter = self.from_apocenter;
             if size > limit {
                 since = if since.to_f64() > 0.0 { since - half } else { since + half };
-                at_apocentre = !at_apocentre;
+                at_apocenter = !at_apocenter;
             }
         }
         let backwards = since.to_f64() < 0.0;
         let (high, low) = since.abs().parts();
         let reached =
-            if at_apocentre { self.after_apocentre(high, low) } else { self.after_pericentre(high, low) };
-        self.place(&reached, at_apocentre, backwards)
+            if at_apocenter { self.after_apocenter(high, low) } else { self.after_pericenter(high, low) };
+        self.place(&reached, at_apocenter, backwards)
     }
 
-    fn place(&self, reached: &Reached, at_apocentre: bool, backwards: bool) -> (Vector3<f64>, Vector3<f64>) {
+    fn place(&self, reached: &Reached, at_apocenter: bool, backwards: bool) -> (Vector3<f64>, Vector3<f64>) {
         let Reached { functions, r, .. } = reached;
         if *r == 0.0 {
             // The instant of a collision: the mean of the velocities just before and after.
             return (Vector3::zeros(), Vector3::zeros());
         }
         let (apsis, side) =
-            if at_apocentre { (self.apocentre, -1.0) } else { (self.pericentre.to_f64(), 1.0) };
+            if at_apocenter { (self.apocenter, -1.0) } else { (self.pericenter.to_f64(), 1.0) };
         let h = side * self.angular_momentum.to_f64();
         let g1 = if backwards { -functions.g1 } else { functions.g1 };
         let x = side * (apsis - self.mu * functions.g2);
@@ -185,13 +185,13 @@ impl Conic {
         (self.towards * x + self.along * y, self.towards * v_x + self.along * v_y)
     }
 
-    fn after_apocentre(&self, high: f64, low: f64) -> Reached {
-        after_apocentre(self.apocentre, self.zeta.to_f64(), self.beta.to_f64(), (high, low))
+    fn after_apocenter(&self, high: f64, low: f64) -> Reached {
+        after_apocenter(self.apocenter, self.zeta.to_f64(), self.beta.to_f64(), (high, low))
     }
 
-    fn after_pericentre(&self, high: f64, low: f64) -> Reached {
-        let (r, zeta, beta) = (self.pericentre.to_f64(), self.zeta.to_f64(), self.beta.to_f64());
-        after_pericentre(self.mu, r, zeta, beta, (high, low))
+    fn after_pericenter(&self, high: f64, low: f64) -> Reached {
+        let (r, zeta, beta) = (self.pericenter.to_f64(), self.zeta.to_f64(), self.beta.to_f64());
+        after_pericenter(self.mu, r, zeta, beta, (high, low))
     }
 }
 

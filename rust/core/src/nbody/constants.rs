@@ -121,7 +121,11 @@ impl ConicConstants {
         let speed = if energy == 0.0 { mu_exponent - h_exponent } else { energy_exponent.div_euclid(2) };
         let length = mu_exponent - 2 * speed;
         let beta = scaled(binding.scale(2.0), energy_exponent - 2 * speed);
-        let h = scaled(h, h_exponent - length - speed);
+        // Far from order one the angular momentum is in one term alone, or in none: it is taken nearer, by 2^`rest`,
+        // and each constant moved by the power of it that it then goes with.
+        let size_of_h = h_exponent - length - speed;
+        let rest = size_of_h - size_of_h.clamp(-250, 250);
+        let h = scaled(h, size_of_h - rest);
         let size = beta.abs();
         let rate = size.sqrt();
         let strength_size = mu.abs();
@@ -142,33 +146,34 @@ impl ConicConstants {
         }
         let zeta = square.sqrt();
         let (bound, parabola) = (energy < 0.0, energy == 0.0);
-        let lengths = |x: DoubleDouble| scale(x.to_f64(), length);
+        let lengths = |x: DoubleDouble, power: i32| scale(x.to_f64(), length + power);
         let infinite_unless = |finite: bool, value: f64| if finite { value } else { f64::INFINITY };
-        let pericentre = if mu.to_f64() > 0.0 { h * h / (mu + zeta) } else { (zeta - mu) / size };
+        let pericenter = if mu.to_f64() > 0.0 { h * h / (mu + zeta) } else { (zeta - mu) / size };
         Ok(Self {
             angular_momentum,
             energy,
-            eccentricity: (zeta / strength_size).to_f64(),
-            semi_major_axis: infinite_unless(!parabola, lengths(strength_size / size)),
-            semi_minor_axis: infinite_unless(!parabola, lengths(h / rate)),
-            semi_latus_rectum: lengths(h * h / strength_size),
-            r_min: lengths(pericentre),
-            r_max: infinite_unless(bound, lengths((mu + zeta) / size)),
+            eccentricity: scale((zeta / strength_size).to_f64(), rest.max(0)),
+            semi_major_axis: infinite_unless(!parabola, lengths(strength_size / size, 0)),
+            semi_minor_axis: infinite_unless(!parabola, lengths(h / rate, rest)),
+            semi_latus_rectum: lengths(h * h / strength_size, 2 * rest),
+            r_min: lengths(pericenter, if rest > 0 { rest } else { 2 * rest * i32::from(mu.to_f64() > 0.0) }),
+            r_max: infinite_unless(bound, lengths((mu + zeta) / size, 0)),
             period: infinite_unless(
                 bound,
                 scale((DoubleDouble::PI.scale(2.0) * mu / (size * rate)).to_f64(), length - speed),
             ),
-            areal_rate: scale(0.5 * h.to_f64(), length + speed),
+            areal_rate: scale(0.5 * h.to_f64(), length + speed + rest),
             turning_angle: if bound {
                 f64::NAN
             } else {
-                2.0 * atan2(strength_size.to_f64(), (h * rate).to_f64())
+                2.0 * atan2(strength_size.to_f64(), scale((h * rate).to_f64(), rest))
             },
         })
     }
 }
 
-fn scaled(x: DoubleDouble, exponent: i32) -> DoubleDouble {
+/// x · 2^exponent.
+pub(super) fn scaled(x: DoubleDouble, exponent: i32) -> DoubleDouble {
     DoubleDouble::new(scale(x.high(), exponent), scale(x.low(), exponent))
 }
 

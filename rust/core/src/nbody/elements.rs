@@ -18,7 +18,7 @@ use crate::words::number;
 use core::f64::consts::FRAC_PI_2;
 use nalgebra::Vector3;
 
-/// The elements of an orbit about a fixed centre, all per unit mass.
+/// The elements of an orbit about a fixed center, all per unit mass.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Elements {
     /// r×v.
@@ -100,7 +100,7 @@ impl Elements {
         let mut since = conic.since_apsis;
         let mean_rate = size * rate / strength;
         let mut mean = mean_rate * since;
-        if let (true, Some(period)) = (conic.from_apocentre, conic.period) {
+        if let (true, Some(period)) = (conic.from_apocenter, conic.period) {
             angle += half;
             mean += half;
             since += if conic.epoch.to_f64() > 0.0 { -period.scale(0.5) } else { period.scale(0.5) };
@@ -128,19 +128,21 @@ impl Elements {
         };
         // sin(χ/2) = 1/e and cos(χ/2) = √(e² − 1)/e: tan(χ/2) = |μ|/(L √−β).
         let turning = if bound { f64::NAN } else { 2.0 * atan2(strength.to_f64(), h_size * rate.to_f64()) };
+        // Component by component: 0 · ∞ is no number where the length overflows.
+        let along = |direction: Vector3<f64>, size: f64, unit: i32| direction.map(|c| scale(c * size, unit));
         let infinite_if = |condition: bool, value: f64| if condition { f64::INFINITY } else { value };
         Self {
-            angular_momentum: normal * scale(h_size, length + speed),
+            angular_momentum: along(normal, h_size, length + speed),
             energy: scale(-0.5 * beta.to_f64(), 2 * speed),
-            laplace_runge_lenz: conic.towards * scale(zeta.to_f64(), length + 2 * speed),
-            hodograph_center: conic.along * scale((zeta / h).to_f64(), speed),
+            laplace_runge_lenz: along(conic.towards, zeta.to_f64(), length + 2 * speed),
+            hodograph_center: along(conic.along, (zeta / h).to_f64(), speed),
             hodograph_radius: infinite_if(h_size == 0.0, scale((strength / h).to_f64(), speed)),
             eccentricity: e,
             semi_major_axis: infinite_if(parabola, lengths((strength / size).to_f64())),
             semi_minor_axis: infinite_if(parabola, lengths((h / rate).to_f64())),
             semi_latus_rectum: lengths((h * h / strength).to_f64()),
-            pericenter: lengths(conic.pericentre.to_f64()),
-            apocenter: infinite_if(!bound, lengths(conic.apocentre)),
+            pericenter: lengths(conic.pericenter.to_f64()),
+            apocenter: infinite_if(!bound, lengths(conic.apocenter)),
             inclination,
             node,
             argument_of_pericenter: argument,
@@ -160,7 +162,7 @@ impl Elements {
 
 /// The time to fall from rest at the distance `start` to the distance `end` ≤ `start` of an attracting centre.
 ///
-/// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the centre itself π √(R³/(8μ)).
+/// t = √(R³/(2μ)) (θ + sin θ cos θ) with r = R cos²θ; to the center itself π √(R³/(8μ)).
 ///
 /// # Errors
 /// [`Error::InvalidInput`] unless `mu` > 0 and 0 ≤ `end` ≤ `start`, all finite, `start` > 0.

@@ -4,8 +4,10 @@
 //! one reduction modulo the period (106 bits) and one solution of Kepler's equation in `f64`. Errors stay at a
 //! few ulps of |r| and |v| however far away the time is; the digits that the *rounding of the inputs* cost
 //! (relative phase 1.5·2π·N·ulp after N periods, and dx/dt·ulp(t)) are the caller's, none are added here.
+//! Where |v| is much smaller than at the epoch (a turning point of radial motion just after it), its error is a few
+//! ulps of the velocity at the epoch instead.
 //!
-//! Radial motion (r×v = 0): the orbit is the limit e → 1 of the conic, so an attracted body falls to the centre
+//! Radial motion (r×v = 0): the orbit is the limit e → 1 of the conic, so an attracted body falls to the center
 //! and returns on the side it came from. At the very instant of the collision the state is r = 0 and v = 0, the
 //! mean of the opposite infinite velocities before and after. μ = 0, or |μ| below 2⁻³⁰⁰ r v², is a straight line.
 
@@ -19,8 +21,10 @@ use nalgebra::Vector3;
 
 /// Beyond this many dynamical times a hyperbola is its asymptote.
 const FAR: f64 = 2.582_249_878_086_908_6e120; // 2^400
+/// Beyond this many, what is not there yet is beyond `f64` in these units.
+const FARTHEST: i32 = 900;
 
-/// An orbit about a fixed centre, ready to be asked for its state at any time.
+/// An orbit about a fixed center, ready to be asked for its state at any time.
 ///
 /// ```
 /// use nalgebra::Vector3;
@@ -75,7 +79,7 @@ impl KeplerOrbit {
         if size == 0.0 {
             return Err(Error::invalid(
                 "position",
-                "expected a point away from the centre of force, got the centre itself, where the force has no value",
+                "expected a point away from the center of force, got the center itself, where the force has no value",
             ));
         }
         let length = exponent(size);
@@ -115,22 +119,54 @@ impl KeplerOrbit {
         if !t.is_finite() {
             return (Vector3::repeat(f64::NAN), Vector3::repeat(f64::NAN));
         }
-        // Times whose count of dynamical times would overflow are taken as 2^960 of them.
+        let Some(conic) = &self.conic else {
+            return (straight(&self.position, &self.velocity, t), self.velocity);
+        };
+        let beyond = exponent(t) + self.speed - self.length - FARTHEST;
+        if beyond > 0 && conic.period.is_none() {
+            return self.far_off(conic, t, beyond);
+        }
+        // An ellipse's phase has lost its meaning long before 2^960 dynamical times.
         let limit = power_of_two(960);
         let time = scale(t, self.speed - self.length).clamp(-limit, limit);
-        let (position, velocity) = match &self.conic {
-            None => (straight(&self.scaled.position, &self.scaled.velocity, time), self.scaled.velocity),
-            Some(_) if time.abs() <= self.scaled.near => self.scaled.near_epoch(time),
-            Some(conic) if conic.beta.to_f64() < 0.0 && time.abs() > FAR => {
-                let (position, velocity) = conic.state(FAR.copysign(time));
-                (position + velocity * (time - FAR.copysign(time)), velocity)
-            }
-            Some(conic) => conic.state(time),
+        let (position, velocity) = if time.abs() <= self.scaled.near {
+            self.scaled.near_epoch(time)
+        } else if conic.beta.to_f64() < 0.0 && time.abs() > FAR {
+            let (position, velocity) = conic.state(FAR.copysign(time));
+            (position + velocity * (time - FAR.copysign(time)), velocity)
+        } else {
+            conic.state(time)
         };
+        self.in_users_units(position, velocity, 0, 0)
+    }
+
+    /// Times 2^length and 2^speed, and those of the orbit.
+    fn in_users_units(
+        &self,
+        position: Vector3<f64>,
+        velocity: Vector3<f64>,
+        length: i32,
+        speed: i32,
+    ) -> (Vector3<f64>, Vector3<f64>) {
         (
-            position.map(|component| scale(component, self.length)),
-            velocity.map(|component| scale(component, self.speed)),
+            position.map(|component| scale(component, self.length + length)),
+            velocity.map(|component| scale(component, self.speed + speed)),
         )
+    }
+
+    /// An open orbit at the time `t`, of more than 2^(900 + `beyond`) dynamical times.
+    fn far_off(&self, conic: &Conic, t: f64, beyond: i32) -> (Vector3<f64>, Vector3<f64>) {
+        // Thrice a whole number of powers of two below the limit.
+        let third = (beyond + 2) / 3;
+        let time = scale(scale(t, -exponent(t)), exponent(t) + self.speed - self.length - 3 * third);
+        if conic.beta.to_f64() < 0.0 {
+            // Where it was at the epoch is nothing beside v t.
+            let (_, velocity) = conic.state(FAR.copysign(t));
+            return self.in_users_units(velocity * time, velocity, 3 * third, 0);
+        }
+        // Late on a parabola all is similar: eight times as late is four times as far and half as fast.
+        let (position, velocity) = conic.state(time);
+        self.in_users_units(position, velocity, 2 * third, -third)
     }
 
     /// The period; infinite for an unbound orbit.
@@ -164,14 +200,19 @@ impl Scaled {
     }
 }
 
-/// r + v t with one rounding of each component.
+/// r + v t with one rounding of each component, in powers of two in which nothing overflows that the sum does not.
 fn straight(position: &Vector3<f64>, velocity: &Vector3<f64>, time: f64) -> Vector3<f64> {
     position.zip_map(velocity, |r, v| {
-        let moved = v * time;
-        if moved.abs() > power_of_two(900) {
-            return r + moved;
+        if v == 0.0 {
+            return r;
         }
-        (DoubleDouble::product(v, time) + DoubleDouble::from(r)).to_f64()
+        let (fast, long) = (exponent(v), exponent(time));
+        let moved = DoubleDouble::product(scale(v, -fast), scale(time, -long));
+        let unit = if r == 0.0 { fast + long } else { exponent(r).max(fast + long) };
+        let part = |x: f64| scale(x, fast + long - unit);
+        let sum =
+            DoubleDouble::new(part(moved.high()), part(moved.low())) + DoubleDouble::from(scale(r, -unit));
+        scale(sum.to_f64(), unit)
     })
 }
 

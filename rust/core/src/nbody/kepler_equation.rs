@@ -30,7 +30,8 @@ pub(super) struct Reached {
 
 /// Solve for the time `high + low` > 0 after the anchor; the root and `guess` lie in (0, `upper`).
 ///
-/// Always ends: a step that leaves the bracket, and every step beyond the twentieth, halves it.
+/// Always ends, and never without the root: a step that leaves the bracket, and every step beyond the twentieth,
+/// halves it, down to two neighbouring numbers if need be.
 pub(super) fn solve(
     anchor: Anchor,
     beta: f64,
@@ -41,7 +42,6 @@ pub(super) fn solve(
     let Anchor { r, eta, zeta } = anchor;
     // Within this reach of the root the addition theorem to third order is exact to rounding.
     const NEAR: f64 = 1.0 / 32768.0;
-    let reach_squared = NEAR * NEAR;
     let mut lower = 0.0;
     let mut s = guess;
     let mut steps = 0;
@@ -53,28 +53,32 @@ pub(super) fn solve(
         let third = zeta * g.g0 - beta * eta * g.g1;
         let halley = -residual * first / (first * first - 0.5 * residual * second);
         let delta = -residual / (first + halley * (0.5 * second + halley * third / 6.0));
-        let square = delta * delta;
-        if (square <= reach_squared * s * s && square * beta.abs() <= reach_squared) || steps >= 120 {
-            let functions = if delta.is_finite() { g.shifted(beta, delta) } else { g };
-            return Reached {
-                functions,
-                s: s + if delta.is_finite() { delta } else { 0.0 },
-                r: r + (eta * functions.g1 + zeta * functions.g2),
-            };
+        let reached = |functions: UniversalFunctions<f64>, s: f64| Reached {
+            functions,
+            s,
+            r: r + (eta * functions.g1 + zeta * functions.g2),
+        };
+        if delta.abs() <= NEAR * s && delta * delta * beta.abs() <= NEAR * NEAR {
+            return reached(g.shifted(beta, delta), s + delta);
         }
-        if residual > 0.0 {
-            upper = s;
-        } else {
+        // What is no number has overflowed, which only happens beyond the root.
+        if residual <= 0.0 {
             lower = s;
+        } else {
+            upper = s;
+        }
+        let middle = lower + 0.5 * (upper - lower);
+        if !(lower < middle && middle < upper) {
+            return reached(UniversalFunctions::<f64>::new(beta, lower), lower);
         }
         let next = s + delta;
-        s = if next > lower && next < upper && steps < 20 { next } else { lower + 0.5 * (upper - lower) };
+        s = if next > lower && next < upper && steps < 20 { next } else { middle };
         steps += 1;
     }
 }
 
-/// Where an ellipse is at the time `high + low` ≥ 0 after its apocentre, up to eccentric anomaly π/2 from there.
-pub(super) fn after_apocentre(r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
+/// Where an ellipse is at the time `high + low` ≥ 0 after its apocenter, up to eccentric anomaly π/2 from there.
+pub(super) fn after_apocenter(r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
     if high == 0.0 {
         return at_the_apsis(r);
     }
@@ -85,8 +89,8 @@ pub(super) fn after_apocentre(r: f64, zeta: f64, beta: f64, (high, low): (f64, f
     solve(Anchor { r, eta: 0.0, zeta: -zeta }, beta, (high, low), guess, 1.7 / beta.sqrt())
 }
 
-/// Where a conic is at the time `high + low` ≥ 0 after its pericentre (an ellipse: up to eccentric anomaly π/2).
-pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
+/// Where a conic is at the time `high + low` ≥ 0 after its pericenter (an ellipse: up to eccentric anomaly π/2).
+pub(super) fn after_pericenter(mu: f64, r: f64, zeta: f64, beta: f64, (high, low): (f64, f64)) -> Reached {
     if high == 0.0 {
         return at_the_apsis(r);
     }
@@ -94,7 +98,7 @@ pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low
     let mut guess = if zeta > 1e-30 * r {
         let p = 2.0 * r / zeta;
         let k = 3.0 * (high / zeta);
-        // Beyond 1e100, p³ is nothing beside k², which would overflow.
+        // Beyond 1e100, p³ < 1e91 is nothing beside k², which would overflow.
         let w = if k > 1e100 { cbrt(2.0 * k) } else { cbrt(k + (k * k + p * p * p).sqrt()) };
         2.0 * k / (w * w + p + (p / w) * (p / w))
     } else {
@@ -110,7 +114,7 @@ pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low
             let mut h = 0.0;
             for _ in 0..3 {
                 let sine = (flight + mu * h) / zeta;
-                h = if sine > 0.0 { ln(sine + (sine * sine + 1.0).sqrt()) } else { h };
+                h = if sine > 0.0 { inverse_sinh(sine) } else { h };
             }
             if h > 0.0 && h < guess * rate {
                 guess = h / rate;
@@ -118,6 +122,12 @@ pub(super) fn after_pericentre(mu: f64, r: f64, zeta: f64, beta: f64, (high, low
         }
     }
     solve(Anchor { r, eta: 0.0, zeta }, beta, (high, low), guess, upper)
+}
+
+/// arsinh x of x > 0, for a guess: small x lose digits.
+fn inverse_sinh(x: f64) -> f64 {
+    // Beyond 1e100, √(x² + 1) is x, and x² might overflow.
+    if x > 1e100 { ln(x) + core::f64::consts::LN_2 } else { ln(x + (x * x + 1.0).sqrt()) }
 }
 
 fn at_the_apsis(r: f64) -> Reached {

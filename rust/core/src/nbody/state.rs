@@ -8,6 +8,7 @@
 use super::anomalies::{eccentric_anomaly, hyperbolic_anomaly, parabolic_anomaly};
 use crate::error::{Error, Result};
 use crate::numerics::angles::sin_cos;
+use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::stumpff::UniversalFunctions;
 use crate::words::{number, numbers};
 use core::f64::consts::{PI, SQRT_2};
@@ -134,7 +135,17 @@ fn from_true(mu: f64, pericenter: f64, e: f64, nu: f64) -> Result<Plane> {
     let (sine, cosine) = sin_cos(nu);
     let distance = pericenter * (focal / shape);
     // v = (μ/L)(−sin ν P + cos ν Q) + (|μ| e/L) Q, and |μ|/L = √(|μ|/p).
-    let hodograph = (mu.abs() / pericenter / focal).sqrt();
+    if !distance.is_finite() {
+        return Err(Error::invalid(
+            "true_anomaly",
+            format!("expected a point within the range of f64, got {}", number(nu)),
+        ));
+    }
+    // In an even power of two.
+    let unit = (exponent(mu) - exponent(pericenter)).div_euclid(2);
+    let near = exponent(pericenter);
+    let hodograph =
+        scale((scale(mu.abs(), -near - 2 * unit) / scale(pericenter, -near) / focal).sqrt(), unit);
     let sign = mu.signum();
     Ok(Plane {
         place: [cosine, sine],

@@ -1,16 +1,17 @@
-//! Two bodies under mutual inverse-square attraction: centre of mass and relative Kepler motion.
+//! Two bodies under mutual inverse-square attraction: center of mass and relative Kepler motion.
 //!
 //! The one idea: R = (m₁r₁ + m₂r₂)/M moves on a straight line, r = r₁ − r₂ is Kepler's problem with μ = G M, and
 //! r₁ = R + (m₂/M) r, r₂ = R − (m₁/M) r. R, the shares and these sums are carried in double-double, so that neither
-//! a mass ratio nor a far-off centre of mass costs digits: what is left is the error of r, times each body's share.
+//! a mass ratio nor a far-off center of mass costs digits: what is left is the error of r, times each body's share.
 //! Either mass may be zero (a test particle), not both.
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.1.
 
+use super::constants::scaled;
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, scale};
-use crate::words::number;
+use crate::words::{number, numbers};
 use nalgebra::Vector3;
 
 /// Position and velocity.
@@ -24,7 +25,7 @@ pub type ExactState = ([DoubleDouble; 3], [DoubleDouble; 3]);
 pub struct TwoBody {
     initial: [State; 2],
     /// R and its velocity.
-    centre: ExactState,
+    center: ExactState,
     /// m₂/M and −m₁/M.
     shares: [DoubleDouble; 2],
     relative: KeplerOrbit,
@@ -34,8 +35,8 @@ impl TwoBody {
     /// From Newton's constant, two masses and two states at the epoch.
     ///
     /// # Errors
-    /// [`Error::InvalidInput`] for negative, infinite or two zero masses, for numbers that are not finite, and for
-    /// two bodies at one place.
+    /// [`Error::InvalidInput`] for negative, infinite or two zero masses, for numbers that are not finite or whose
+    /// difference is not, and for two bodies at one place.
     pub fn new(gravitational_constant: f64, masses: [f64; 2], states: [State; 2]) -> Result<Self> {
         for mass in masses {
             if !(mass.is_finite() && mass >= 0.0) {
@@ -52,7 +53,9 @@ impl TwoBody {
         let unit = exponent(masses[0].max(masses[1]));
         let masses = masses.map(|mass| scale(mass, -unit));
         let total = DoubleDouble::sum(masses[0], masses[1]);
-        let mu = scale((DoubleDouble::from(gravitational_constant) * total).to_f64(), unit);
+        let strong = exponent(gravitational_constant);
+        let strength = DoubleDouble::from(scale(gravitational_constant, -strong)) * total;
+        let mu = scale(strength.to_f64(), unit + strong);
         if !mu.is_finite() {
             return Err(Error::invalid(
                 "G",
@@ -65,18 +68,35 @@ impl TwoBody {
             ));
         }
         let [(r1, v1), (r2, v2)] = states;
+        for (name, one, other) in [("position", r1, r2), ("velocity", v1, v2)] {
+            let apart = one - other;
+            let given = one.iter().chain(other.iter()).all(|component| component.is_finite());
+            if given && !apart.iter().all(|component| component.is_finite()) {
+                return Err(Error::invalid(
+                    name,
+                    format!(
+                        "expected two bodies whose difference stays within the range of f64, got {} and {}",
+                        numbers(one.as_slice()),
+                        numbers(other.as_slice())
+                    ),
+                ));
+            }
+        }
         let relative = KeplerOrbit::new(mu, r1 - r2, v1 - v2)?;
         let shares = [DoubleDouble::from(masses[1]) / total, -(DoubleDouble::from(masses[0]) / total)];
         // From the heavier body, so that a massless companion leaves its straight line exact.
         let heavier = usize::from(masses[1] > masses[0]);
         let share = shares[heavier];
-        let centre = |values: [Vector3<f64>; 2]| {
+        let center = |values: [Vector3<f64>; 2]| {
             core::array::from_fn(|c| {
-                let way = DoubleDouble::sum(values[0][c], -values[1][c]);
-                DoubleDouble::from(values[heavier][c]) - share * way
+                // In a unit in which the products of a large way do not overflow.
+                let unit = exponent(values[0][c]).max(exponent(values[1][c]));
+                let [one, other] = [0, 1].map(|body: usize| scale(values[body][c], -unit));
+                let from = if heavier == 0 { one } else { other };
+                scaled(DoubleDouble::from(from) - share * DoubleDouble::sum(one, -other), unit)
             })
         };
-        Ok(Self { initial: states, centre: (centre([r1, r2]), centre([v1, v2])), shares, relative })
+        Ok(Self { initial: states, center: (center([r1, r2]), center([v1, v2])), shares, relative })
     }
 
     /// The states of both bodies at the time `t` since the epoch; `t = 0` gives the input bits.
@@ -92,13 +112,11 @@ impl TwoBody {
     /// The states of both bodies before rounding; `elapsed` is rounded only for the relative motion.
     pub fn unrounded(&self, elapsed: DoubleDouble) -> [ExactState; 2] {
         let (r, v) = self.relative.state(elapsed.to_f64());
-        let (position, velocity) = &self.centre;
+        let (position, velocity) = &self.center;
         self.shares.map(|share| {
             (
-                core::array::from_fn(|c| {
-                    (position[c] + velocity[c] * elapsed) + share * DoubleDouble::from(r[c])
-                }),
-                core::array::from_fn(|c| velocity[c] + share * DoubleDouble::from(v[c])),
+                core::array::from_fn(|c| moved(position[c], velocity[c], elapsed, share, r[c])),
+                core::array::from_fn(|c| moved(velocity[c], DoubleDouble::default(), elapsed, share, v[c])),
             )
         })
     }
@@ -108,3 +126,31 @@ impl TwoBody {
         &self.relative
     }
 }
+
+/// p + v t + s r. Whatever the sizes, a sum that is a number comes out as one, and another as infinite.
+fn moved(p: DoubleDouble, v: DoubleDouble, t: DoubleDouble, s: DoubleDouble, r: f64) -> DoubleDouble {
+    let size = |x: f64| if x == 0.0 { LEAST } else { exponent(x) };
+    let [p_size, v_size, t_size, r_size] = [p.to_f64(), v.to_f64(), t.to_f64(), r].map(size);
+    if [p_size, v_size, t_size, r_size].iter().all(|size| (size.abs() < MODERATE) || *size == LEAST) {
+        return (p + v * t) + s * DoubleDouble::from(r);
+    }
+    if !r.is_finite() && s.to_f64() != 0.0 {
+        return DoubleDouble::from(r * s.to_f64());
+    }
+    let way_size = if v_size == LEAST || t_size == LEAST { LEAST } else { v_size + t_size };
+    let r = if r.is_finite() { r } else { 0.0 };
+    let unit = p_size.max(way_size).max(size(r)) + 2;
+    let way = if way_size == LEAST {
+        DoubleDouble::default()
+    } else {
+        scaled(scaled(v, -v_size) * scaled(t, -t_size), way_size - unit)
+    };
+    let sum = (scaled(p, -unit) + way) + s * DoubleDouble::from(scale(r, -unit));
+    let high = scale(sum.high(), unit);
+    DoubleDouble::new(high, if high.is_finite() { scale(sum.low(), unit) } else { 0.0 })
+}
+
+/// Powers of two within which no product of two numbers leaves the range, nor what it rounds away.
+const MODERATE: i32 = 400;
+/// The size of zero: below every other, and far enough from the end to be added to.
+const LEAST: i32 = -100_000;

@@ -2,6 +2,16 @@
 //!
 //! The one idea: a cipher of ten rounds turns a counter into four random words, so number n needs no
 //! number before it, and any partition of the indices over threads or machines gives the same numbers.
+//!
+//! What the words mean is a promise to everybody who publishes a seed:
+//! - the key is the seed, low word first;
+//! - counter words 0 and 1 are event/2, low word first: a block serves an even event (output words 0 and 1) and
+//!   the odd one after it (output words 2 and 3), 64 bits each, low word first, of which the upper 53 count;
+//! - counter word 2 is the number of the draw within its event, from 0;
+//! - counter word 3 is the stream: 0 is the events' own; any other use of random numbers under the same seed takes
+//!   another, so that it can never meet the draws of an event.
+//!
+//! A new need takes a new draw or a new stream and changes no number of those in use.
 //! Source: Salmon, Moraes, Dror & Shaw, *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011).
 
 use super::lanes::WIDTH;
@@ -44,15 +54,15 @@ pub const fn philox(key: Key, counter: [u32; 4]) -> [u32; 4] {
 /// How many bits a draw has: the significand of an `f64`.
 pub const DRAW_BITS: u32 = 53;
 
-/// The first draw of event `event`: 53 random bits.
-///
-/// One block of four words serves two neighbouring events: its counter is (event/2, 0), as the words
-/// (low, high, 0, 0); its first two words are the even event's 64 bits, low word first, its last two
-/// the odd event's, and of 64 bits the upper 53 count. So a draw depends on seed and event alone.
+/// Counter words 2 and 3 of the draws made here.
+const DRAW: u32 = 0;
+const STREAM: u32 = 0;
+
+/// Draw 0 of event `event` in stream 0: 53 random bits that depend on seed and event alone.
 #[inline]
 pub const fn draw(key: Key, event: u64) -> u64 {
     let block = event >> 1;
-    let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, 0, 0]);
+    let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, DRAW, STREAM]);
     let (low, high) = if event & 1 == 0 { (a, b) } else { (c, d) };
     ((high as u64) << 32 | low as u64) >> (64 - DRAW_BITS)
 }
@@ -79,8 +89,8 @@ fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
             x0[lane] = counter;
             x1[lane] = counter >> 32;
         }
-        let mut x2 = [0_u64; WIDTH];
-        let mut x3 = [0_u64; WIDTH];
+        let mut x2 = [u64::from(DRAW); WIDTH];
+        let mut x3 = [u64::from(STREAM); WIDTH];
         for round in 0..ROUNDS {
             let [k0, k1] = round_key(key, round);
             for lane in 0..WIDTH {
@@ -126,6 +136,23 @@ mod tests {
         assert_eq!(draw(key(0), 0), 0xe169_c58d_6627_e8d5 >> 11);
         assert_eq!(draw(key(0), 1), 0x9b00_dbd8_bc57_ac4c >> 11);
     }
+
+    /// The contract of the module's header, word by word: an event beyond 2^33, so that both words of event/2
+    /// count, and the numbers that draws 1 and streams 1 of the same event would be, none of which it uses.
+    #[test]
+    fn an_event_uses_draw_0_of_stream_0() {
+        let seed = 0x0123_4567_89ab_cdef;
+        let event = 2 * 0x0000_0005_8000_0007 + 1;
+        let block = |draw, stream| philox([0x89ab_cdef, 0x0123_4567], [0x8000_0007, 5, draw, stream]);
+        let odd = |words: [u32; 4]| (u64::from(words[3]) << 32 | u64::from(words[2])) >> 11;
+        let even = |words: [u32; 4]| (u64::from(words[1]) << 32 | u64::from(words[0])) >> 11;
+        assert_eq!(draw(key(seed), event), odd(block(0, 0)));
+        assert_eq!(draw(key(seed), event - 1), even(block(0, 0)));
+        let others = [block(0, 0), block(1, 0), block(0, 1)].map(odd);
+        assert_eq!(others, KNOWN_DRAWS);
+    }
+    /// From an independent implementation (tests/scattering/test_monte_carlo.py, `philox`).
+    const KNOWN_DRAWS: [u64; 3] = [2_487_954_976_423_361, 1_121_664_613_824_061, 2_762_984_376_852_373];
 
     proptest! {
         #[test]

@@ -6,6 +6,7 @@
 //! comparison.
 
 use crate::numerics::philox::DRAW_BITS;
+use crate::parallel::Ticker;
 use crate::words::number;
 use crate::{Error, Result};
 
@@ -85,6 +86,21 @@ pub struct Counts {
     pub overflow: u64,
 }
 
+impl Counts {
+    /// None yet, of so many bins.
+    pub fn none(bins: usize) -> Self {
+        Self { bins: vec![0; bins], underflow: 0, overflow: 0 }
+    }
+    /// Adds the counts of other events in the same bins.
+    pub fn add(&mut self, other: &Self) {
+        for (sum, count) in self.bins.iter_mut().zip(&other.bins) {
+            *sum += count;
+        }
+        self.underflow += other.underflow;
+        self.overflow += other.overflow;
+    }
+}
+
 /// How many draws there are: the first number that is none.
 const DRAWS: u64 = 1 << DRAW_BITS;
 /// Counters per piece, used in turn: neighbouring events of one piece do not wait for each other.
@@ -103,14 +119,22 @@ pub struct Steps {
 
 impl Steps {
     /// For `value`, monotone in the draw on each side of `turning`.
-    pub fn new(edges: &Edges, turning: Option<u64>, value: impl Fn(u64) -> f64) -> Self {
+    ///
+    /// # Errors
+    /// `Interrupted`: each of many edges takes some fifty evaluations.
+    pub fn new(
+        edges: &Edges,
+        turning: Option<u64>,
+        value: impl Fn(u64) -> f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
         let turning = turning.map_or(0, |draw| draw.clamp(1, DRAWS - 1));
         let slot = |draw: u64| edges.slot(value(draw));
         let mut starts = vec![0];
         for (from, to) in [(0, turning), (turning, DRAWS)] {
             if from < to {
                 starts.push(from);
-                steps_between(from, to - 1, &slot, &mut starts);
+                steps_between(from, to - 1, &slot, &mut starts, ticker)?;
             }
         }
         starts.sort_unstable();
@@ -123,7 +147,7 @@ impl Steps {
         let cells = (0..cells as u64)
             .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
             .collect();
-        Self { starts, slots, cells, shift }
+        Ok(Self { starts, slots, cells, shift })
     }
     /// How many pieces.
     pub fn pieces(&self) -> usize {
@@ -133,12 +157,13 @@ impl Steps {
     pub fn counters(&self) -> Vec<[u64; BANKS]> {
         vec![[0; BANKS]; self.pieces()]
     }
-    /// Counts draws, each below 2^53.
+    /// Counts draws of 53 bits (further bits are not looked at) in counters from [`Steps::counters`].
     #[inline]
     pub fn count(&self, draws: &[u64], counters: &mut [[u64; BANKS]]) {
-        debug_assert!(counters.len() == self.pieces() && draws.iter().all(|draw| *draw < DRAWS));
+        assert!(counters.len() == self.pieces(), "counters of another histogram");
         let mut one = |draw: u64, bank: usize| {
-            // SAFETY: a draw has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
+            let draw = draw & (DRAWS - 1);
+            // SAFETY: the draw has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
             // cell holds a piece; the last start, u64::MAX, exceeds every draw, so the search ends at
             // a piece; there are as many counters as pieces.
             unsafe {
@@ -160,12 +185,10 @@ impl Steps {
         }
     }
     /// Sums counters into the slots of the histogram.
-    pub fn collect<'a>(&self, bins: usize, counters: impl Iterator<Item = &'a [[u64; BANKS]]>) -> Counts {
+    pub fn collect(&self, bins: usize, counters: &[[u64; BANKS]]) -> Counts {
         let mut slots = vec![0_u64; bins + 2];
-        for counters in counters {
-            for (slot, banks) in self.slots.iter().zip(counters) {
-                slots[*slot] += banks.iter().sum::<u64>();
-            }
+        for (slot, banks) in self.slots.iter().zip(counters) {
+            slots[*slot] += banks.iter().sum::<u64>();
         }
         Counts { underflow: slots[0], overflow: slots[bins + 1], bins: slots[1..=bins].to_vec() }
     }
@@ -173,9 +196,16 @@ impl Steps {
 
 /// Adds every draw in `from + 1..=to` whose slot differs from that of the draw before, by bisection:
 /// `slot` is monotone, so where both ends agree there is no step.
-fn steps_between(from: u64, to: u64, slot: &impl Fn(u64) -> usize, steps: &mut Vec<u64>) {
+fn steps_between(
+    from: u64,
+    to: u64,
+    slot: &impl Fn(u64) -> usize,
+    steps: &mut Vec<u64>,
+    ticker: &mut Ticker<'_>,
+) -> Result<()> {
     let mut pending = vec![((from, slot(from)), (to, slot(to)))];
     while let Some((low, high)) = pending.pop() {
+        ticker.tick()?;
         if low.1 == high.1 {
             continue;
         }
@@ -188,17 +218,23 @@ fn steps_between(from: u64, to: u64, slot: &impl Fn(u64) -> usize, steps: &mut V
         pending.push((low, middle));
         pending.push((middle, high));
     }
+    Ok(())
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::parallel::Control;
     use proptest::prelude::*;
+
+    fn steps(edges: &Edges, turning: Option<u64>, value: impl Fn(u64) -> f64) -> Steps {
+        Steps::new(edges, turning, value, &mut Ticker::quiet(&Control::new(0))).unwrap()
+    }
 
     fn slot_of(steps: &Steps, bins: usize, draw: u64) -> usize {
         let mut counters = steps.counters();
         steps.count(&[draw], &mut counters);
-        let counts = steps.collect(bins, core::iter::once(counters.as_slice()));
+        let counts = steps.collect(bins, &counters);
         let slots = [&[counts.underflow], counts.bins.as_slice(), &[counts.overflow]].concat();
         slots.iter().position(|count| *count == 1).unwrap()
     }
@@ -218,6 +254,26 @@ mod tests {
             assert!(matches!(Edges::new("bins", edges), Err(Error::InvalidInput { .. })));
         }
         assert!(Edges::uniform(0, 0.0, 1.0).is_err());
+    }
+
+    /// 2^16 edges take a million evaluations; all of them were made before anybody looked at the flag.
+    #[test]
+    fn edges_notice_cancellation() {
+        let control = Control::new(0);
+        control.cancel();
+        let edges = Edges::uniform(100, 0.0, 1.0).unwrap();
+        let outcome = Steps::new(&edges, None, |draw| draw as f64, &mut Ticker::quiet(&control));
+        assert!(matches!(outcome, Err(Error::Interrupted)));
+    }
+
+    /// Safe code may hand in any number; the bits of a draw decide, and memory stays whole.
+    #[test]
+    fn numbers_beyond_53_bits_are_counted_by_their_draw() {
+        let edges = Edges::uniform(2, 0.0, 1.0).unwrap();
+        let steps = steps(&edges, None, |draw| draw as f64 / DRAWS as f64);
+        let mut counters = steps.counters();
+        steps.count(&[u64::MAX, DRAWS, u64::MAX, u64::MAX - 1, 1 << 63], &mut counters);
+        assert_eq!(steps.collect(2, &counters).bins, [2, 3]);
     }
 
     proptest! {
@@ -242,7 +298,7 @@ mod tests {
                 })),
             ];
             for (turning, value) in functions {
-                let steps = Steps::new(&edges, turning, &value);
+                let steps = steps(&edges, turning, &value);
                 let sides = steps.starts[1..steps.pieces()].iter().flat_map(|start| [start - 1, *start]);
                 for draw in draws.iter().copied().chain(sides).chain([0, DRAWS - 1]) {
                     prop_assert_eq!(slot_of(&steps, edges.bins(), draw), edges.slot(value(draw)));

@@ -7,6 +7,7 @@
 //! *Mechanics*, §17.
 
 use crate::numerics::angles::{atan2, sin_cos};
+use crate::numerics::power_of_two::{exponent, scale};
 use crate::words::number;
 use crate::{Error, Result};
 
@@ -44,7 +45,7 @@ impl HalfAngle {
     }
 }
 
-/// The masses of projectile and target, scaled so that the larger is 1.
+/// The masses of projectile and target, scaled by a power of two so that the larger is in [1, 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Collision {
     projectile: f64,
@@ -65,8 +66,21 @@ impl Collision {
                 ));
             }
         }
-        let larger = projectile.max(target);
-        Ok(Self { projectile: projectile / larger, target: target / larger })
+        // By a power of two, which is exact: m₁ - m₂ keeps every digit.
+        let unit = exponent(projectile.max(target));
+        let scaled = Self { projectile: scale(projectile, -unit), target: scale(target, -unit) };
+        if scaled.projectile.min(scaled.target) < f64::MIN_POSITIVE {
+            return Err(Error::invalid(
+                "masses",
+                format!(
+                    "expected masses within 307 decades of each other, got {} and {}; for a target that \
+                     does not move 1e300 times the projectile's mass is as good as infinity",
+                    number(projectile),
+                    number(target)
+                ),
+            ));
+        }
+        Ok(scaled)
     }
 
     /// m₂/(m₁+m₂): the part of the beam energy that is energy of relative motion.
@@ -113,19 +127,29 @@ impl Collision {
     pub fn branches(self, lab_angle: f64) -> [Option<(f64, f64)>; 2] {
         let (sine, cosine) = sin_cos(lab_angle);
         let ratio = self.projectile / self.target;
-        let reach = ratio * sine;
+        let (reach, along) = (ratio * sine, ratio * cosine);
         if reach > 1.0 || (ratio > 1.0 && cosine < 0.0) {
             return [None, None];
         }
-        let root = if ratio == 1.0 { cosine.abs() } else { ((1.0 - reach) * (1.0 + reach)).sqrt() };
+        // γ² - 1 = (γ - 1)(γ + 1) = (γ cos θ₁)² - S², from the exact difference of the masses.
+        let (difference, sum) = ((self.projectile - self.target) / self.target, ratio + 1.0);
+        // S by the form whose terms cancel least.
+        let root = if ratio == 1.0 {
+            cosine.abs()
+        } else if along.abs() < 1.0 {
+            (along * along - difference * sum).max(0.0).sqrt()
+        } else {
+            ((1.0 - reach) * (1.0 + reach)).sqrt()
+        };
         let jacobian = |projected: f64| projected * projected / root;
         // The direction in the centre-of-mass frame has components (λ cos θ₁ - γ, λ sin θ₁), where
         // λ = γ cos θ₁ ± S is the laboratory speed in units of the frame's own.
         let angle = |speed: f64, along: f64| atan2(speed * sine, along);
-        let fast = ratio * cosine + root;
+        // λ₊λ₋ = γ² - 1: the one that would cancel comes from the other.
+        let fast = if along < 0.0 { -difference * (sum / (root - along)) } else { along + root };
         let first = (fast >= 0.0 && !(ratio == 1.0 && cosine < 0.0))
             .then(|| (angle(fast, cosine * root - reach * sine), jacobian(fast)));
-        let slow = ratio * cosine - root;
+        let slow = difference * (sum / fast);
         let second = (ratio > 1.0).then(|| (angle(slow, -cosine * root - reach * sine), jacobian(slow)));
         [first, second]
     }

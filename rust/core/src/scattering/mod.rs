@@ -3,4 +3,5 @@
 pub mod histogram;
 pub mod kinematics;
 pub mod monte_carlo;
+mod reach;
 pub mod rutherford;

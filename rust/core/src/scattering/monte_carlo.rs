@@ -6,15 +6,21 @@
 //!
 //! Nothing is computed that no tally needs: the azimuth is not drawn, and no angle is evaluated per
 //! event (see [`histogram`](super::histogram)).
+//!
+//! What an event may use: of the numbers of [`philox`](crate::numerics::philox) draw 0 of stream 0, one per
+//! event, is b² / b_max². Whatever else an event will need one day (azimuth, foil, detector) takes draws 1, 2, …
+//! and leaves draw 0 as it is, so that counts that were published stay what they are.
 
 use super::histogram::{Counts, Edges, Steps};
 use super::kinematics::{Collision, HalfAngle};
+use super::reach::Limits;
 use super::rutherford::half_distance;
 use crate::numerics::philox::{DRAW_BITS, DRAWS, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::words::{number, unknown};
 use crate::{Error, Result};
 use core::f64::consts::{FRAC_PI_2, PI};
+use core::ops::Range;
 
 /// What is tallied.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,6 +59,10 @@ impl Quantity {
             .find(|(known, _)| *known == name)
             .map(|(_, quantity)| *quantity)
             .ok_or_else(|| unknown("tally", name, Self::ALL.iter().map(|(known, _)| *known)))
+    }
+    /// Its name.
+    pub fn name(self) -> &'static str {
+        Self::ALL.iter().find(|(_, quantity)| *quantity == self).map_or("", |(name, _)| name)
     }
 }
 
@@ -116,31 +126,87 @@ impl Beam {
             Quantity::ImpactParameter => self.b_max * root,
         }
     }
+    /// The numbers that edges of a quantity may be, and what they are called.
+    pub(super) fn limits(&self, quantity: Quantity) -> Limits {
+        match quantity {
+            Quantity::CmAngle | Quantity::LabAngle => Limits::angles("π", PI),
+            Quantity::RecoilAngle => Limits::angles("π/2", FRAC_PI_2),
+            Quantity::Energy | Quantity::RecoilEnergy => Limits::upto("beam_energy", self.energy),
+            Quantity::ImpactParameter => Limits::upto("∞", f64::INFINITY),
+        }
+    }
+    /// Given edges of a quantity.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming the quantity, for what are no edges and for edges that it can never reach.
+    pub fn edges(&self, quantity: Quantity, edges: Vec<f64>) -> Result<Edges> {
+        let edges = Edges::new(quantity.name(), edges)?;
+        self.limits(quantity).check(quantity.name(), edges.values())?;
+        Ok(edges)
+    }
     /// `bins` equal bins over all values a quantity can have.
     ///
     /// # Errors
-    /// `InvalidInput` naming `bins`.
+    /// `InvalidInput` naming `bins`, or what makes the greatest value too small to divide.
     pub fn uniform_edges(&self, quantity: Quantity, bins: usize) -> Result<Edges> {
-        let high = match quantity {
-            Quantity::CmAngle | Quantity::LabAngle => PI,
-            Quantity::RecoilAngle => FRAC_PI_2,
-            Quantity::Energy => self.energy,
+        let (blamed, high) = match quantity {
+            Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
+            Quantity::RecoilAngle => ("bins", FRAC_PI_2),
+            Quantity::Energy => ("beam_energy", self.energy),
             Quantity::RecoilEnergy => {
-                self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0))
+                ("masses", self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
             }
-            Quantity::ImpactParameter => self.b_max,
+            Quantity::ImpactParameter => ("b_max", self.b_max),
         };
+        if high / (bins as f64) < f64::MIN_POSITIVE {
+            return Err(Error::invalid(
+                blamed,
+                format!(
+                    "expected a greatest {} that can be divided into bins, got {}; choose larger units, or \
+                     leave this tally out",
+                    quantity.name(),
+                    number(high)
+                ),
+            ));
+        }
         Edges::uniform(bins, 0.0, high)
     }
+    /// The deflection at the edge of the disc: no event is scattered by less.
+    pub fn smallest_angle(&self) -> f64 {
+        self.value(Quantity::CmAngle, 1.0)
+    }
+    /// The values of a quantity that no impact parameter beyond the disc leads to: what this beam counts there
+    /// is all that there is.
+    pub fn covered(&self, quantity: Quantity) -> (f64, f64) {
+        let edge = self.value(quantity, 1.0);
+        match quantity {
+            Quantity::CmAngle => (edge, PI),
+            // Of a heavy projectile the angle first grows with b: a disc that ends before its greatest covers nothing
+            // below that.
+            Quantity::LabAngle => {
+                let greatest = self.collision.turning_point().filter(|turning| *turning > self.reach);
+                let from = |t| self.collision.lab_angle(HalfAngle::from_cotangent(t));
+                (greatest.map_or(edge, from), PI)
+            }
+            Quantity::RecoilAngle => (0.0, edge),
+            Quantity::Energy => (0.0, edge),
+            Quantity::RecoilEnergy => (edge, self.energy),
+            Quantity::ImpactParameter => (0.0, self.b_max),
+        }
+    }
+    /// Whether two impact parameters lead to one value: a heavy projectile's laboratory angle.
+    pub fn two_branches(&self, quantity: Quantity) -> bool {
+        quantity == Quantity::LabAngle && self.collision.turning_point().is_some()
+    }
     /// The step function of the draw that a tally is.
-    fn steps(&self, quantity: Quantity, edges: &Edges) -> Steps {
+    fn steps(&self, quantity: Quantity, edges: &Edges, ticker: &mut Ticker<'_>) -> Result<Steps> {
         let turning = (quantity == Quantity::LabAngle)
             .then(|| self.collision.turning_point())
             .flatten()
             .map(|t| (t / self.reach) * (t / self.reach))
             .filter(|share| *share < 1.0)
             .map(|share| (share * UNIT.recip()) as u64);
-        Steps::new(edges, turning, |draw| self.value(quantity, draw as f64 * UNIT))
+        Steps::new(edges, turning, |draw| self.value(quantity, draw as f64 * UNIT), ticker)
     }
 }
 
@@ -153,16 +219,28 @@ const BATCH: usize = 512;
 const EVENTS_PER_TICK: u64 = 1 << 16;
 /// Events worth handing to another thread.
 const EVENTS_PER_CHUNK: u64 = 1 << 19;
-/// Chunks per thread: enough to even out the end, few enough to be nothing in memory.
+/// At most so many in a chunk, a fifth of a second: an interrupted run loses what other threads did beyond the
+/// first chunk that is not whole.
+const MOST_PER_CHUNK: u64 = 1 << 25;
+/// Chunks per thread and round: enough to even out the end, few enough to be nothing in memory.
 const CHUNKS_PER_THREAD: u64 = 32;
+
+/// What was counted.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Counted {
+    /// How many events, from the first on and without a gap: all of them unless the run was cancelled.
+    pub events: u64,
+    /// One histogram per tally.
+    pub counts: Vec<Counts>,
+}
 
 /// Runs the events `first_event..first_event + n_events` and gives one histogram per tally.
 ///
 /// The counts are the same for any number of threads, on any machine; those of adjacent ranges add up
-/// to those of the union.
+/// to those of the union. A cancelled run gives the events it counted, so that another may go on from there.
 ///
 /// # Errors
-/// `InvalidInput` if there is no event or the indices pass 2^63; `Interrupted`.
+/// `InvalidInput` if there is no event or the indices pass 2^63; `Interrupted` if nothing was counted yet.
 pub fn monte_carlo(
     beam: &Beam,
     tallies: &[(Quantity, Edges)],
@@ -171,46 +249,82 @@ pub fn monte_carlo(
     n_events: u64,
     threads: usize,
     ticker: &mut Ticker<'_>,
-) -> Result<Vec<Counts>> {
+) -> Result<Counted> {
     if n_events == 0 {
         return Err(Error::invalid("n_events", "expected at least 1 event, got 0"));
     }
-    if first_event.checked_add(n_events).is_none_or(|end| end > 1 << 63) {
+    let Some(end) = first_event.checked_add(n_events).filter(|end| *end <= 1 << 63) else {
         return Err(Error::invalid(
             "first_event",
             format!("expected first_event + n_events up to 2**63, got {first_event} + {n_events}"),
         ));
-    }
-    let steps: Vec<Steps> = tallies.iter().map(|(quantity, edges)| beam.steps(*quantity, edges)).collect();
-    let chunks = n_events.div_ceil(EVENTS_PER_CHUNK).min(CHUNKS_PER_THREAD * threads as u64);
-    let bound =
-        |chunk: u64| first_event + (u128::from(n_events) * u128::from(chunk) / u128::from(chunks)) as u64;
-    let results = for_chunks(threads, chunks as usize, ticker, |chunk, ticker| {
-        let mut counters: Vec<_> = steps.iter().map(Steps::counters).collect();
-        let (mut event, end) = (bound(chunk as u64), bound(chunk as u64 + 1));
-        while event < end {
-            ticker.tick()?;
-            let stop = end.min(event + EVENTS_PER_TICK);
-            ticker.advance(stop - event);
-            while event < stop {
-                let mut draws = [[0; DRAWS]; BATCH / DRAWS];
-                fill_draws(key(seed), event >> 1, &mut draws);
-                // A block serves two events: an odd beginning leaves out its first.
-                let skipped = (event & 1) as usize;
-                let length = (stop - event).min((BATCH - skipped) as u64);
-                let used = &draws.as_flattened()[skipped..skipped + length as usize];
-                for (steps, counters) in steps.iter().zip(&mut counters) {
-                    steps.count(used, counters);
-                }
-                event += length;
+    };
+    let steps: Vec<Steps> = tallies
+        .iter()
+        .map(|(quantity, edges)| beam.steps(*quantity, edges, ticker))
+        .collect::<Result<_>>()?;
+    let counts = tallies.iter().map(|(_, edges)| Counts::none(edges.bins())).collect();
+    let mut counted = Counted { events: 0, counts };
+    let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
+    let mut first = first_event;
+    while first < end {
+        let events = most_per_round.min(end - first);
+        let chunks = events.div_ceil(EVENTS_PER_CHUNK).min(CHUNKS_PER_THREAD * threads as u64);
+        let bound = |chunk: usize| first + (u128::from(events) * chunk as u128 / u128::from(chunks)) as u64;
+        let parts = for_chunks(threads, chunks as usize, ticker, |chunk, ticker| {
+            Ok(count_events(&steps, tallies, seed, bound(chunk)..bound(chunk + 1), ticker))
+        })?;
+        for (chunk, part) in parts.into_iter().enumerate() {
+            for (sum, counts) in counted.counts.iter_mut().zip(&part.counts) {
+                sum.add(counts);
+            }
+            counted.events += part.events;
+            // Behind the first chunk that is not whole nothing is adjacent any more.
+            if part.events < bound(chunk + 1) - bound(chunk) {
+                return if counted.events == 0 { Err(Error::Interrupted) } else { Ok(counted) };
             }
         }
-        Ok(counters)
-    })?;
-    let collect = |(index, steps): (usize, &Steps)| {
-        steps.collect(tallies[index].1.bins(), results.iter().map(|counters| counters[index].as_slice()))
+        first += events;
+    }
+    Ok(counted)
+}
+
+/// Counts events in their order until they end or the run is cancelled.
+fn count_events(
+    steps: &[Steps],
+    tallies: &[(Quantity, Edges)],
+    seed: u64,
+    events: Range<u64>,
+    ticker: &mut Ticker<'_>,
+) -> Counted {
+    if ticker.tick().is_err() {
+        return Counted { events: 0, counts: Vec::new() };
+    }
+    let mut counters: Vec<_> = steps.iter().map(Steps::counters).collect();
+    let mut event = events.start;
+    while event < events.end && ticker.tick().is_ok() {
+        let stop = events.end.min(event + EVENTS_PER_TICK);
+        ticker.advance(stop - event);
+        while event < stop {
+            let mut draws = [[0; DRAWS]; BATCH / DRAWS];
+            fill_draws(key(seed), event >> 1, &mut draws);
+            // A block serves two events: an odd beginning leaves out its first.
+            let skipped = (event & 1) as usize;
+            let length = (stop - event).min((BATCH - skipped) as u64);
+            let used = &draws.as_flattened()[skipped..skipped + length as usize];
+            for (steps, counters) in steps.iter().zip(&mut counters) {
+                steps.count(used, counters);
+            }
+            event += length;
+        }
+    }
+    let collected = |((_, edges), (steps, counters)): (&(_, Edges), (&Steps, &Vec<_>))| {
+        steps.collect(edges.bins(), counters)
     };
-    Ok(steps.iter().enumerate().map(collect).collect())
+    Counted {
+        events: event - events.start,
+        counts: tallies.iter().zip(steps.iter().zip(&counters)).map(collected).collect(),
+    }
 }
 
 #[cfg(test)]

@@ -5,10 +5,13 @@
 
 use super::kinematics::{Collision, HalfAngle};
 use crate::numerics::angles::{atan2, sin_cos};
+use crate::numerics::power_of_two::{exponent, scale};
 
 /// κ = k/2E: half the distance of closest approach of a repulsive head-on collision, signed like k.
 pub fn half_distance(k: f64, energy: f64) -> f64 {
-    k / (2.0 * energy)
+    // Of order one, so that nothing leaves the range on the way.
+    let (strong, fast) = (exponent(k), exponent(energy));
+    scale(scale(k, -strong) / scale(energy, -fast), strong - fast - 1)
 }
 
 /// The deflection: positive for repulsion, negative for attraction, ±π head-on.
@@ -24,18 +27,16 @@ pub fn impact_parameter(half_distance: f64, cm_angle: f64) -> f64 {
 
 /// The distance of closest approach κ + √(κ² + b²), without cancellation for attraction.
 pub fn closest_approach(half_distance: f64, impact_parameter: f64) -> f64 {
-    let root = (half_distance * half_distance + impact_parameter * impact_parameter).sqrt();
-    if half_distance < 0.0 {
-        impact_parameter * (impact_parameter / (root - half_distance))
-    } else {
-        half_distance + root
-    }
+    let unit = exponent(half_distance.abs().max(impact_parameter));
+    let (kappa, b) = (scale(half_distance, -unit), scale(impact_parameter, -unit));
+    let root = (kappa * kappa + b * b).sqrt();
+    if half_distance < 0.0 { impact_parameter * (b / (root - kappa)) } else { scale(kappa + root, unit) }
 }
 
 /// dσ/dΩ = (κ/2)²/sin⁴(ψ/2) in the centre-of-mass frame.
 pub fn cross_section(half_distance: f64, cm_angle: f64) -> f64 {
     let sine = sin_cos(0.5 * cm_angle).0;
-    let root = 0.5 * half_distance / (sine * sine);
+    let root = (0.5 * half_distance / sine) / sine;
     root * root
 }
 
@@ -51,7 +52,8 @@ pub fn lab_cross_section(half_distance: f64, collision: Collision, lab_angle: f6
 /// dσ/dΩ of the target in the laboratory, κ²/cos³ θ₂.
 pub fn recoil_cross_section(half_distance: f64, recoil_angle: f64) -> f64 {
     let cosine = sin_cos(recoil_angle).1;
-    half_distance * half_distance / (cosine * cosine * cosine)
+    let root = half_distance / cosine;
+    root * root / cosine
 }
 
 #[cfg(test)]
@@ -73,6 +75,24 @@ mod tests {
         close(cross_section(kappa, deflection(kappa, 0.9)), 2.685_996_811_979_230_2, 2e-15);
         close(impact_parameter(kappa, deflection(kappa, 0.9)), 0.9, 1e-15);
         assert_eq!(deflection(kappa, 0.0), core::f64::consts::PI);
+    }
+
+    /// b²/(2|κ|) at small b, of which κ + √(κ² + b²) keeps no digit; and what is a number at the ends of the range.
+    #[test]
+    fn extremes_keep_their_digits() {
+        close(closest_approach(-1.0, 1e-9), 5e-19, 1e-15);
+        close(closest_approach(-1e100, 1e-20), 5e-141, 1e-15);
+        close(closest_approach(3e200, 4e200), 8e200, 1e-15);
+        close(closest_approach(-3e-200, 4e-200), 2e-200, 1e-15);
+        close(half_distance(1e300, 1.5e308), 1e300 / 1.5e308 / 2.0, 1e-15);
+        close(cross_section(1e-200, 1e-160), 4e240, 1e-14);
+        // cos of the nearest number to π/2 is 6.1e-17.
+        let cosine = 6.123_233_995_736_766e-17_f64;
+        close(
+            recoil_cross_section(1e-170, core::f64::consts::FRAC_PI_2),
+            (1e-170 / cosine).powi(2) / cosine,
+            1e-14,
+        );
     }
 
     /// Catalogue G8.44-rutherford-equal-mass-lab: κ² cos θ₁/sin⁴ θ₁ and κ²/cos³ θ₂.

@@ -9,7 +9,7 @@ fn all(beam: &Beam, bins: usize) -> Vec<(Quantity, Edges)> {
 
 fn run(beam: &Beam, tallies: &[(Quantity, Edges)], first: u64, count: u64, threads: usize) -> Vec<Counts> {
     let control = Control::new(count);
-    monte_carlo(beam, tallies, 7, first, count, threads, &mut Ticker::quiet(&control)).unwrap()
+    monte_carlo(beam, tallies, 7, first, count, threads, &mut Ticker::quiet(&control)).unwrap().counts
 }
 
 proptest! {
@@ -72,6 +72,119 @@ fn a_quarter_is_scattered_backwards() {
     assert!(deviation.abs() < 4.0 * (n as f64 * 0.25 * 0.75).sqrt(), "{deviation}");
 }
 
+/// A run that is stopped gives a whole number of events without a gap, and what is left adds up to the whole.
+#[test]
+fn a_cancelled_run_keeps_what_it_counted() {
+    let beam = Beam::new(1.0, 1.0, (4.0, 1.0), 3.0).unwrap();
+    let tallies = all(&beam, 50);
+    for threads in 1..=3 {
+        let control = Control::new(0);
+        let mut monitor = |_: u64, _: u64| false; // called first after 50 ms
+        let ticker = &mut Ticker::new(&control, &mut monitor);
+        let kept = monte_carlo(&beam, &tallies, 7, 11, 1 << 40, threads, ticker).unwrap();
+        assert!(kept.events > 0 && kept.events < 1 << 40, "{}", kept.events);
+        assert_eq!(kept.counts, run(&beam, &tallies, 11, kept.events, 2));
+    }
+    let control = Control::new(0);
+    control.cancel();
+    let nothing = monte_carlo(&beam, &tallies, 7, 0, 1000, 2, &mut Ticker::quiet(&control));
+    assert_eq!(nothing, Err(Error::Interrupted));
+}
+
+/// The last event there is has the index 2^63 - 1.
+#[test]
+fn the_last_events_are_counted() {
+    let beam = Beam::new(1.0, 1.0, (1.0, 1.0), 3.0).unwrap();
+    let tallies = all(&beam, 5);
+    let control = Control::new(0);
+    let last = |n: u64| monte_carlo(&beam, &tallies, 7, (1 << 63) - 10, n, 1, &mut Ticker::quiet(&control));
+    assert_eq!(last(10).unwrap().counts[0].bins.iter().sum::<u64>(), 10);
+    assert!(matches!(last(11), Err(Error::InvalidInput { argument, .. }) if argument == "first_event"));
+}
+
+/// Which bins know their whole cross section, at one beam of each kind: light on heavy, equal, and heavy on light
+/// with the disc ending beyond and before the greatest angle.
+#[test]
+fn covered_values_and_reachable_bins() {
+    let quarter = FRAC_PI_2 / 2.0;
+    for (masses, b_max, lab) in [
+        ((1.0, 1e200), 2.0, Some(2.0 * 0.25_f64.atan())),
+        ((1.0, 1.0), 2.0, Some(0.5_f64.atan())),
+        // κ = k/2E with E = m₂/(m₁ + m₂): cot(ψ/2) = 4/3 at b_max = 2, beyond 1/√3, the greatest angle's.
+        ((2.0, 1.0), 2.0, None),
+        ((2.0, 1.0), 0.5, None),
+    ] {
+        let beam = Beam::new(1.0, 1.0, masses, b_max).unwrap();
+        let half = HalfAngle::from_cotangent(beam.reach);
+        assert_eq!(beam.covered(Quantity::CmAngle), (half.cm_angle(), PI));
+        assert_eq!(beam.smallest_angle(), half.cm_angle());
+        let covered = beam.covered(Quantity::LabAngle).0;
+        let expected = match lab {
+            Some(_) if masses.1 > 1.0 => half.cm_angle(),
+            Some(_) => 0.5 * half.cm_angle(),
+            None if b_max > 1.0 => beam.collision.lab_angle(half),
+            None => (0.5_f64).asin(), // m₂/m₁
+        };
+        assert!((covered - expected).abs() < 4e-16, "{covered} {expected}");
+        assert_eq!(beam.two_branches(Quantity::LabAngle), masses.0 > masses.1);
+        for (name, quantity) in Quantity::ALL {
+            let (low, high) = beam.covered(quantity);
+            let top = beam.limits(quantity).high.min(beam.b_max.max(PI));
+            // Edges at the covered values, and inside what is beyond: whole bins, none, and one that is cut.
+            let mut edges = vec![0.5 * low, low, 0.5 * (low + high), high, 0.5 * (high + top)];
+            edges.sort_by(f64::total_cmp);
+            edges.dedup();
+            let parts = beam.reachable(quantity, &edges);
+            for (pair, part) in edges.windows(2).zip(&parts) {
+                // The energy of a projectile that a heavy target hardly slows: what is missing is less than a rounding.
+                let forward = quantity == Quantity::Energy && high == beam.limits(quantity).high;
+                let inside = pair[0] >= low && pair[1] <= high;
+                if forward && pair[1] == high {
+                    assert_eq!(*part, 1.0_f64.next_down());
+                    continue;
+                }
+                assert_eq!(*part, f64::from(inside), "{name} {pair:?} of {low} to {high}");
+            }
+            let cut = beam.reachable(quantity, &[0.5 * low, top.min(high)])[0];
+            assert!(low == 0.0 || (cut > 0.0 && cut < 1.0), "{name} {cut}");
+        }
+        assert!(beam.reachable(Quantity::CmAngle, &[0.0, quarter, PI])[0] < 1.0);
+        // The forward direction is never whole, however wide the disc.
+        let wide = Beam::new(1.0, 1.0, masses, 1e100).unwrap();
+        for (_, quantity) in Quantity::ALL.into_iter().filter(|(name, _)| *name != "impact_parameter") {
+            let parts = wide.reachable(quantity, wide.uniform_edges(quantity, 4).unwrap().values());
+            let forward = if matches!(quantity, Quantity::RecoilAngle | Quantity::Energy) { 3 } else { 0 };
+            for (bin, part) in parts.into_iter().enumerate() {
+                assert!((part == 1.0) == (bin != forward) && part > 0.999, "{quantity:?} {bin} {part}");
+            }
+        }
+    }
+}
+
+#[test]
+fn edges_out_of_range_are_refused_with_the_cure() {
+    let beam = Beam::new(1.0, 1.5, (1.0, 4.0), 3.0).unwrap();
+    let text = |quantity: Quantity, edges: &[f64]| match beam.edges(quantity, edges.to_vec()) {
+        Err(error) => error.to_string(),
+        Ok(_) => String::new(),
+    };
+    for quantity in [Quantity::CmAngle, Quantity::LabAngle, Quantity::RecoilAngle] {
+        assert!(
+            text(quantity, &[10.0, 45.0, 90.0]).contains("np.radians"),
+            "{}",
+            text(quantity, &[10.0, 45.0])
+        );
+        assert!(text(quantity, &[-0.1, 1.0]).contains("below 0"));
+    }
+    assert_eq!(text(Quantity::CmAngle, &[0.0, PI * (1.0 + 1e-15)]), "");
+    assert!(text(Quantity::RecoilAngle, &[0.0, PI]).contains("π/2"));
+    for quantity in [Quantity::Energy, Quantity::RecoilEnergy] {
+        assert!(text(quantity, &[0.0, 1500.0]).contains("[0, beam_energy] = [0, 1.5]"));
+        assert_eq!(text(quantity, &[0.0, 1.5]), "");
+    }
+    assert_eq!(text(Quantity::ImpactParameter, &[0.0, 1e300]), "");
+}
+
 #[test]
 fn bad_beams_are_refused_by_name() {
     let name = |beam: Result<Beam>| match beam {
@@ -83,5 +196,11 @@ fn bad_beams_are_refused_by_name() {
     assert_eq!(name(Beam::new(1.0, 1.0, (1.0, 0.0), 1.0)), "masses");
     assert_eq!(name(Beam::new(1.0, 1.0, (1.0, 1.0), f64::NAN)), "b_max");
     assert_eq!(name(Beam::new(1.0, 1e-300, (1.0, 1.0), 1.0)), "b_max");
-    assert_eq!(name(Beam::new(1.0, 1.0, (1e300, 1e-300), 1.0)), "b_max");
+    assert_eq!(name(Beam::new(1.0, 1.0, (1e300, 1e-300), 1.0)), "masses");
+    assert_eq!(name(Beam::new(1.0, 1.0, (1e-300, 1e300), 1.0)), "masses");
+    let light = Beam::new(1.0, 1e-100, (1e-250, 1.0), 1e99).unwrap();
+    assert!(matches!(
+        light.uniform_edges(Quantity::RecoilEnergy, 10),
+        Err(Error::InvalidInput { argument, .. }) if argument == "masses"
+    ));
 }
