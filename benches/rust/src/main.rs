@@ -1,104 +1,34 @@
 //! Timings of the kernels: `cargo run --release -p visviva-benches [name]`.
 //!
-//! Minima over repeats, since the machine is noisy. Under `valgrind --tool=callgrind` with one repeat
-//! (`VISVIVA_BENCH_REPEATS=1`) the same program counts instructions.
+//! Minima over repeats, since the machine is noisy. `visviva-benches count` is for `benches/instructions.py`, which
+//! counts instructions with callgrind.
 
+mod cases;
+mod count;
+
+use cases::{Asked, Bodies, cluster, figure_eights, request, steps};
 use std::time::Instant;
-use visviva_core::parallel::{Control, Ticker};
-use visviva_core::scene::request::Request;
-use visviva_core::scene::room::give_back;
-use visviva_core::scene::run::run;
-use visviva_core::scene::{ForceSpec, Scene};
 
 fn repeats() -> usize {
     std::env::var("VISVIVA_BENCH_REPEATS").ok().and_then(|text| text.parse().ok()).unwrap_or(7)
 }
 
-/// A reproducible number in [-1, 1).
-fn noise(state: &mut u64) -> f64 {
-    *state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
-    (*state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
-}
-
-/// `particles` bodies of equal mass in a cube; a heavy one in the middle if `solar`.
-fn cluster(particles: usize, solar: bool) -> Scene {
-    let mut seed = 1;
-    let point = |scale: f64, seed: &mut u64| [noise(seed) * scale, noise(seed) * scale, noise(seed) * scale];
-    let mut position: Vec<[f64; 3]> = (0..particles).map(|_| point(1.0, &mut seed)).collect();
-    let velocity: Vec<[f64; 3]> = (0..particles).map(|_| point(0.1, &mut seed)).collect();
-    let mut mass = vec![1.0 / particles as f64; particles];
-    if solar {
-        mass.fill(1e-3);
-        mass[0] = 1.0;
-        position[0] = [0.0; 3];
-    }
-    Scene {
-        copies: 1,
-        particles,
-        mass,
-        position,
-        velocity,
-        forces: vec![ForceSpec::Gravity { constant: 1.0, softening: if solar { 0.0 } else { 0.01 } }],
-        t0: 0.0,
-    }
-}
-
-/// Perturbed copies of the figure-eight of three equal bodies (Chenciner & Montgomery).
-fn figure_eights(copies: usize) -> Scene {
-    let (x, v) = ([0.97000436, -0.24308753, 0.0], [0.466_203_684_069_539_3, 0.432_365_730_917_476_8, 0.0]);
-    let scaled = |a: [f64; 3], factor: f64| a.map(|a| a * factor);
-    let mut seed = 1;
-    let mut position = Vec::new();
-    for _ in 0..copies {
-        for body in [x, scaled(x, -1.0), [0.0; 3]] {
-            position.push(body.map(|x| x + 1e-4 * noise(&mut seed)));
-        }
-    }
-    Scene {
-        copies,
-        particles: 3,
-        mass: vec![1.0; 3 * copies],
-        position,
-        velocity: [v, v, scaled(v, -2.0)].repeat(copies),
-        forces: vec![ForceSpec::Gravity { constant: 1.0, softening: 0.0 }],
-        t0: 0.0,
-    }
-}
-
-fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -> Request {
-    Request {
-        times,
-        method: method.to_owned(),
-        dt,
-        rtol: 1e-13,
-        atol: None,
-        max_step: None,
-        max_steps: None,
-        record: vec!["position".to_owned(), "velocity".to_owned()],
-        threads,
-    }
-}
-
 /// The least time of a run in nanoseconds.
-fn time(scene: &Scene, request: &Request) -> f64 {
-    let control = Control::new(0);
+fn time(scene: &Bodies, request: &Asked) -> f64 {
     (0..repeats())
         .map(|_| {
             let start = Instant::now();
-            let output = run(scene, request, &mut Ticker::quiet(&control));
-            let elapsed = start.elapsed().as_secs_f64() * 1e9;
-            assert!(output.is_ok(), "{output:?}");
-            if let Ok(output) = output {
-                give_back(output.columns.position);
-                give_back(output.columns.velocity);
-            }
-            elapsed
+            let _ = steps(scene, request);
+            start.elapsed().as_secs_f64() * 1e9
         })
         .fold(f64::INFINITY, f64::min)
 }
 
 fn main() {
     let wanted = std::env::args().nth(1).unwrap_or_default();
+    if wanted == "count" {
+        return count::count(std::env::args().skip(2));
+    }
     let report = |name: &str, line: &dyn Fn() -> String| {
         if name.contains(&wanted) {
             println!("{name:34} {}", line());
@@ -137,7 +67,7 @@ fn main() {
         report(&format!("ensemble/figure_eight/{method}"), &|| {
             let copies = 512;
             let all =
-                time(&figure_eights(copies), &Request { rtol: 1e-11, ..request(method, dt, vec![50.0], 1) });
+                time(&figure_eights(copies), &Asked { rtol: 1e-11, ..request(method, dt, vec![50.0], 1) });
             format!("{:.1} us per copy", all * 1e-3 / copies as f64)
         });
     }
