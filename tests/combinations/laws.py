@@ -1,0 +1,338 @@
+"""Laws that need no reference: they hold for every scene, method and request, and are asked where features meet.
+
+Each law is a function of a recipe that raises `AssertionError`, or `Refused` when the scene or the request is refused
+(by name, before anything runs: `refusals_are_made_by_the_plan_and_by_the_run` looks at that alone).
+
+Laws of bits hold for anything; laws of accuracy are asked of tame recipes only. Their bounds are no tuned numbers: a
+method runs at three steps (or tolerances), the errors that follow by Richardson's argument must fall as its order says,
+and so must those of a second method with which it has to agree.
+"""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from drawing import METHODS
+from numpy.typing import NDArray
+from recipe import COLUMNS, MAX_STEPS, Case, Recipe
+from running import TIERS, Bits, differences, execute, outcome, worker
+
+import visviva as vv
+
+Law = Callable[[Recipe], None]
+EPSILON = float(np.finfo(float).eps)
+LAWS: dict[str, Law] = {}
+
+
+class Refused(Exception):
+    """There is nothing to be judged."""
+
+
+def law(function: Law) -> Law:
+    LAWS[function.__name__] = function
+    return function
+
+
+def _ran(case: Case) -> Bits:
+    found = outcome(case.start, case.t, case.how)
+    if str(found["ended"]).startswith("refused"):
+        raise Refused(found["ended"])
+    return found
+
+
+def _same(first: Bits, second: Bits, what: str, *, of: tuple[str, ...] | None = None) -> None:
+    different = differences(first, second, of=of)
+    if different:
+        notes = [f"{n}: {first.get(n)!r} against {second.get(n)!r}" for n in different if n in ("ended", "steps")]
+        raise AssertionError(f"{what}: other {', '.join(different)} {'; '.join(notes)}")
+
+
+@law
+def refusals_are_made_by_the_plan_and_by_the_run(recipe: Recipe) -> None:
+    """`plan` refuses what `run` refuses, naming the same argument; a method named in the refusal works."""
+    case = recipe.case()
+    _, ended = execute(case.start, case.t, case.how)
+    try:
+        case.start.plan(t=list(case.t), **case.how)
+        planned = ""
+    except vv.InvalidInput as error:
+        planned = f"refused {error.argument}"
+    assert planned == (ended if ended.startswith("refused") else ""), f"plan: {planned!r}, run: {ended!r}"
+
+
+@law
+def the_plan_says_what_ran(recipe: Recipe) -> None:
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None:
+        raise Refused(ended)
+    plan, stats = case.start.plan(t=list(case.t), **case.how), result.stats
+    assert plan.method == result.plan.method == stats.method, (plan.method, result.plan.method, stats.method)
+    assert plan.solution == result.plan.solution
+    count = len(case.members()[0].particles)
+    assert plan.particles == plan.active + plan.passive == count
+    if recipe.method != "auto":
+        assert plan.method == recipe.method
+        assert not plan.closed_form
+    if plan.closed_form:
+        assert (stats.steps, stats.rejected, stats.evaluations) == (0, 0, 0), stats
+    elif not ended and not (recipe.members and (result.status != 0).any()):
+        # An end before the first node takes no step: the state there comes from a shadow of one.
+        assert stats.evaluations > 0, stats
+        # The cost told is the cost of a step: what starts a run and reads it between steps comes on top.
+        assert stats.evaluations >= plan.evaluations_per_step * stats.steps, stats
+    assert set(result.recorded) == set(recipe.columns)
+
+
+@law
+def what_is_ok_is_finite(recipe: Recipe) -> None:
+    """A status of OK means numbers; a failed member is NaN from where it failed, and only there."""
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None:
+        raise Refused(ended)
+    status = np.atleast_1d(np.asarray(result.status))
+    for name in result.recorded:
+        column = getattr(result, name)
+        rows = column[None] if case.alone else column
+        for member, values in zip(status, rows, strict=True):
+            if member == 0:
+                assert np.isfinite(values).all(), f"status OK, but {name} is not finite"
+    if not ended and case.alone:
+        assert np.isfinite(result.final.particles.position).all()
+        assert len(result.t) == len(case.t)
+
+
+@law
+def a_member_is_as_if_alone(recipe: Recipe) -> None:
+    if not recipe.members:
+        recipe = replace(recipe, members=3)
+    case = recipe.case()
+    _ran(case)
+    result, _ = execute(case.start, case.t, case.how)
+    scenes = case.members()
+    # The first, the last, and those about them: places in lanes and in the last group.
+    chosen = sorted({0, 1, len(scenes) // 2, len(scenes) - 2, len(scenes) - 1} & set(range(len(scenes))))
+    for index in chosen:
+        alone, _ = execute(scenes[index], case.t, case.how)
+        if alone is None:
+            raise AssertionError(f"member {index} runs in an ensemble, alone it is refused")
+        assert result.status[index] == alone.status, f"member {index} of {len(scenes)}: {result.status[index]}, {alone.status!r}"
+        for name in alone.recorded:
+            rows = len(alone.t)
+            mine, own = getattr(result, name)[index], getattr(alone, name)
+            same = mine[:rows].tobytes() == np.ascontiguousarray(own).tobytes()
+            assert same, f"member {index} of {len(scenes)}: other {name} than alone"
+            assert np.isnan(mine[rows:]).all()
+        cost = {name: int(values[index]) for name, values in result.per_trajectory.items()}
+        own_cost = {name: getattr(alone.stats, name) for name in cost if hasattr(alone.stats, name)}
+        assert own_cost == {name: cost[name] for name in own_cost}, f"member {index}: {cost}, alone {own_cost}"
+
+
+@law
+def threads_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    one = _ran(replace(case, how={**case.how, "threads": 1}))
+    for threads in (2, 3):
+        _same(one, outcome(case.start, case.t, {**case.how, "threads": threads}), f"1 against {threads} threads")
+
+
+@law
+def tiers_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    here = _ran(case)
+    for tier in TIERS:
+        _same(here, worker(tier).outcome(case.start, case.t, case.how), f"tier {tier}")
+
+
+@law
+def recorded_columns_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    some = _ran(case)
+    every = outcome(case.start, case.t, {**case.how, "record": COLUMNS})
+    _same(some, every, "with every column", of=tuple(name for name in some))
+
+
+@law
+def other_outputs_change_no_bit(recipe: Recipe) -> None:
+    """The end, and each time that is read, whatever else is read."""
+    case = recipe.case()
+    full = _ran(case)
+    end = outcome(case.start, case.t[-1:], case.how)
+    of = ("ended", "status", "final t0", "final position", "final velocity")
+    _same(full, end, "the end alone", of=tuple(name for name in of if name in full))
+    result, ended = execute(case.start, case.t, case.how)
+    if ended or (not case.alone and result.status.any()):
+        return
+    for every in (2, 3):
+        times = sorted({*case.t[::every], case.t[-1]}, reverse=recipe.backward)
+        few, _ = execute(case.start, tuple(times), case.how)
+        where = [case.t.index(time) for time in times]
+        for name in few.recorded:
+            all_rows, few_rows = getattr(result, name), getattr(few, name)
+            rows = all_rows[where] if case.alone else all_rows[:, where]
+            assert rows.tobytes() == few_rows.tobytes(), f"other {name} when every {every}. output is read"
+
+
+@law
+def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
+    """What is loaded is what was saved, and runs on to the same bits."""
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None or not len(np.atleast_1d(result.t)):
+        raise Refused(ended)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.npz"
+        result.save(path)
+        loaded = vv.load(path)
+    for name in result.recorded:
+        assert getattr(loaded, name).tobytes() == getattr(result, name).tobytes(), f"{name} is not what was saved"
+    assert str(loaded.plan) == str(result.plan)
+    assert loaded.stats == result.stats
+    if ended or (not case.alone and result.status.any()):
+        return
+    on = tuple(2.0 * t - case.members()[0].t0 for t in case.t[-1:])
+    if not np.isfinite(on).all():
+        return
+    _same(outcome(result.final, on, case.how), outcome(loaded.final, on, case.how), "run on after loading")
+
+
+@law
+def run_on_from_a_node_changes_no_bit(recipe: Recipe) -> None:
+    """Fixed steps that end on a node go on as if they had never stopped, also by way of a file."""
+    method = METHODS.get(recipe.method)
+    if method is None or method.adaptive or recipe.steps < 2:
+        raise Refused("no fixed steps")
+    case = replace(recipe, ragged=False, outputs=0).case()
+    _ran(case)
+    scene = case.members()[0]
+    step = (case.t[-1] - scene.t0) / recipe.steps
+    node = scene.t0 + recipe.steps // 2 * step
+    if scene.t0 + step == scene.t0 or node in (scene.t0, case.t[-1]):
+        raise Refused("no node between")
+    whole = outcome(case.start, case.t[-1:], case.how)
+    half, ended = execute(case.start, (node,), case.how)
+    if ended or (not case.alone and half.status.any()):
+        raise Refused(ended)
+    of = tuple(name for name in whole if name in ("position", "velocity", "status", "final position", "final velocity"))
+    _same(whole, outcome(half.final, case.t[-1:], case.how), "run on from a node", of=of)
+
+
+def _states(case: Case, **how: object) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    arguments = {**how, "record": ("position", "velocity")}
+    result, ended = execute(case.start, case.t[-1:], arguments)
+    if ended:
+        if ended.startswith("refused"):
+            raise Refused(ended)
+        raise AssertionError(f"a tame scene ended with {ended} ({arguments})")
+    if not case.alone and result.status.any():
+        raise AssertionError(f"a tame scene ended with status {result.status} ({arguments})")
+    position, velocity = result.position, result.velocity
+    return (position[-1], velocity[-1]) if case.alone else (position[:, -1], velocity[:, -1])
+
+
+def _sizes(case: Case) -> tuple[float, float]:
+    """What a rounding is judged against: the largest coordinate, and the largest velocity, on the way."""
+    scenes = case.members()
+    span = abs(case.t[-1] - scenes[0].t0)
+    try:
+        acceleration = max(float(np.abs(scene.acceleration()).max(initial=0.0)) for scene in scenes)
+    except vv.InvalidInput as error:
+        raise Refused(f"refused {error.argument}") from error
+    position = max(float(np.abs(scene.particles.position).max(initial=0.0)) for scene in scenes)
+    velocity = max(float(np.abs(scene.particles.velocity).max(initial=0.0)) for scene in scenes)
+    length = max(position, velocity * span, acceleration * span * span)
+    return length, max(velocity, acceleration * span, length / span if span > 0.0 else 0.0)
+
+
+def _solution(case: Case, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
+    """The state at the end by a method, and bounds of its errors in position and velocity.
+
+    A method of order p leaves (at a step h) an error C hᵖ, so at h/2 it is the difference of both over 2ᵖ - 1. The
+    difference itself is taken, which leaves room for terms that are not asymptotic yet. It may not be anything: from
+    h/2 to h/4 it must fall by at least half of 2ᵖ, or be round-off.
+    """
+    length, speed = _sizes(case)
+    # A run of some tens of steps, whose compensated sums round once a step at worst, and forces that see coordinates
+    # rounded where they are.
+    floor_x, floor_v = 128 * EPSILON * length, 128 * EPSILON * speed
+    method = METHODS.get(name)
+    if method is None or method.adaptive:
+        rest: dict[str, Any] = {"method": name, "max_steps": MAX_STEPS}
+        coarse, fine = (_states(case, **rest, rtol=tolerance) for tolerance in (1e-8, 1e-11))
+        change_x, change_v = _change(coarse, fine)
+        # Of short spans: some tens of tolerances, were every step to err by the whole of it in one direction.
+        limit = 100 * 1e-8
+        assert change_x <= limit * length + floor_x, f"{name}: {change_x} from rtol 1e-8 to 1e-11, of {length}"
+        assert change_v <= limit * speed + floor_v, f"{name}: {change_v} from rtol 1e-8 to 1e-11, of {speed}"
+        return fine[0], fine[1], change_x + floor_x, change_v + floor_v
+    span = abs(case.t[-1] - case.members()[0].t0)
+    rest = {"method": name}
+    steps = [span / count for count in (16, 32, 64)]
+    first, second, third = (_states(case, **rest, dt=step) for step in steps)
+    early, late = _change(first, second), _change(second, third)
+    for what, before, after, floor in zip(("positions", "velocities"), early, late, (floor_x, floor_v), strict=True):
+        fall = 2.0 ** min(method.order, 6) / 2.0
+        assert after <= before / fall + floor, (
+            f"{name} of order {method.order}: halving the step changes {what} by {before:.1e}, then by {after:.1e} "
+            f"(round-off {floor:.1e})"
+        )
+    return third[0], third[1], late[0] + floor_x, late[1] + floor_v
+
+
+def _change(first: Any, second: Any) -> tuple[float, float]:
+    return tuple(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(first, second, strict=True))  # type: ignore[return-value]
+
+
+def _tame(recipe: Recipe) -> Case:
+    """The same scene at a span and a method of this law's choosing."""
+    return replace(recipe, tame=True, ragged=False, outputs=0, steps=16, decades=9).case()
+
+
+@law
+def two_methods_agree(recipe: Recipe) -> None:
+    """Within the sum of the bounds of both."""
+    case = _tame(recipe)
+    other = sorted(METHODS)[recipe.seed % len(METHODS)]
+    if other == recipe.method:
+        other = "auto"
+    x, v, error_x, error_v = _solution(case, recipe.method)
+    y, w, other_x, other_v = _solution(case, other)
+    apart_x, apart_v = _change((x, v), (y, w))
+    assert apart_x <= error_x + other_x, f"{recipe.method} and {other}: {apart_x:.1e} apart, bounds {error_x:.1e} + {other_x:.1e}"
+    assert apart_v <= error_v + other_v, f"{recipe.method} and {other}: {apart_v:.1e} apart, bounds {error_v:.1e} + {other_v:.1e}"
+
+
+@law
+def declared_invariants_hold(recipe: Recipe) -> None:
+    """As far as the error of the state lets them: |δE| ≤ Σ m (|v| δv + |a| δx), and so on; momentum to round-off."""
+    case = _tame(replace(recipe, members=0))
+    _, _, error_x, error_v = _solution(case, recipe.method)
+    scene = case.members()[0]
+    if not scene.particles.mass.any():
+        raise Refused("nothing to conserve")
+    method = METHODS.get(recipe.method)
+    span = abs(case.t[-1] - scene.t0)
+    steps: dict[str, Any] = {"rtol": 1e-11} if method is None or method.adaptive else {"dt": span / 64}
+    result, _ = execute(scene, case.t[-1:], {"method": recipe.method, **steps})
+    table = result.conservation()
+    end = result.final
+    mass = scene.particles.mass[:, None]
+    length, speed = _sizes(case)
+    acceleration = np.abs(scene.acceleration()).max(initial=0.0) + np.abs(end.acceleration()).max(initial=0.0)
+    total = float(mass.sum())
+    scales = {
+        "energy": total * (speed * error_v + float(acceleration) * error_x) * 3,
+        "momentum": total * 128 * EPSILON * speed,
+        "angular momentum": total * (length * error_v + speed * error_x) * 3,
+        "center of mass": 128 * EPSILON * length,
+    }
+    for row in table.rows:
+        allowed = scales[row.name.replace("centre", "center")]
+        if row.conserved:
+            assert row.max * row.scale <= allowed, f"{row.name}: {row.max * row.scale:.1e}, {allowed:.1e} allowed"
