@@ -11,14 +11,16 @@ from __future__ import annotations
 
 import warnings
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from drawing import FORCES, METHODS, force
 from hypothesis import strategies as st
-from numpy.typing import NDArray
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 COLUMNS = ("position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass")
 MAX_STEPS = 1500
@@ -144,7 +146,9 @@ def _case(recipe: Recipe) -> Case:
     end = (recipe.steps - 0.4 if recipe.ragged else recipe.steps) * step
     rng = np.random.default_rng(recipe.seed + 1)
     # Half of the outputs fall on nodes.
-    places = [step * int(rng.integers(0, recipe.steps)) if i % 2 else float(rng.random()) * end for i in range(recipe.outputs)]
+    places = [
+        step * int(rng.integers(0, recipe.steps)) if i % 2 else float(rng.random()) * end for i in range(recipe.outputs)
+    ]
     times = sorted({min(place, end) for place in places} | {end})
     method = METHODS.get(recipe.method)
     how: dict[str, Any] = {"method": recipe.method, "record": recipe.columns}
@@ -193,9 +197,7 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         bodies=bodies,
         massless=draw(_some((2, st.just(0)), (1, st.integers(0, bodies)))),
         crowd=crowd,
-        forces=tuple(
-            draw(st.lists(st.tuples(st.sampled_from(names), st.integers(0, 99)), min_size=0, max_size=3))
-        ),
+        forces=tuple(draw(st.lists(st.tuples(st.sampled_from(names), st.integers(0, 99)), min_size=0, max_size=3))),
         seed=draw(st.integers(0, 2**16)),
         tame=mild,
         planar=draw(_some((3, st.just(False)), (1, st.just(True)))),

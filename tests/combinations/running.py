@@ -20,7 +20,9 @@ Bits = dict[str, bytes | str]
 
 
 def _bits(**arrays: Any) -> Bits:
-    return {name: repr(np.shape(array)).encode() + np.ascontiguousarray(array).tobytes() for name, array in arrays.items()}
+    return {
+        name: repr(np.shape(array)).encode() + np.ascontiguousarray(array).tobytes() for name, array in arrays.items()
+    }
 
 
 def execute(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> tuple[Any, str]:

@@ -17,9 +17,9 @@ from pathlib import Path
 os.environ["RUST_BACKTRACE"] = "0"
 sys.path.insert(0, str(Path(__file__).parent))
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from laws import LAWS, Refused
 from recipe import Recipe, recipes
 from running import close_workers
+from stated_laws import LAWS, Refused
 
 
 def plainness(recipe: Recipe) -> tuple[int, int]:
@@ -39,7 +39,9 @@ def simplified(recipe: Recipe, kind: str, law: str) -> Recipe:
     for _ in range(2):
         smaller = [{"bodies": n} for n in (1, 2, 3, 5, 9, 17) if n < best.bodies]
         smaller += [{"members": n} for n in (1, 2, 3, 5, 9, 17) if n < best.members]
-        smaller += [{"steps": n} for n in (1, 2, 4, 8) if n < best.steps] + [{"outputs": n} for n in (1, 2) if n < best.outputs]
+        smaller += [{"steps": n} for n in (1, 2, 4, 8) if n < best.steps] + [
+            {"outputs": n} for n in (1, 2) if n < best.outputs
+        ]
         smaller += [{"forces": best.forces[:i] + best.forces[i + 1 :]} for i in range(len(best.forces))]
         smaller += [{"own": (name,)} for name in best.own if len(best.own) > 1]
         smaller += [{"massless": n} for n in (1, 2) if n < best.massless]
@@ -116,7 +118,9 @@ def main() -> None:
         law = kind.split(":")[0]
         plain = simplified(recipe, kind, law)
         shown = ", ".join(
-            f"{name}={getattr(plain, name)!r}" for name in Recipe.__dataclass_fields__ if getattr(plain, name) != getattr(Recipe(), name)
+            f"{name}={getattr(plain, name)!r}"
+            for name in Recipe.__dataclass_fields__
+            if getattr(plain, name) != getattr(Recipe(), name)
         )
         print(f"\n{count} × {law}\n    {failure(plain, law)[1] or message}\n    Recipe({shown})", flush=True)
     close_workers()

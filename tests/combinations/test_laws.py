@@ -1,0 +1,90 @@
+"""Features where they meet: laws without a reference, over scenes drawn from everything that is registered.
+
+The short profile, a few thousand scenes. The long one: ``python -m tests.combinations.search --scenes 100000``, or
+``pytest tests/combinations --hypothesis-profile=search``. What failed on the way is kept in ``kept.py``.
+"""
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+sys.path.insert(0, str(Path(__file__).parent))
+from drawing import FORCES, METHODS, POTENTIALS, force
+from kept import KEPT
+from recipe import Recipe, recipes
+from running import close_workers
+from stated_laws import LAWS, Refused
+
+import visviva as vv
+
+# Of each law; the search profile asks for more. 200 of each take about a minute and a half on one core.
+EXAMPLES = max(200, settings.default.max_examples if settings.default is not None else 0)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def workers() -> Iterator[None]:
+    yield
+    close_workers()
+
+
+def judged(name: str, recipe: Recipe) -> None:
+    # A refusal by name, before anything ran, is judged by a law of its own.
+    with contextlib.suppress(Refused):
+        LAWS[name](recipe)
+
+
+@pytest.mark.parametrize("name", LAWS)
+@given(recipe=recipes())
+@settings(max_examples=EXAMPLES, suppress_health_check=list(HealthCheck))
+def test_law(name: str, recipe: Recipe) -> None:
+    judged(name, recipe)
+
+
+@pytest.mark.parametrize(("name", "recipe"), KEPT, ids=[f"{name}-{i}" for i, (name, _) in enumerate(KEPT)])
+def test_what_failed_on_the_way(name: str, recipe: Recipe) -> None:
+    judged(name, recipe)
+
+
+@pytest.mark.parametrize("tame", [True, False])
+@pytest.mark.parametrize("name", FORCES)
+def test_every_registered_force_is_drawn(name: str, tame: bool) -> None:
+    """A force whose parameters are of a kind that cannot be drawn fails here, by name."""
+    drawn = [force(name, seed, 9, tame=tame) for seed in range(20)]
+    assert len(set(map(repr, drawn))) > 10
+    assert {type(one).__name__ for one in drawn} == {name}
+
+
+def test_every_registered_potential_is_drawn() -> None:
+    used = {
+        getattr(force(name, seed, 9, tame=True), "potential", None)
+        for name in FORCES
+        for seed in range(40 * len(POTENTIALS))
+    }
+    assert {type(one) for one in used if one is not None} == {
+        type(vv.potentials.potential_by_name(name, [1.0] * len(parameters))) for name, parameters in _declared().items()
+    }
+
+
+def _declared() -> dict[str, list[object]]:
+    from visviva import _core
+
+    return {entry["name"]: entry["parameters"] for entry in _core.potentials()}
+
+
+def test_every_law_judges_and_every_method_is_judged() -> None:
+    """A law that refuses everything could not fail; a scene of plain gravity is refused by none."""
+    for name in LAWS:
+        seen = 0
+        for method in METHODS:
+            try:
+                LAWS[name](Recipe(method=method, bodies=3, seed=5))
+                seen += 1
+            except Refused:
+                assert name == "run_on_from_a_node_changes_no_bit"
+            except AssertionError:
+                seen += 1  # told by test_law
+        assert seen >= sum(not method.adaptive for method in METHODS.values())
