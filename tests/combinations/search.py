@@ -7,6 +7,7 @@ of failure as a line to be kept as an ``@example``.
 from __future__ import annotations
 
 import argparse
+import contextlib
 import os
 import re
 import sys
@@ -20,6 +21,10 @@ from hypothesis import HealthCheck, Phase, given, seed, settings
 from recipe import Recipe, recipes
 from running import close_workers
 from stated_laws import LAWS, Refused
+
+
+class Enough(KeyboardInterrupt):
+    """The time is up; Hypothesis lets nothing else through."""
 
 
 def plainness(recipe: Recipe) -> tuple[int, int]:
@@ -93,7 +98,7 @@ def main() -> None:
     @given(recipes())
     def look(recipe: Recipe) -> None:
         if time.monotonic() - began > 60.0 * asked.minutes:
-            return
+            raise Enough
         tried["scenes"] += 1
         for law in asked.laws:
             started = time.monotonic()
@@ -111,7 +116,8 @@ def main() -> None:
                     best, best_message = recipe, message
                 found[kind] = (count + 1, best, best_message)
 
-    look()
+    with contextlib.suppress(Enough):
+        look()
     print(f"\n{tried} in {time.monotonic() - began:.0f} s, seed {asked.seed}")
     print({law: round(seconds, 1) for law, seconds in spent.items()})
     for kind, (count, recipe, message) in sorted(found.items(), key=lambda item: -item[1][0]):
