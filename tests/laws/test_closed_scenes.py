@@ -164,10 +164,7 @@ def test_energy_within_the_methods_own_bound(method: vv.Method, scene: vv.Scene)
 def test_the_error_falls_as_the_order_says(method: vv.Method, scene: vv.Scene) -> None:
     """What the other bounds are made of cannot be anything: halving the step leaves 2⁻ᵖ of the error, or round-off."""
     ends = [run(scene, method, dt=step(method) / 2**halvings) for halvings in range(3)]
-    (early, late) = (
-        max(distance(a.position, b.position), distance(a.velocity, b.velocity))
-        for a, b in pairwise(ends)
-    )
+    (early, late) = (max(distance(a.position, b.position), distance(a.velocity, b.velocity)) for a, b in pairwise(ends))
     assert early < 0.1
     assert late < 2.0 * early / 2.0 ** min(method.order, 6) + ROUND_OFF
 
