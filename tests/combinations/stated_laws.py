@@ -347,3 +347,174 @@ def declared_invariants_hold(recipe: Recipe) -> None:
         allowed = scales[row.name.replace("centre", "center")]
         if row.conserved:
             assert row.max * row.scale <= allowed, f"{row.name}: {row.max * row.scale:.1e}, {allowed:.1e} allowed"
+
+
+@law
+def final_is_the_last_state(recipe: Recipe) -> None:
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, {**case.how, "record": ("position", "velocity")})
+    if result is None:
+        raise Refused(ended)
+    if ended or (not case.alone and result.status.any()):
+        return
+    end = result.final
+    if case.alone:
+        assert end.t0 == case.t[-1]
+        last = end.particles.position, end.particles.velocity
+        rows = result.position[-1], result.velocity[-1]
+    else:
+        assert end.scene.t0 == case.t[-1]
+        last, rows = (end.position, end.velocity), (result.position[:, -1], result.velocity[:, -1])
+    for name, kept, row in zip(("position", "velocity"), last, rows, strict=True):
+        assert np.array_equal(kept, row), f"{name} of final is not the last row"
+
+
+@law
+def progress_ends_at_its_total(recipe: Recipe) -> None:
+    case = recipe.case()
+    calls: list[tuple[int, int]] = []
+    _, ended = execute(case.start, case.t, {**case.how, "progress": lambda done, total: calls.append((done, total))})
+    if ended.startswith("refused"):
+        raise Refused(ended)
+    assert all(0 <= done <= total for done, total in calls), f"progress {calls[-3:]}"
+    if calls and not ended:
+        assert calls[-1][0] == calls[-1][1], f"progress ends at {calls[-1]}"
+
+
+@law
+def no_step_is_longer_than_max_step(recipe: Recipe) -> None:
+    case = recipe.case()
+    if case.how.get("dt") is not None:
+        raise Refused("fixed steps")
+    scene = case.members()[0]
+    span = abs(case.t[-1] - scene.t0)
+    longest = span / (1 + recipe.seed % 40)
+    result, ended = execute(case.start, case.t, {**case.how, "max_step": longest})
+    if result is None:
+        raise Refused(ended)
+    if ended or result.plan.closed_form or (not case.alone and result.status.any()):
+        return
+    steps = [result.stats.steps] if case.alone else result.per_trajectory["steps"]
+    # A last step may be a rounding longer than the rest of the way.
+    assert min(steps) >= int(span / longest * (1.0 - 1e-12)), (
+        f"{min(steps)} steps of at most 1/{span / longest} of the way"
+    )
+
+
+@law
+def massless_bodies_do_not_touch_the_massive(recipe: Recipe) -> None:
+    """Without them the massive bodies have the same bits, wherever the others are."""
+    case = replace(recipe, members=0).case()
+    (scene,) = case.members()
+    bodies = scene.particles
+    massive = bodies.mass > 0.0
+    if massive.all() or not massive.any() or recipe.method == "auto":
+        raise Refused("no massless bodies, or other bodies may have a closed form")
+    result, ended = execute(scene, case.t, {**case.how, "record": ("position", "velocity")})
+    alone = vv.Scene(
+        vv.Particles(bodies.mass[massive], bodies.position[massive], bodies.velocity[massive]),
+        *scene.forces,
+        t0=scene.t0,
+    )
+    few, few_ended = execute(alone, case.t, {**case.how, "record": ("position", "velocity")})
+    if result is None or few is None:
+        raise Refused(ended or few_ended)
+    rows = min(len(result.t), len(few.t))
+    for name in ("position", "velocity"):
+        same = getattr(result, name)[:rows, massive].tobytes() == getattr(few, name)[:rows].tobytes()
+        assert same, f"other {name} of the massive bodies"
+
+
+@law
+def forces_add(recipe: Recipe) -> None:
+    """The acceleration is the sum of those of each force alone."""
+    case = replace(recipe, members=0, offset=0).case()
+    (scene,) = case.members()
+    try:
+        together = scene.acceleration()
+        apart = [vv.Scene(scene.particles, force, t0=scene.t0).acceleration() for force in scene.forces]
+    except vv.InvalidInput as error:
+        raise Refused(error.argument) from error
+    total = sum(apart, np.zeros_like(together))
+    size = sum((np.abs(one) for one in apart), np.zeros_like(together)).max(initial=0.0)
+    if not np.isfinite(size):
+        raise Refused("beyond float64")
+    # One rounding for each force that is added, two for each of another kernel.
+    assert np.abs(together - total).max(initial=0.0) <= 8 * EPSILON * size * max(1, len(apart))
+
+
+@law
+def forces_follow_from_the_energy(recipe: Recipe) -> None:
+    """m a · d = -dV/ds along any direction d, wherever the forces declare that they keep the energy."""
+    case = replace(recipe, members=0, offset=0, units=(0, 0, 0), tame=True, crowd=0).case()
+    (scene,) = case.members()
+    bodies = scene.particles
+    rng = np.random.default_rng(recipe.seed)
+    direction = rng.uniform(-1.0, 1.0, bodies.position.shape)
+    # The difference errs by h² (of scenes with a scale of 2) and by roundings over h: least about here.
+    h = 2.0**-16
+
+    def energy(s: float) -> float:
+        moved = vv.Scene(vv.Particles(bodies.mass, bodies.position + s * direction, bodies.velocity), *scene.forces)
+        return moved.invariants().energy
+
+    try:
+        work = float((bodies.mass[:, None] * scene.acceleration() * direction).sum())
+        if not bodies.mass.any():
+            raise Refused("no mass, no energy")
+        energies = [energy(s) for s in (-2 * h, -h, h, 2 * h)]
+    except vv.InvalidInput as error:
+        raise Refused(error.argument) from error
+    slope = (8 * (energies[2] - energies[1]) - (energies[3] - energies[0])) / (12 * h)
+    size = float((bodies.mass[:, None] * np.abs(scene.acceleration() * direction)).sum())
+    allowed = 1e-10 * size + 16 * EPSILON * max(map(abs, energies)) * len(bodies) / h
+    assert abs(work + slope) <= allowed, f"work {work:.9e}, -dV {-slope:.9e}, {allowed:.1e} allowed"
+
+
+def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: float = 1.0) -> Case:
+    try:
+        scenes = [change(scene) for scene in case.members()]
+    except vv.InvalidInput as error:
+        raise Refused(error.argument) from error
+    start: Any = scenes[0]
+    if not case.alone:
+        stacked = {n: np.stack([getattr(s.particles, n) for s in scenes]) for n in ("mass", "position", "velocity")}
+        start = scenes[0].ensemble(**stacked)
+    how = {**case.how} | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
+    return Case(start, tuple(t * time for t in case.t), how)
+
+
+def _both(here: Case, there: Case) -> tuple[Any, Any]:
+    (first, ended), (second, other) = (
+        execute(case.start, case.t, {**case.how, "record": ("position", "velocity")}) for case in (here, there)
+    )
+    if first is None:
+        raise Refused(ended)
+    assert ended == other, f"{ended!r} here, {other!r} there"
+    assert np.array_equal(first.status, second.status)
+    return first, second
+
+
+@law
+def a_mirror_image_has_the_mirrored_bits(recipe: Recipe) -> None:
+    """Rounding is symmetric about zero; forces are turned with the bodies."""
+    signs = np.where(np.random.default_rng(recipe.seed).random(3) < 0.5, -1.0, 1.0)
+    case = recipe.case()
+    here, there = _both(case, _transformed(case, lambda scene: scene.rotated(np.diag(signs))))
+    for name in ("position", "velocity"):
+        mine, other = getattr(here, name) * signs, getattr(there, name)
+        assert np.array_equal(mine, other, equal_nan=True), f"other {name} in the mirror"
+
+
+@law
+def units_of_powers_of_two_change_no_bit(recipe: Recipe) -> None:
+    powers = [int(power) for power in np.random.default_rng(recipe.seed).integers(-40, 41, 3)]
+    length, mass, time = (2.0**power for power in powers)
+    # A tolerance is absolute in part only by default, which is in units of the scene's own.
+    case = replace(recipe, units=(0, 0, 0)).case()
+    here, there = _both(
+        case, _transformed(case, lambda scene: scene.rescaled(length=length, mass=mass, time=time), time=time)
+    )
+    for name, scale in (("position", length), ("velocity", length / time)):
+        mine, other = getattr(here, name) * scale, getattr(there, name)
+        assert np.array_equal(mine, other, equal_nan=True), f"other {name} in units of {powers}"
