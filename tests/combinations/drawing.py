@@ -15,8 +15,6 @@ from typing import Any
 import visviva as vv
 from visviva import _core
 
-Number = float | tuple[float, float, float]
-
 
 def force_classes() -> dict[str, type[Any]]:
     """Every public force, by the name of its class."""
@@ -26,37 +24,39 @@ def force_classes() -> dict[str, type[Any]]:
     return {cls.__name__: cls for cls in sorted(found, key=lambda cls: cls.__name__)}
 
 
-def potential_names() -> list[str]:
-    return [entry["name"] for entry in _core.potentials()]
-
-
 FORCES = force_classes()
-POTENTIALS = potential_names()
+POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
 METHODS = {method.name: method for method in vv.methods()}
 
 
-def declared(cls: type[Any]) -> list[tuple[str, str, bool]]:
-    """(name, kind, optional) of each parameter: as the core's registry declares it, else from the signature."""
+def declared(cls: type[Any]) -> list[dict[str, Any]]:
+    """Name, kind, sign, choices and default of each parameter: as the registry has them, else from the signature."""
     registered = {entry["class_name"]: entry for entry in _core.forces()} if hasattr(_core, "forces") else {}
-    signature = inspect.signature(cls.__init__).parameters
-    names = [name for name in signature if name != "self"]
-    optional = {name: signature[name].default is not inspect.Parameter.empty for name in names}
     if cls.__name__ in registered:
-        entry = registered[cls.__name__]
-        return [(p["name"], str(p["kind"]), optional.get(p["name"], False)) for p in entry["parameters"]]
-    return [(name, _kind(name, str(signature[name].annotation)), optional[name]) for name in names]
+        return [_complete(parameter) for parameter in registered[cls.__name__]["parameters"]]
+    signature = inspect.signature(cls.__init__).parameters
+    return [
+        _complete({"name": name, "default": None if found.default is found.empty else found.default})
+        | _kind(name, str(found.annotation))
+        for name, found in signature.items()
+        if name != "self"
+    ]
 
 
-def _kind(name: str, annotation: str) -> str:
+def _complete(parameter: dict[str, Any]) -> dict[str, Any]:
+    """What is not said of a parameter is what a potential of one number has."""
+    sign = "positive" if parameter.get("positive") else "any"
+    return {"kind": "number", "sign": sign, "choices": (), "default": None} | parameter
+
+
+def _kind(name: str, annotation: str) -> dict[str, str]:
     if "Potential" in annotation:
-        return "potential"
+        return {"kind": "potential"}
     if "ArrayLike" in annotation:
-        return "vector"
+        return {"kind": "point" if name == "center" else "vector"}
     if annotation == "float":
-        return "not negative" if name in ("softening", "length", "tau") else "number"
-    if annotation == "int":
-        return "index"
-    return annotation
+        return {"kind": "number", "sign": "not_negative" if name == "softening" else "any"}
+    return {"kind": annotation}
 
 
 class Draw:
@@ -65,25 +65,23 @@ class Draw:
     def __init__(self, words: object, bodies: int, *, tame: bool) -> None:
         self.random = random.Random(repr(words))
         self.bodies, self.tame = bodies, tame
+        self.pairs: list[int] = []
 
-    def number(self) -> float:
+    def number(self, sign: str = "any") -> float:
         size = self.random.uniform(0.25, 1.0)
         if not self.tame and self.random.random() < 0.3:
             size = self.random.choice([0.0, 1e-3, 3.0, 40.0])
+        if sign == "positive":
+            return size or 1.0
+        if sign == "not_negative":
+            return self.random.choice([0.0, size, size])
         return size * self.random.choice([1.0, 1.0, -1.0])
-
-    def positive(self) -> float:
-        size = self.random.uniform(0.5, 1.0)
-        return size if self.tame or self.random.random() < 0.7 else self.random.choice([1e-2, 5.0])
-
-    def not_negative(self) -> float:
-        return self.random.choice([0.0, self.positive(), self.positive()])
 
     def vector(self) -> tuple[float, float, float]:
         x, y, z = (self.random.choice([0.0, self.number(), self.number()]) for _ in range(3))
         return x, y, z
 
-    def place(self) -> tuple[float, float, float]:
+    def point(self) -> tuple[float, float, float]:
         """A fixed point: of a tame scene far outside the bodies, else anywhere."""
         if self.tame:
             x, y, z = (self.random.choice([-12.0, 12.0]) + self.number() for _ in range(3))
@@ -91,42 +89,46 @@ class Draw:
         return self.vector()
 
     def potential(self) -> vv.potentials.Potential:
-        entry = self.random.choice(_core.potentials())
-        values = [self.positive() if p["positive"] else self.number() for p in entry["parameters"]]
-        return vv.potentials.potential_by_name(entry["name"], values)
+        entry = self.random.choice(list(POTENTIALS.values()))
+        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
+            **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
+        )
+        return made
 
-    def index(self) -> int:
-        return self.random.randrange(self.bodies)
+    def indices(self) -> list[int]:
+        """Bodies of the listed pairs: the first of each, and when asked again the second, which is another."""
+        if not self.pairs:
+            self.pairs = [self.random.randrange(self.bodies) for _ in range(self.random.randint(1, 3))]
+            return self.pairs
+        others = max(self.bodies - 1, 1)
+        return [(first + 1 + self.random.randrange(others)) % self.bodies for first in self.pairs]
 
-    def of_kind(self, name: str, kind: str) -> Any:
-        """A value for the parameter `name` of a declared kind."""
-        words = kind.lower().replace("_", " ").replace("-", " ")
-        if words == "vector":
-            return self.place() if name in ("center", "origin", "point") else self.vector()
+    def value(self, parameter: dict[str, Any]) -> Any:
+        """A value for a parameter as it is declared."""
+        sign, count = parameter["sign"], len(self.pairs) or self.bodies
         drawn = {
-            "number": self.number,
-            "positive": self.positive,
-            "not negative": self.not_negative,
-            "nonnegative": self.not_negative,
+            "number": lambda: self.number(sign),
+            "numbers": lambda: [self.number(sign) for _ in range(count)],
+            "vector": self.vector,
+            "axial_vector": self.vector,
+            "point": self.point,
             "potential": self.potential,
-            "index": self.index,
-            "indices": lambda: [self.index() for _ in range(2)],
-            "per particle": lambda: [self.number() for _ in range(self.bodies)],
-            "per particle array": lambda: [self.number() for _ in range(self.bodies)],
+            "indices": self.indices,
+            "choice": lambda: self.random.choice(list(parameter["choices"])),
         }
-        if words not in drawn:
+        if parameter["kind"] not in drawn:
+            name, kind = parameter["name"], parameter["kind"]
             raise NotImplementedError(f"tests/combinations/drawing.py cannot draw {name!r} of kind {kind!r} yet")
-        return drawn[words]()
+        return drawn[parameter["kind"]]()
 
 
 def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
     """The force of that name and seed."""
-    cls = FORCES[name]
     draw = Draw((name, seed), bodies, tame=tame)
     arguments = {}
-    for parameter, kind, optional in declared(cls):
-        value = draw.of_kind(parameter, kind)
+    for parameter in declared(FORCES[name]):
+        value = draw.value(parameter)
         # Half of the optional ones keep their default, which may be a singular case; a tame scene gives all.
-        if tame or not optional or draw.random.random() < 0.5:
-            arguments[parameter] = value
-    return cls(**arguments)
+        if tame or parameter["default"] is None or draw.random.random() < 0.5:
+            arguments[parameter["name"]] = value
+    return FORCES[name](**arguments)

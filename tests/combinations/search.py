@@ -18,9 +18,9 @@ from pathlib import Path
 os.environ["RUST_BACKTRACE"] = "0"
 sys.path.insert(0, str(Path(__file__).parent))
 from hypothesis import HealthCheck, Phase, given, seed, settings
-from recipe import Recipe, recipes
+from recipe import Recipe, Refused, recipes
 from running import close_workers
-from stated_laws import LAWS, Refused
+from stated_laws import LAWS
 
 
 class Enough(KeyboardInterrupt):

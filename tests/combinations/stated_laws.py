@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from drawing import METHODS
-from recipe import COLUMNS, MAX_STEPS, Case, Recipe
+from recipe import COLUMNS, MAX_STEPS, Case, Recipe, Refused
 from running import TIERS, Bits, differences, execute, outcome, worker
 
 import visviva as vv
@@ -29,10 +29,6 @@ if TYPE_CHECKING:
 Law = Callable[[Recipe], None]
 EPSILON = float(np.finfo(float).eps)
 LAWS: dict[str, Law] = {}
-
-
-class Refused(Exception):
-    """There is nothing to be judged."""
 
 
 def law(function: Law) -> Law:
@@ -250,7 +246,7 @@ def _sizes(case: Case) -> tuple[float, float]:
         raise Refused(f"refused {error.argument}") from error
     position = max(float(np.abs(scene.particles.position).max(initial=0.0)) for scene in scenes)
     velocity = max(float(np.abs(scene.particles.velocity).max(initial=0.0)) for scene in scenes)
-    # A place that a force names is subtracted from positions, and rounds as they do.
+    # A point that a force names is subtracted from positions, and rounds as they do.
     fixed = [getattr(force, name, (0.0,)) for force in scenes[0].forces for name in ("center", "origin", "point")]
     position = max(position, *(float(np.abs(point).max()) for point in fixed), 0.0)
     length = max(position, velocity * span, acceleration * span * span)
@@ -373,11 +369,13 @@ def final_is_the_last_state(recipe: Recipe) -> None:
 def progress_ends_at_its_total(recipe: Recipe) -> None:
     case = recipe.case()
     calls: list[tuple[int, int]] = []
-    _, ended = execute(case.start, case.t, {**case.how, "progress": lambda done, total: calls.append((done, total))})
-    if ended.startswith("refused"):
+    result, ended = execute(
+        case.start, case.t, {**case.how, "progress": lambda done, total: calls.append((done, total))}
+    )
+    if result is None:
         raise Refused(ended)
     assert all(0 <= done <= total for done, total in calls), f"progress {calls[-3:]}"
-    if calls and not ended:
+    if calls and not ended and not np.any(result.status):
         assert calls[-1][0] == calls[-1][1], f"progress ends at {calls[-1]}"
 
 
