@@ -256,9 +256,9 @@ def _sizes(case: Case) -> tuple[float, float]:
 def _solution(case: Case, name: str) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
     """The state at the end by a method, and bounds of its errors in position and velocity.
 
-    A method of order p leaves (at a step h) an error C hᵖ, so at h/2 it is the difference of both over 2ᵖ - 1. The
-    difference itself is taken, which leaves room for terms that are not asymptotic yet. It may not be anything: from
-    h/2 to h/4 it must fall by at least half of 2ᵖ, or be round-off.
+    A method of order p leaves (at a step h) an error C hᵖ, so at h/2 it is the difference of both over 2ᵖ - 1. Twice
+    that is taken, and at least the difference itself, which leaves room for terms that are not asymptotic yet. It may
+    not be anything: from h/2 to h/4 it must fall by at least half of 2ᵖ, or be round-off.
     """
     length, speed = _sizes(case)
     # A run of some tens of steps, whose compensated sums round once a step at worst, and forces that see coordinates
@@ -285,7 +285,8 @@ def _solution(case: Case, name: str) -> tuple[NDArray[np.float64], NDArray[np.fl
             f"{name} of order {method.order}: halving the step changes {what} by {before:.1e}, then by {after:.1e} "
             f"(round-off {floor:.1e})"
         )
-    return third[0], third[1], late[0] + floor_x, late[1] + floor_v
+    room = max(1.0, 2.0 / (2.0**method.order - 1.0))
+    return third[0], third[1], room * late[0] + floor_x, room * late[1] + floor_v
 
 
 def _change(first: Any, second: Any) -> tuple[float, float]:
