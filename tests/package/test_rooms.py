@@ -25,20 +25,15 @@ FLOORS = (
     ("scene",),
 )
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
-# Where rooms lay before they got their place.
-FORMER = {"integrators": "ode"}
-
 STANDING: dict[tuple[str, str], str] = {
     ("error", "words"): "the text of an error is written by words, which makes errors",
-    ("ode", "forces"): "steppers take `Dynamics`; to be a `System` that knows no particles",
     ("potentials", "forces"): "a potential makes its central force; to be the other way round",
     ("conservation", "scene"): "energies match on `ForceSpec`; to be asked of each force",
 }
 
 
 def room_of(path: Path) -> str:
-    name = path.relative_to(SOURCES).parts[0].removesuffix(".rs")
-    return FORMER.get(name, name)
+    return path.relative_to(SOURCES).parts[0].removesuffix(".rs")
 
 
 def code_of(path: Path) -> str:
@@ -85,13 +80,13 @@ ROOMS = {path.relative_to(SOURCES).parts[0].removesuffix(".rs") for path in FILE
 def home(name: str) -> str:
     """The room of a name at the top of the crate: a room, a macro, or something that ``lib.rs`` hands on."""
     if name in ROOMS:
-        return FORMER.get(name, name)
+        return name
     for path in FILES:
         if re.search(rf"macro_rules! {name}\b", code_of(path)):
             return room_of(path)
     handed_on = re.search(rf"pub use (\w+)::[^;]*\b{name}\b", (SOURCES / "lib.rs").read_text(encoding="utf-8"))
     assert handed_on, f"crate::{name} is in no room"
-    return FORMER.get(handed_on[1], handed_on[1])
+    return handed_on[1]
 
 
 def edges() -> dict[tuple[str, str], list[str]]:
@@ -108,7 +103,7 @@ def edges() -> dict[tuple[str, str], list[str]]:
 
 
 def test_every_room_has_its_place() -> None:
-    assert {FORMER.get(room, room) for room in ROOMS} <= FLOOR.keys()
+    assert ROOMS <= FLOOR.keys()
 
 
 def test_a_room_knows_the_rooms_below_it_and_none_above() -> None:
