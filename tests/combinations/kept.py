@@ -58,6 +58,15 @@ KEPT: list[tuple[str, Recipe]] = [
             columns=("position",),
         ),
     ),
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(method="dop853", bodies=3, forces=(("UniformField", 45),), tame=False, steps=8, outputs=1),
+    ),
+    # Members of several make-ups: the total was that of the last of them.
+    (
+        "progress_ends_at_its_total",
+        Recipe(method="kahan_li8", bodies=5, forces=(), members=3, own=("mass",), own_massless=True, steps=8),
+    ),
     # Far from the origin, gravity and a field: rounded coordinates kept the adaptive method from its tolerance.
     (
         "two_methods_agree",
