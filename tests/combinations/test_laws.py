@@ -63,15 +63,17 @@ def test_every_registered_potential_is_drawn() -> None:
 
 
 def test_every_law_judges_and_every_method_is_judged() -> None:
-    """A law that refuses everything could not fail; a scene of plain gravity is refused by none."""
-    for name in LAWS:
-        seen = 0
+    """A law that refuses everything could not fail."""
+    judged_by: dict[str, set[str]] = {method: set() for method in METHODS}
+    for name, law in LAWS.items():
         for method in METHODS:
             try:
-                LAWS[name](Recipe(method=method, bodies=3, seed=5))
-                seen += 1
+                law(Recipe(method=method, bodies=4, massless=1, seed=5))
             except Refused:
-                assert name == "run_on_from_a_node_changes_no_bit"
+                continue
             except AssertionError:
-                seen += 1  # told by test_law
-        assert seen >= sum(not method.adaptive for method in METHODS.values())
+                pass  # test_law tells
+            judged_by[method].add(name)
+    assert set().union(*judged_by.values()) == LAWS.keys()
+    # Fixed steps have no longest step, others no node to stop at.
+    assert all(len(laws) >= len(LAWS) - 2 for laws in judged_by.values()), judged_by
