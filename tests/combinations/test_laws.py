@@ -19,8 +19,8 @@ from recipe import Recipe, Refused, recipes
 from running import close_workers
 from stated_laws import LAWS
 
-# Of each law; the search profile asks for more. 400 of each take a minute or two.
-EXAMPLES = max(400, settings.default.max_examples if settings.default is not None else 0)
+# Of each law; the search profile asks for more. 300 of each take about a minute and a half of one core.
+EXAMPLES = max(300, settings.default.max_examples if settings.default is not None else 0)
 
 
 @pytest.fixture(scope="module", autouse=True)
