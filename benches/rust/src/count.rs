@@ -5,11 +5,14 @@ use crate::cases::{
     Bodies, around_a_center, cluster, figure_eights, free, methods, request, scatter, soft_cluster, steps,
 };
 
+/// Runs a case at a size and tells the units of work done.
+type Run = Box<dyn Fn(u64) -> u64>;
+
 /// A case: its name, the smaller and the larger size, and what runs it and tells the units of work done.
 pub struct Case {
     name: String,
     sizes: (u64, u64),
-    run: Box<dyn Fn(u64) -> u64>,
+    run: Run,
 }
 
 fn case(name: String, sizes: (u64, u64), run: impl Fn(u64) -> u64 + 'static) -> Case {
