@@ -229,7 +229,7 @@ fn open_motion_at_any_time_in_any_unit() {
     let speed = 2f64.sqrt(); // v∞² = v² − 2μ/r
     close(now.norm(), speed * 1e5);
     let parabola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::new(1.0, 1.0, 0.0)).unwrap();
-    for t in [1e-20, 1.0, 1e10] {
+    for t in [1e-20_f64, 1.0, 1e10] {
         // r³ = 9μt²/2, the rest is (q/r)^½ < 2^-300 of it.
         let distance = (4.5 * t * t).cbrt() * unit.cbrt();
         close(parabola(unit).state(t).0.norm(), distance);
@@ -246,10 +246,17 @@ fn elements_that_overflow_are_infinite() {
     let far = Elements::from_state(1e308, Vector3::x() * 1e230, Vector3::y() * 1e79).unwrap();
     assert_eq!(far.angular_momentum, Vector3::new(0.0, 0.0, f64::INFINITY));
     assert!(!far.laplace_runge_lenz.iter().any(|component| component.is_nan()));
+    let shape = |pericenter, eccentricity| Shape {
+        pericenter,
+        eccentricity,
+        inclination: 0.0,
+        node: 0.0,
+        argument_of_pericenter: 0.0,
+    };
     // The speed at 1e-100 of a mass of 1e300 is 1e200, though μ/r is not a number.
-    let (_, velocity) = state_from_elements(1e300, 1e-100, 0.0, 0.0, 0.0, 0.0, 0.0).unwrap();
+    let (_, velocity) = state_from_elements(1e300, shape(1e-100, 0.0), Anomaly::True(0.0)).unwrap();
     close(velocity.y, 1e200);
-    assert!(state_from_elements(1.0, 1e300, 1.0, 0.0, 0.0, 0.0, 3.141_592_6).is_err());
+    assert!(state_from_elements(1.0, shape(1e300, 1.0), Anomaly::True(3.141_592_6)).is_err());
 }
 
 /// An angular momentum of 2^±900 times what energy and strength make: e = √(1 + 2El²/mγ²) and the rest, of which l²

@@ -1,0 +1,333 @@
+"""Laws of bits and of what is said: they hold for every scene, method and request, and need no reference."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from drawing import METHODS
+from law_book import law
+from recipe import COLUMNS, Case, Recipe, Refused
+from running import TIERS, Bits, differences, execute, outcome, worker
+
+import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+
+def _ran(case: Case) -> Bits:
+    found = outcome(case.start, case.t, case.how)
+    if str(found["ended"]).startswith("refused"):
+        raise Refused(found["ended"])
+    return found
+
+
+def _same(first: Bits, second: Bits, what: str, *, of: tuple[str, ...] | None = None) -> None:
+    different = differences(first, second, of=of)
+    if different:
+        notes = [f"{n}: {first.get(n)!r} against {second.get(n)!r}" for n in different if n in ("ended", "steps")]
+        raise AssertionError(f"{what}: other {', '.join(different)} {'; '.join(notes)}")
+
+
+@law
+def refusals_are_made_by_the_plan_and_by_the_run(recipe: Recipe) -> None:
+    """`plan` refuses what `run` refuses, naming the same argument; a method named in the refusal works."""
+    case = recipe.case()
+    _, ended = execute(case.start, case.t, case.how)
+    try:
+        case.start.plan(t=list(case.t), **case.how)
+        planned = ""
+    except vv.InvalidInput as error:
+        planned = f"refused {error.argument}"
+    assert planned == (ended if ended.startswith("refused") else ""), f"plan: {planned!r}, run: {ended!r}"
+
+
+@law
+def the_plan_says_what_ran(recipe: Recipe) -> None:
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None:
+        raise Refused(ended)
+    plan, stats = case.start.plan(t=list(case.t), **case.how), result.stats
+    assert plan.method == result.plan.method == stats.method, (plan.method, result.plan.method, stats.method)
+    assert plan.solution == result.plan.solution
+    count = len(case.members()[0].particles)
+    assert plan.particles == plan.active + plan.passive == count
+    if recipe.method != "auto":
+        assert plan.method == recipe.method
+        assert not plan.closed_form
+    if plan.closed_form:
+        assert (stats.steps, stats.rejected, stats.evaluations) == (0, 0, 0), stats
+    elif not ended and not (recipe.members and (result.status != 0).any()):
+        # An end before the first node takes no step: the state there comes from a shadow of one.
+        assert stats.evaluations > 0, stats
+        # The cost told is the cost of a step: what starts a run and reads it between steps comes on top.
+        assert stats.evaluations >= plan.evaluations_per_step * stats.steps, stats
+    assert set(result.recorded) == set(recipe.columns)
+
+
+@law
+def what_is_ok_is_finite(recipe: Recipe) -> None:
+    """A status of OK means numbers; a failed member is NaN from where it failed, and only there."""
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None:
+        raise Refused(ended)
+    status = np.atleast_1d(np.asarray(result.status))
+    for name in result.recorded:
+        column = getattr(result, name)
+        rows = column[None] if case.alone else column
+        for member, values in zip(status, rows, strict=True):
+            if member == 0:
+                assert np.isfinite(values).all(), f"status OK, but {name} is not finite"
+    if not ended and case.alone:
+        assert np.isfinite(result.final.particles.position).all()
+        assert len(result.t) == len(case.t)
+
+
+@law
+def a_member_is_as_if_alone(recipe: Recipe) -> None:
+    if not recipe.members:
+        recipe = replace(recipe, members=3)
+    case = recipe.case()
+    _ran(case)
+    result, _ = execute(case.start, case.t, case.how)
+    scenes = case.members()
+    # The first, the last, and those about them: places in lanes and in the last group.
+    chosen = sorted({0, 1, len(scenes) // 2, len(scenes) - 2, len(scenes) - 1} & set(range(len(scenes))))
+    for index in chosen:
+        alone, _ = execute(scenes[index], case.t, case.how)
+        if alone is None:
+            raise AssertionError(f"member {index} runs in an ensemble, alone it is refused")
+        assert result.status[index] == alone.status, (
+            f"member {index} of {len(scenes)}: {result.status[index]}, {alone.status!r}"
+        )
+        for name in alone.recorded:
+            rows = len(alone.t)
+            mine, own = getattr(result, name)[index], getattr(alone, name)
+            same = mine[:rows].tobytes() == np.ascontiguousarray(own).tobytes()
+            assert same, f"member {index} of {len(scenes)}: other {name} than alone"
+            assert np.isnan(mine[rows:]).all()
+        cost = {name: int(values[index]) for name, values in result.per_trajectory.items()}
+        own_cost = {name: getattr(alone.stats, name) for name in cost if hasattr(alone.stats, name)}
+        assert own_cost == {name: cost[name] for name in own_cost}, f"member {index}: {cost}, alone {own_cost}"
+
+
+@law
+def threads_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    one = _ran(replace(case, how={**case.how, "threads": 1}))
+    for threads in (2, 3):
+        _same(one, outcome(case.start, case.t, {**case.how, "threads": threads}), f"1 against {threads} threads")
+
+
+@law
+def tiers_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    here = _ran(case)
+    for tier in TIERS:
+        _same(here, worker(tier).outcome(case.start, case.t, case.how), f"tier {tier}")
+
+
+@law
+def recorded_columns_change_no_bit(recipe: Recipe) -> None:
+    case = recipe.case()
+    some = _ran(case)
+    every = outcome(case.start, case.t, {**case.how, "record": COLUMNS})
+    _same(some, every, "with every column", of=tuple(name for name in some))
+
+
+@law
+def other_outputs_change_no_bit(recipe: Recipe) -> None:
+    """The end, and each time that is read, whatever else is read."""
+    case = recipe.case()
+    full = _ran(case)
+    end = outcome(case.start, case.t[-1:], case.how)
+    of = ("ended", "status", "final t0", "final position", "final velocity")
+    _same(full, end, "the end alone", of=tuple(name for name in of if name in full))
+    result, ended = execute(case.start, case.t, case.how)
+    if ended or (not case.alone and result.status.any()):
+        return
+    for every in (2, 3):
+        times = sorted({*case.t[::every], case.t[-1]}, reverse=recipe.backward)
+        few, _ = execute(case.start, tuple(times), case.how)
+        where = [case.t.index(time) for time in times]
+        for name in few.recorded:
+            all_rows, few_rows = getattr(result, name), getattr(few, name)
+            rows = all_rows[where] if case.alone else all_rows[:, where]
+            assert rows.tobytes() == few_rows.tobytes(), f"other {name} when every {every}. output is read"
+
+
+@law
+def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
+    """What is loaded is what was saved, and runs on to the same bits."""
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, case.how)
+    if result is None or not len(np.atleast_1d(result.t)):
+        raise Refused(ended)
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "run.npz"
+        result.save(path)
+        loaded = vv.load(path)
+    for name in result.recorded:
+        assert getattr(loaded, name).tobytes() == getattr(result, name).tobytes(), f"{name} is not what was saved"
+    assert str(loaded.plan) == str(result.plan)
+    assert loaded.stats == result.stats
+    if ended or (not case.alone and result.status.any()):
+        return
+    on = tuple(2.0 * t - case.members()[0].t0 for t in case.t[-1:])
+    if not np.isfinite(on).all():
+        return
+    _same(outcome(result.final, on, case.how), outcome(loaded.final, on, case.how), "run on after loading")
+
+
+@law
+def run_on_from_a_node_changes_no_bit(recipe: Recipe) -> None:
+    """Fixed steps that end on a node go on as if they had never stopped, also by way of a file."""
+    method = METHODS.get(recipe.method)
+    if method is None or method.adaptive or recipe.steps < 2:
+        raise Refused("no fixed steps")
+    case = replace(recipe, ragged=False, outputs=0).case()
+    _ran(case)
+    scene = case.members()[0]
+    step = (case.t[-1] - scene.t0) / recipe.steps
+    node = scene.t0 + recipe.steps // 2 * step
+    if scene.t0 + step == scene.t0 or node in (scene.t0, case.t[-1]):
+        raise Refused("no node between")
+    whole = outcome(case.start, case.t[-1:], case.how)
+    half, ended = execute(case.start, (node,), case.how)
+    if ended or (not case.alone and half.status.any()):
+        raise Refused(ended)
+    of = tuple(name for name in whole if name in ("position", "velocity", "status", "final position", "final velocity"))
+    _same(whole, outcome(half.final, case.t[-1:], case.how), "run on from a node", of=of)
+
+
+@law
+def final_is_the_last_state(recipe: Recipe) -> None:
+    case = recipe.case()
+    result, ended = execute(case.start, case.t, {**case.how, "record": ("position", "velocity")})
+    if result is None:
+        raise Refused(ended)
+    if ended or (not case.alone and result.status.any()):
+        return
+    end = result.final
+    if case.alone:
+        assert end.t0 == case.t[-1]
+        last = end.particles.position, end.particles.velocity
+        rows = result.position[-1], result.velocity[-1]
+    else:
+        assert end.scene.t0 == case.t[-1]
+        last, rows = (end.position, end.velocity), (result.position[:, -1], result.velocity[:, -1])
+    for name, kept, row in zip(("position", "velocity"), last, rows, strict=True):
+        assert np.array_equal(kept, row), f"{name} of final is not the last row"
+
+
+@law
+def progress_ends_at_its_total(recipe: Recipe) -> None:
+    case = recipe.case()
+    calls: list[tuple[int, int]] = []
+    result, ended = execute(
+        case.start, case.t, {**case.how, "progress": lambda done, total: calls.append((done, total))}
+    )
+    if result is None:
+        raise Refused(ended)
+    assert all(0 <= done <= total for done, total in calls), f"progress {calls[-3:]}"
+    if calls and not ended and not np.any(result.status):
+        assert calls[-1][0] == calls[-1][1], f"progress ends at {calls[-1]}"
+
+
+@law
+def no_step_is_longer_than_max_step(recipe: Recipe) -> None:
+    case = recipe.case()
+    if case.how.get("dt") is not None:
+        raise Refused("fixed steps")
+    scene = case.members()[0]
+    span = abs(case.t[-1] - scene.t0)
+    longest = span / (1 + recipe.seed % 40)
+    result, ended = execute(case.start, case.t, {**case.how, "max_step": longest})
+    if result is None:
+        raise Refused(ended)
+    if ended or result.plan.closed_form or (not case.alone and result.status.any()):
+        return
+    steps = [result.stats.steps] if case.alone else result.per_trajectory["steps"]
+    # A last step may be a rounding longer than the rest of the way.
+    assert min(steps) >= int(span / longest * (1.0 - 1e-12)), (
+        f"{min(steps)} steps of at most 1/{span / longest} of the way"
+    )
+
+
+@law
+def massless_bodies_do_not_touch_the_massive(recipe: Recipe) -> None:
+    """Without them the massive bodies have the same bits, wherever the others are."""
+    case = replace(recipe, members=0).case()
+    (scene,) = case.members()
+    bodies = scene.particles
+    massive = bodies.mass > 0.0
+    if massive.all() or not massive.any() or recipe.method == "auto":
+        raise Refused("no massless bodies, or other bodies may have a closed form")
+    result, ended = execute(scene, case.t, {**case.how, "record": ("position", "velocity")})
+    alone = vv.Scene(
+        vv.Particles(bodies.mass[massive], bodies.position[massive], bodies.velocity[massive]),
+        *scene.forces,
+        t0=scene.t0,
+    )
+    few, few_ended = execute(alone, case.t, {**case.how, "record": ("position", "velocity")})
+    if result is None or few is None:
+        raise Refused(ended or few_ended)
+    rows = min(len(result.t), len(few.t))
+    for name in ("position", "velocity"):
+        same = getattr(result, name)[:rows, massive].tobytes() == getattr(few, name)[:rows].tobytes()
+        assert same, f"other {name} of the massive bodies"
+
+
+def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: float = 1.0) -> Case:
+    try:
+        scenes = [change(scene) for scene in case.members()]
+    except vv.InvalidInput as error:
+        raise Refused(error.argument) from error
+    start: Any = scenes[0]
+    if not case.alone:
+        stacked = {n: np.stack([getattr(s.particles, n) for s in scenes]) for n in ("mass", "position", "velocity")}
+        start = scenes[0].ensemble(**stacked)
+    how = {**case.how} | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
+    return Case(start, tuple(t * time for t in case.t), how)
+
+
+def _both(here: Case, there: Case) -> tuple[Any, Any]:
+    (first, ended), (second, other) = (
+        execute(case.start, case.t, {**case.how, "record": ("position", "velocity")}) for case in (here, there)
+    )
+    if first is None:
+        raise Refused(ended)
+    assert ended == other, f"{ended!r} here, {other!r} there"
+    assert np.array_equal(first.status, second.status)
+    return first, second
+
+
+@law
+def a_mirror_image_has_the_mirrored_bits(recipe: Recipe) -> None:
+    """Rounding is symmetric about zero; forces are turned with the bodies."""
+    signs = np.where(np.random.default_rng(recipe.seed).random(3) < 0.5, -1.0, 1.0)
+    case = recipe.case()
+    here, there = _both(case, _transformed(case, lambda scene: scene.rotated(np.diag(signs))))
+    for name in ("position", "velocity"):
+        mine, other = getattr(here, name) * signs, getattr(there, name)
+        assert np.array_equal(mine, other, equal_nan=True), f"other {name} in the mirror"
+
+
+@law
+def units_of_powers_of_two_change_no_bit(recipe: Recipe) -> None:
+    powers = [int(power) for power in np.random.default_rng(recipe.seed).integers(-40, 41, 3)]
+    length, mass, time = (2.0**power for power in powers)
+    # A tolerance is absolute in part only by default, which is in units of the scene's own.
+    case = replace(recipe, units=(0, 0, 0)).case()
+    here, there = _both(
+        case, _transformed(case, lambda scene: scene.rescaled(length=length, mass=mass, time=time), time=time)
+    )
+    for name, scale in (("position", length), ("velocity", length / time)):
+        mine, other = getattr(here, name) * scale, getattr(there, name)
+        assert np.array_equal(mine, other, equal_nan=True), f"other {name} in units of {powers}"

@@ -1,0 +1,134 @@
+"""How a parameter of each kind is drawn, and which forces, potentials and methods there are.
+
+Everything is asked of the package, so that a force or potential joins by being registered. A parameter of a kind that
+is not known here fails by name: it must be drawn by some test before it can be trusted.
+
+A force is drawn from (name, seed, bodies): small, printable, the same everywhere.
+"""
+
+from __future__ import annotations
+
+import inspect
+import random
+from typing import Any
+
+import visviva as vv
+from visviva import _core
+
+
+def force_classes() -> dict[str, type[Any]]:
+    """Every public force, by the name of its class."""
+    public = [getattr(vv, name) for name in vv.__all__]
+    found = [cls for cls in public if isinstance(cls, type) and issubclass(cls, vv.forces.Force)]
+    found = [cls for cls in found if not inspect.isabstract(cls) and cls is not vv.forces.Force]
+    return {cls.__name__: cls for cls in sorted(found, key=lambda cls: cls.__name__)}
+
+
+FORCES = force_classes()
+POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
+METHODS = {method.name: method for method in vv.methods()}
+
+
+def declared(cls: type[Any]) -> list[dict[str, Any]]:
+    """Name, kind, sign, choices and default of each parameter: as the registry has them, else from the signature."""
+    registered = {entry["class_name"]: entry for entry in _core.forces()} if hasattr(_core, "forces") else {}
+    if cls.__name__ in registered:
+        return [_complete(parameter) for parameter in registered[cls.__name__]["parameters"]]
+    signature = inspect.signature(cls.__init__).parameters
+    return [
+        _complete({"name": name, "default": None if found.default is found.empty else found.default})
+        | _kind(name, str(found.annotation))
+        for name, found in signature.items()
+        if name != "self"
+    ]
+
+
+def _complete(parameter: dict[str, Any]) -> dict[str, Any]:
+    """What is not said of a parameter is what a potential of one number has."""
+    sign = "positive" if parameter.get("positive") else "any"
+    return {"kind": "number", "sign": sign, "choices": (), "default": None} | parameter
+
+
+def _kind(name: str, annotation: str) -> dict[str, str]:
+    if "Potential" in annotation:
+        return {"kind": "potential"}
+    if "ArrayLike" in annotation:
+        return {"kind": "point" if name == "center" else "vector"}
+    if annotation == "float":
+        return {"kind": "number", "sign": "not_negative" if name == "softening" else "any"}
+    return {"kind": annotation}
+
+
+class Draw:
+    """Values of each kind. Tame ones keep a scene of spacing 2 well-behaved; others may be anything that is allowed."""
+
+    def __init__(self, words: object, bodies: int, *, tame: bool) -> None:
+        self.random = random.Random(repr(words))
+        self.bodies, self.tame = bodies, tame
+        self.pairs: list[int] = []
+
+    def number(self, sign: str = "any") -> float:
+        size = self.random.uniform(0.25, 1.0)
+        if not self.tame and self.random.random() < 0.3:
+            size = self.random.choice([0.0, 1e-3, 3.0, 40.0])
+        if sign == "positive":
+            return size or 1.0
+        if sign == "not_negative":
+            return self.random.choice([0.0, size, size])
+        return size * self.random.choice([1.0, 1.0, -1.0])
+
+    def vector(self) -> tuple[float, float, float]:
+        x, y, z = (self.random.choice([0.0, self.number(), self.number()]) for _ in range(3))
+        return x, y, z
+
+    def point(self) -> tuple[float, float, float]:
+        """A fixed point: of a tame scene far outside the bodies, else anywhere."""
+        if self.tame:
+            x, y, z = (self.random.choice([-12.0, 12.0]) + self.number() for _ in range(3))
+            return x, y, z
+        return self.vector()
+
+    def potential(self) -> vv.potentials.Potential:
+        entry = self.random.choice(list(POTENTIALS.values()))
+        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
+            **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
+        )
+        return made
+
+    def indices(self) -> list[int]:
+        """Bodies of the listed pairs: the first of each, and when asked again the second, which is another."""
+        if not self.pairs:
+            self.pairs = [self.random.randrange(self.bodies) for _ in range(self.random.randint(1, 3))]
+            return self.pairs
+        others = max(self.bodies - 1, 1)
+        return [(first + 1 + self.random.randrange(others)) % self.bodies for first in self.pairs]
+
+    def value(self, parameter: dict[str, Any]) -> Any:
+        """A value for a parameter as it is declared."""
+        sign, count = parameter["sign"], len(self.pairs) or self.bodies
+        drawn = {
+            "number": lambda: self.number(sign),
+            "numbers": lambda: [self.number(sign) for _ in range(count)],
+            "vector": self.vector,
+            "axial_vector": self.vector,
+            "point": self.point,
+            "potential": self.potential,
+            "indices": self.indices,
+            "choice": lambda: self.random.choice(list(parameter["choices"])),
+        }
+        if parameter["kind"] not in drawn:
+            name, kind = parameter["name"], parameter["kind"]
+            raise NotImplementedError(f"tests/combinations/drawing.py cannot draw {name!r} of kind {kind!r} yet")
+        return drawn[parameter["kind"]]()
+
+
+def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
+    """The force of that name and seed."""
+    draw = Draw((name, seed), bodies, tame=tame)
+    arguments = {}
+    for parameter in declared(FORCES[name]):
+        value = draw.value(parameter)
+        # Half of the optional ones keep their default, which may be a singular case; a tame scene gives all.
+        if tame or parameter["default"] is None or draw.random.random() < 0.5:
+            arguments[parameter["name"]] = value
+    return FORCES[name](**arguments)

@@ -1,0 +1,84 @@
+"""Scenes that failed a law on the way, as plain as the failure lets them be, with what was wrong."""
+
+from __future__ import annotations
+
+from recipe import Recipe
+
+KEPT: list[tuple[str, Recipe]] = [
+    # An adaptive chunk took its masses from its first member: more than eight bodies, masses of their own.
+    (
+        "two_methods_agree",
+        Recipe(method="dop853", bodies=9, massless=1, seed=46, members=9, own=("mass",), steps=4, outputs=1),
+    ),
+    ("two_methods_agree", Recipe(method="yoshida4", bodies=9, seed=413, members=9, own=("mass",), steps=4)),
+    (
+        "threads_change_no_bit",
+        Recipe(bodies=9, massless=7, seed=809, members=9, own=("mass",), own_massless=True, steps=4),
+    ),
+    (
+        "tiers_change_no_bit",
+        Recipe(bodies=9, massless=7, seed=809, members=9, own=("mass",), own_massless=True, steps=4),
+    ),
+    # The state was shaped for the massive bodies alone: index out of bounds.
+    ("a_member_is_as_if_alone", Recipe(bodies=9, massless=1, members=5, steps=8)),
+    ("threads_change_no_bit", Recipe(bodies=3, crowd=210, steps=8)),
+    # The second Gravity took the constant of the first.
+    ("declared_invariants_hold", Recipe(bodies=3, forces=(("Gravity", 42), ("Gravity", 76)), steps=8)),
+    ("two_methods_agree", Recipe(bodies=2, forces=(("Gravity", 42), ("Gravity", 42)), steps=8)),
+    # Störmer's kernel of two or three bodies took a repulsive constant for no mass.
+    ("two_methods_agree", Recipe(method="stormer13", seed=2938, members=3, steps=2)),
+    # A lone massive body beside massless ones in a uniform field had no size: NaN in the first step.
+    (
+        "two_methods_agree",
+        Recipe(
+            forces=(("UniformField", 4), ("Gravity", 12)),
+            members=3,
+            own=("mass",),
+            own_massless=True,
+            steps=4,
+            outputs=1,
+        ),
+    ),
+    # `final` forgot what the state leaves out.
+    ("run_on_from_a_node_changes_no_bit", Recipe(method="yoshida4", forces=(), steps=2)),
+    ("run_on_from_a_node_changes_no_bit", Recipe(method="stormer13", bodies=3, steps=40)),
+    # Bodies at rest had the plan's unit for a velocity scale.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            method="dop853",
+            bodies=9,
+            forces=(("UniformField", 68), ("UniformField", 20), ("UniformField", 68)),
+            seed=3,
+            tame=False,
+            members=23,
+            steps=1,
+            ragged=True,
+            decades=5,
+            columns=("position",),
+        ),
+    ),
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(method="dop853", bodies=3, forces=(("UniformField", 45),), tame=False, steps=8, outputs=1),
+    ),
+    # Members of several make-ups: the total was that of the last of them.
+    (
+        "progress_ends_at_its_total",
+        Recipe(method="kahan_li8", bodies=5, forces=(), members=3, own=("mass",), own_massless=True, steps=8),
+    ),
+    # Far from the origin, gravity and a field: rounded coordinates kept the adaptive method from its tolerance.
+    (
+        "two_methods_agree",
+        Recipe(
+            bodies=38,
+            forces=(("UniformField", 32), ("Gravity", 13)),
+            planar=True,
+            at_origin=True,
+            offset=9,
+            members=5,
+            steps=8,
+            outputs=1,
+        ),
+    ),
+]

@@ -1,0 +1,127 @@
+"""Running a case, here or in a process of another SIMD tier, and what came of it as bytes."""
+
+from __future__ import annotations
+
+import os
+import pickle
+import subprocess
+import sys
+import warnings
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+import visviva as vv
+from visviva import _core
+
+TIERS: list[str] = [tier for tier in _core.info()["simd_available"] if tier != _core.info()["simd"]]
+Bits = dict[str, bytes | str]
+
+
+def _bits(**arrays: Any) -> Bits:
+    return {
+        name: repr(np.shape(array)).encode() + np.ascontiguousarray(array).tobytes() for name, array in arrays.items()
+    }
+
+
+def execute(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> tuple[Any, str]:
+    """The result, also of a run that failed on the way, and how it ended: "" or the name of the refusal."""
+    with warnings.catch_warnings(action="ignore"):
+        try:
+            return start.run(t=list(t), **how), ""
+        except (vv.CloseEncounter, vv.ConvergenceError) as error:
+            return error.trajectory, type(error).__name__
+        except vv.InvalidInput as error:
+            return None, f"refused {error.argument}"
+
+
+def outcome(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> Bits:
+    """Everything that a run gives, as bytes: columns, status, where it ended and what it cost."""
+    result, ended = execute(start, t, how)
+    if result is None:
+        return {"ended": ended}
+    columns = {name: getattr(result, name) for name in result.recorded}
+    found = _bits(t=result.t, **columns)
+    if isinstance(start, vv.Scene):
+        found |= {"ended": ended, **_bits(status=np.int8(result.status)), **final(result)}
+        found["steps"] = f"{result.stats.steps} {result.stats.rejected} {result.stats.evaluations}"
+    else:
+        found |= _bits(status=result.status, **result.per_trajectory)
+        found["ended"] = ended
+    return found
+
+
+def final(result: Any) -> Bits:
+    end = result.final
+    return {
+        f"final {name}": value
+        for name, value in _bits(t0=end.t0, position=end.particles.position, velocity=end.particles.velocity).items()
+    }
+
+
+def differences(first: Bits, second: Bits, *, of: tuple[str, ...] | None = None) -> list[str]:
+    """What is not the same in both."""
+    names = first.keys() | second.keys() if of is None else of
+    return sorted(name for name in names if first.get(name) != second.get(name))
+
+
+class Worker:
+    """A process of one tier that runs what it is sent."""
+
+    def __init__(self, tier: str) -> None:
+        command = [sys.executable, str(Path(__file__).resolve())]
+        environment = {**os.environ, "VISVIVA_SIMD": tier, "VISVIVA_THREADS": "1"}
+        self._process = subprocess.Popen(command, env=environment, stdin=subprocess.PIPE, stdout=subprocess.PIPE)
+
+    def outcome(self, start: Any, t: tuple[float, ...], how: dict[str, Any]) -> Bits:
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        pickle.dump((start, t, how), self._process.stdin)
+        self._process.stdin.flush()
+        answer = pickle.load(self._process.stdout)
+        if isinstance(answer, Exception):
+            raise answer
+        found: Bits = answer
+        return found
+
+    def close(self) -> None:
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        self._process.stdin.close()
+        self._process.wait()
+        self._process.stdout.close()
+
+
+_WORKERS: dict[str, Worker] = {}
+
+
+def worker(tier: str) -> Worker:
+    """The process of that tier, begun on first use."""
+    if tier not in _WORKERS:
+        _WORKERS[tier] = Worker(tier)
+    return _WORKERS[tier]
+
+
+def close_workers() -> None:
+    while _WORKERS:
+        _WORKERS.popitem()[1].close()
+
+
+def _serve() -> None:
+    answers = os.fdopen(os.dup(1), "wb")
+    while True:
+        try:
+            asked = pickle.load(sys.stdin.buffer)
+        except EOFError:
+            return
+        try:
+            answer: Any = outcome(*asked)
+        except Exception as error:  # told to the one who asked
+            answer = error
+        pickle.dump(answer, answers)
+        answers.flush()
+
+
+if __name__ == "__main__":
+    _serve()

@@ -1,0 +1,79 @@
+"""Features where they meet: laws without a reference, over scenes drawn from everything that is registered.
+
+The short profile, a few thousand scenes. The long one: ``python -m tests.combinations.search --scenes 100000``, or
+``pytest tests/combinations --hypothesis-profile=search``. What failed on the way is kept in ``kept.py``.
+"""
+
+import contextlib
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, given, settings
+
+sys.path.insert(0, str(Path(__file__).parent))
+from drawing import FORCES, METHODS, POTENTIALS, force
+from kept import KEPT
+from recipe import Recipe, Refused, recipes
+from running import close_workers
+from stated_laws import LAWS
+
+# Of each law; the search profile asks for more. 300 of each take about a minute and a half of one core.
+EXAMPLES = max(300, settings.default.max_examples if settings.default is not None else 0)
+
+
+@pytest.fixture(scope="module", autouse=True)
+def workers() -> Iterator[None]:
+    yield
+    close_workers()
+
+
+def judged(name: str, recipe: Recipe) -> None:
+    # A refusal by name, before anything ran, is judged by a law of its own.
+    with contextlib.suppress(Refused):
+        LAWS[name](recipe)
+
+
+@pytest.mark.parametrize("name", LAWS)
+@given(recipe=recipes())
+@settings(max_examples=EXAMPLES, suppress_health_check=list(HealthCheck))
+def test_law(name: str, recipe: Recipe) -> None:
+    judged(name, recipe)
+
+
+@pytest.mark.parametrize(("name", "recipe"), KEPT, ids=[f"{name}-{i}" for i, (name, _) in enumerate(KEPT)])
+def test_what_failed_on_the_way(name: str, recipe: Recipe) -> None:
+    judged(name, recipe)
+
+
+@pytest.mark.parametrize("tame", [True, False])
+@pytest.mark.parametrize("name", FORCES)
+def test_every_registered_force_is_drawn(name: str, tame: bool) -> None:
+    """A force whose parameters are of a kind that cannot be drawn fails here, by name."""
+    drawn = [force(name, seed, 9, tame=tame) for seed in range(20)]
+    assert len(set(map(repr, drawn))) > 10
+    assert {type(one).__name__ for one in drawn} == {name}
+
+
+def test_every_registered_potential_is_drawn() -> None:
+    drawn = [force(name, seed, 9, tame=True) for name in FORCES for seed in range(40 * len(POTENTIALS))]
+    used = {type(one.potential).__name__ for one in drawn if hasattr(one, "potential")}
+    assert used == set(POTENTIALS)
+
+
+def test_every_law_judges_and_every_method_is_judged() -> None:
+    """A law that refuses everything could not fail."""
+    judged_by: dict[str, set[str]] = {method: set() for method in METHODS}
+    for name, law in LAWS.items():
+        for method in METHODS:
+            try:
+                law(Recipe(method=method, bodies=4, massless=1, seed=5))
+            except Refused:
+                continue
+            except AssertionError:
+                pass  # test_law tells
+            judged_by[method].add(name)
+    assert set().union(*judged_by.values()) == LAWS.keys()
+    # Fixed steps have no longest step, others no node to stop at.
+    assert all(len(laws) >= len(LAWS) - 2 for laws in judged_by.values()), judged_by
