@@ -45,7 +45,7 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
             &mut dynamics,
             places.into_iter(),
             &mut ticker,
-            |index, state| {
+            |index, state, _| {
                 seen.push((index, state.clone()));
                 Ok(())
             },

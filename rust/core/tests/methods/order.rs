@@ -81,7 +81,7 @@ fn error_between_nodes(method: &'static Method, make: Make, t: f64, steps: usize
         &mut dynamics,
         places.into_iter(),
         &mut ticker,
-        |_, state| {
+        |_, state, _| {
             last = Some(state.clone());
             Ok(())
         },
@@ -160,7 +160,9 @@ fn a_multistep_method_refuses_a_force_that_looks_at_velocities() {
     let places = [Place { node: 20, past: None }].into_iter();
     let mut stepper = FixedStep::new(method, 0.125, &state).unwrap();
     let (taken, outcome) =
-        run(&mut stepper, 20, &mut state, &mut dynamics, places, &mut Ticker::quiet(&control), |_, _| Ok(()));
+        run(&mut stepper, 20, &mut state, &mut dynamics, places, &mut Ticker::quiet(&control), |_, _, _| {
+            Ok(())
+        });
     assert!(matches!(outcome, Err(Error::InvalidInput { .. })), "{outcome:?}");
     assert_eq!((taken, dynamics.evaluations), (0, 0));
 }
