@@ -23,7 +23,7 @@ from multistep import stormer
 from polish import Row, composition_residuals, polish
 
 mp.dps = 80
-INTEGRATORS = Path(__file__).resolve().parents[1] / "rust/core/src/integrators"
+INTEGRATORS = Path(__file__).resolve().parents[1] / "rust/core/src/ode/methods"
 BLOCK = re.compile(r"(// <coefficients>[^\n]*\n).*?(// </coefficients>)", re.DOTALL)
 
 Table = dict[str, "Row | list[Row]"]

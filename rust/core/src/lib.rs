@@ -6,10 +6,10 @@
 pub mod conservation;
 pub mod error;
 pub mod forces;
-pub mod integrators;
 pub mod memory;
 pub mod nbody;
 pub mod numerics;
+pub mod ode;
 pub mod parallel;
 pub mod potentials;
 pub mod registry;

@@ -1,6 +1,7 @@
 //! What the package offers, one line each: methods and potentials.
 
-use crate::integrators::{Method, dop853, kahan_li8, leapfrog, rk4, stormer13, yoshida4};
+use crate::ode::Method;
+use crate::ode::methods::{dop853, kahan_li8, leapfrog, rk4, stormer13, yoshida4};
 use crate::potentials::{Declaration, coulomb, lennard_jones, yukawa};
 
 /// Every integration method, in the order of the documentation.

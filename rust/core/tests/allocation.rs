@@ -7,15 +7,15 @@ mod support;
 
 use core::cell::Cell;
 use std::alloc::{GlobalAlloc, Layout, System};
-use support::{Each, Problem, Stepper, five_lanes, henon_heiles, three_bodies};
+use support::{Problem, five_lanes, fixed_stepper, henon_heiles, three_bodies};
 use visviva_core::forces::Dynamics;
 use visviva_core::forces::gravity::Tiles;
-use visviva_core::integrators::Scheme;
-use visviva_core::integrators::state::State;
-use visviva_core::integrators::step_control::Controlled;
-use visviva_core::numerics::element::{Element, Shape};
+use visviva_core::forces::gravity::closed::ClosedKernel;
+use visviva_core::numerics::element::Shape;
 use visviva_core::numerics::lanes::Lanes;
 use visviva_core::numerics::real::{Mask, Real};
+use visviva_core::ode::state::State;
+use visviva_core::ode::step_control::Controlled;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
@@ -47,7 +47,7 @@ fn allocations(work: impl FnOnce()) -> u64 {
     ALLOCATIONS.get() - before
 }
 
-fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
+fn fixed<S: ClosedKernel>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let Problem { state, mut dynamics, .. } = problem;
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
@@ -55,10 +55,10 @@ fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
         .iter()
         .map(|method| {
             let mut state = state.clone();
-            let mut stepper = Stepper::new(method, 1.0 / 64.0, &state);
+            let mut stepper = fixed_stepper(method, 1.0 / 64.0, &dynamics, &state);
             let count = allocations(|| {
-                for _ in 0..10 {
-                    stepper.step(&mut state, &mut dynamics, &mut ticker);
+                for node in 0..10 {
+                    assert_eq!(stepper.step(node, 1, &mut state, &mut dynamics, &mut ticker), Ok(1));
                 }
             });
             (method.name, count)
@@ -66,24 +66,27 @@ fn fixed<S: Element>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
         .collect()
 }
 
-fn adaptive<S: Controlled>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
+fn adaptive<S: Controlled + ClosedKernel>(problem: Problem<S>) -> Vec<(&'static str, u64)> {
     let Problem { mut state, mut dynamics, .. } = problem;
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
     let mut counts = Vec::new();
     for method in METHODS {
-        let Scheme::Embedded(embedded) = &method.scheme else { continue };
+        if !method.adaptive() {
+            continue;
+        }
         let mut between = state.clone();
-        let (mut engine, mut clock) = support::adaptive(embedded, &state, 1e-9, 1e3);
+        let (mut trial, mut clock, norm) =
+            support::adaptive(method, &dynamics, dynamics.shape, &state, 1e-9, 1e3);
         let all = S::Mask::splat(true);
-        engine.start(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+        trial.start(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
         let count = allocations(|| {
             for _ in 0..10 {
                 let outcome =
-                    engine.step(all, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
-                engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
-                engine.interpolate(&state, outcome.h, S::splat(0.5), &mut between);
-                engine.commit(outcome.accepted, &mut state);
+                    trial.attempt(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
+                trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
+                trial.at(&state, outcome.h, S::splat(0.5), &mut between);
+                trial.keep(outcome.accepted, &mut state);
             }
         });
         counts.push((method.name, count));
@@ -101,7 +104,7 @@ fn swarm() -> Problem<Lanes> {
     strength[2].0[4..].fill(0.0);
     Problem {
         dynamics: Dynamics::new(shape, vec![Box::new(Tiles::new(shape, strength, 20, 0.1, 1))]),
-        state: State::new(shape, &q, &v),
+        state: State::new(&q, &v),
         mass: Vec::new(),
     }
 }

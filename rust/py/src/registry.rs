@@ -14,7 +14,7 @@ use visviva_core::words::unknown;
 /// What every integration method declares about itself.
 #[pyfunction]
 pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |method: &&'static visviva_core::integrators::Method| {
+    let row = |method: &&'static visviva_core::ode::Method| {
         let dict = PyDict::new(py);
         dict.set_item("name", method.name)?;
         dict.set_item("summary", method.summary)?;

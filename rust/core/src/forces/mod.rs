@@ -10,25 +10,24 @@ pub mod gravity;
 pub mod uniform_field;
 
 use crate::error::Result;
-use crate::numerics::element::{Element, Nodes, Shape};
+use crate::numerics::element::{Element, Shape};
+use crate::ode::Method;
+use crate::ode::state::State;
+use crate::ode::stepper::Stepper;
+use crate::ode::system::{Form, Needs, System};
 use crate::parallel::Ticker;
+use gravity::FewBodies;
+use gravity::closed::ClosedKernel;
 
-/// Where the particles are and how they move.
+/// When it is, where the particles are and how they move.
 #[derive(Debug)]
 pub struct Phase<'a, S> {
+    /// The time since the start of the run, for a force that [needs](Force::needs) it; for another it may be any.
+    pub t: S,
     /// Coordinates.
     pub q: &'a [S],
-    /// Velocities, for a force that [needs](Force::needs_velocity) them; for another they may be of any time.
+    /// Velocities, for a force that needs them; for another they may be of any time.
     pub v: &'a [S],
-}
-
-/// Systems of bodies on which nothing acts but their own pulls.
-#[derive(Debug)]
-pub struct ClosedSystems<'a, S> {
-    /// How many, equally large, one after another in the rows of the state.
-    pub count: usize,
-    /// `G·m` of the bodies, system after system.
-    pub strength: &'a [S],
 }
 
 /// One force of a scene, ready to run.
@@ -45,21 +44,10 @@ pub trait Force<S: Element>: Send {
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
 
-    /// Whether it looks at velocities. If no force does, none may be there in the middle of a step.
-    fn needs_velocity(&self) -> bool {
-        false
+    /// What it looks at besides coordinates. What no force looks at may not be there in the middle of a step.
+    fn needs(&self) -> Needs {
+        Needs::default()
     }
-
-    /// The closed systems that the state consists of, if the force is what their bodies pull each other with and it
-    /// takes steps of a multistep method for them by itself.
-    fn closed_systems(&self) -> Option<ClosedSystems<'_, S>> {
-        None
-    }
-
-    /// Steps of a multistep method for its [closed systems](Self::closed_systems), in coordinates relative to the first body
-    /// of each: those of the bodies from the second on, system after system, the components of a body together. The
-    /// present accelerations are those of the last node after it.
-    fn multistep(&self, _: Nodes<'_, S>, _steps: u64) {}
 
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
     /// changes a state between evaluations must then be able to take that back.
@@ -68,63 +56,70 @@ pub trait Force<S: Element>: Send {
     }
 }
 
-/// All forces of a scene: the right-hand side of the equations of motion.
+/// All forces on the particles of a state: the right-hand side of their equations of motion.
 pub struct Dynamics<S: Element> {
     /// How the coordinates lie.
     pub shape: Shape,
     /// The forces, in the scene's order, which is the order of summation.
     forces: Vec<Box<dyn Force<S>>>,
-    /// Force evaluations so far.
-    pub evaluations: u64,
-    needs_velocity: bool,
+    /// The only force, if the bodies it acts between are all there are.
+    closed: Option<FewBodies<S>>,
+    needs: Needs,
+    evaluations: u64,
 }
 
 impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
     pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
-        let needs_velocity = forces.iter().any(|force| force.needs_velocity());
-        Self { shape, forces, evaluations: 0, needs_velocity }
+        let needs = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+        Self { shape, forces, closed: None, needs, evaluations: 0 }
+    }
+}
+
+impl<S: ClosedKernel> Dynamics<S>
+where
+    FewBodies<S>: Force<S>,
+{
+    /// Of systems of bodies on which nothing acts but their own pulls.
+    pub fn closed(few: FewBodies<S>) -> Self {
+        Self { closed: Some(few.clone()), ..Self::new(few.shape(), vec![Box::new(few)]) }
+    }
+}
+
+impl<S: ClosedKernel> System<S> for Dynamics<S> {
+    fn form(&self) -> Form {
+        Form::SecondOrder(self.shape.len())
     }
 
-    /// Whether any force looks at velocities.
-    pub fn needs_velocity(&self) -> bool {
-        self.needs_velocity
+    fn needs(&self) -> Needs {
+        self.needs
     }
 
-    /// Whether any force may be interrupted in the middle of an evaluation.
-    pub fn stops_midway(&self) -> bool {
+    fn evaluations(&self) -> u64 {
+        self.evaluations
+    }
+
+    fn count(&mut self, evaluations: u64) {
+        self.evaluations += evaluations;
+    }
+
+    fn stops_midway(&self) -> bool {
         self.forces.iter().any(|force| force.stops_midway())
     }
 
-    /// The closed systems that the state consists of, if [`multistep`](Self::multistep) can be asked for.
-    pub fn closed_systems(&self) -> Option<ClosedSystems<'_, S>> {
-        match &self.forces[..] {
-            [force] => force.closed_systems(),
-            _ => None,
-        }
-    }
-
-    /// See [`Force::multistep`].
-    pub fn multistep(&mut self, nodes: Nodes<'_, S>, steps: u64) {
-        if let [force] = &self.forces[..] {
-            self.evaluations += steps;
-            force.multistep(nodes, steps);
-        }
-    }
-
-    /// The acceleration of every particle.
-    ///
-    /// # Errors
-    /// As [`Force::apply`].
-    pub fn acceleration(&mut self, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn acceleration(&mut self, t: S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         if self.forces.is_empty() {
             a.fill(S::zero());
         }
-        let phase = Phase { q, v };
+        let phase = Phase { t, q, v };
         for (index, force) in self.forces.iter_mut().enumerate() {
             force.apply(&phase, a, index == 0, ticker)?;
         }
         Ok(())
+    }
+
+    fn special(&self, method: &'static Method, h: f64, state: &State<S>) -> Option<Box<dyn Stepper<S>>> {
+        self.closed.as_ref().and_then(|few| few.closed_stepper(method, h, self, state))
     }
 }

@@ -137,15 +137,16 @@ pub trait Element: InverseCube {
         stages: Weighted<'_, Self>,
     );
     /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the
-    /// rows (particles), for two sets of weights at once; each row is a vector of `shape.components` components.
+    /// rows, for two sets of weights at once; each row is a vector of `shape.components` components, one to four.
+    /// The derivatives `k` come with the numbers from one stage to the next.
     fn largest_errors(
         shape: Shape,
         y: &[Self],
-        reference: &[Self],
+        reference: &[Self; 4],
         tolerance: (&Self, &Self),
         h: &Self,
         terms: &[PairTerm<Self>],
-        k: &[Self],
+        k: (&[Self], usize),
     ) -> [Self; 2];
     /// `d += h²·a + Σ weight·∇²a`, the oldest first, then `q += d`, both compensated: a step of a multistep method.
     /// The present accelerations join the past.
@@ -230,11 +231,11 @@ macro_rules! plain_element {
             fn largest_errors(
                 shape: Shape,
                 y: &[Self],
-                reference: &[Self],
+                reference: &[Self; 4],
                 tolerance: (&Self, &Self),
                 h: &Self,
                 terms: &[PairTerm<Self>],
-                k: &[Self],
+                k: (&[Self], usize),
             ) -> [Self; 2] {
                 loops::largest_errors(shape, y, reference, (*tolerance.0, *tolerance.1), *h, terms, k)
             }

@@ -9,6 +9,7 @@ use crate::error::Result;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
+use crate::ode::system::System;
 use crate::parallel::Ticker;
 
 /// The acceleration of every particle of a scene of one copy.
@@ -42,7 +43,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
             prepared.write(&mut state, lane);
         }
         let mut a = vec![Lanes::zero(); shape.len()];
-        dynamics.acceleration(state.q(), state.v(), &mut a, ticker)?;
+        dynamics.acceleration(Lanes::zero(), state.q(), state.v(), &mut a, ticker)?;
         for slot in prepared.unit.recorded.clone() {
             let (row, lane) = prepared.locate(slot, 0);
             for c in 0..shape.components {

@@ -11,12 +11,11 @@ pub use report::{Counts, Ending, Report};
 
 use super::Scene;
 use super::columns::Writer;
-use super::layout::Layout;
 use super::plan::Plan;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
-use crate::integrators::Scheme;
 use crate::numerics::lanes::WIDTH;
+use crate::ode::Scheme;
 use crate::parallel::{Ticker, for_chunks};
 
 /// Units that one thread takes at a time: enough that lanes seldom run dry, few enough for balance.
@@ -86,14 +85,12 @@ pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -
     let per_chunk =
         if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.layout.in_lockstep()) } else { per_chunk };
     let mut runs: Vec<&[Unit]> = Vec::new();
-    for run in units.chunk_by(|a, b| {
-        job.plan.layout == Layout::Packed || (a.active, a.bodies.len()) == (b.active, b.bodies.len())
-    }) {
+    for run in units.chunk_by(|a, b| (a.active, a.bodies.len()) == (b.active, b.bodies.len())) {
         runs.extend(run.chunks(per_chunk));
     }
     ticker.control().add_total(job.total_progress(&runs));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
-        Scheme::Embedded(method) => adaptive::run(job, method, runs[chunk], inside, ticker),
+        Scheme::Embedded(_) => adaptive::run(job, runs[chunk], inside, ticker),
         _ => fixed::run(job, runs[chunk], inside, ticker),
     })?;
     Ok(reports.into_iter().flatten().collect())

@@ -3,9 +3,7 @@
 //! Packed, the lanes are the bodies of one unit; batched, they are eight units. The same integrators run
 //! both: all that differs is how many units a state holds, and whether the lanes share a step.
 
-use crate::integrators::adaptive::Reduce;
-use crate::numerics::lanes::{Bits, Lanes, WIDTH};
-use crate::numerics::real::Real;
+use crate::numerics::lanes::{Bits, WIDTH};
 
 /// How units lie in lanes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,20 +37,6 @@ impl Layout {
         match self {
             Self::Packed => Bits(0xff),
             Self::Batched => Bits(1 << lane),
-        }
-    }
-}
-
-impl Reduce<Lanes> for Layout {
-    fn largest(&self, value: Lanes) -> Lanes {
-        match self {
-            Self::Batched => value,
-            Self::Packed => {
-                let [a, b, c, d, e, f, g, h] = value.0;
-                let larger = |x: f64, y: f64| if x > y { x } else { y };
-                let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
-                Lanes::splat(larger(low, high))
-            }
         }
     }
 }

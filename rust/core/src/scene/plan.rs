@@ -10,8 +10,9 @@ use super::request::{Checked, Request};
 use super::unit::Unit;
 use super::{ForceSpec, Scene};
 use crate::error::Result;
-use crate::forces::gravity::{CLOSED_MAX, RING_MAX};
-use crate::integrators::{Method, Scheme};
+use crate::forces::gravity::RING_MAX;
+use crate::forces::gravity::closed::serves;
+use crate::ode::Method;
 use core::ops::Range;
 use std::sync::Arc;
 
@@ -105,9 +106,7 @@ impl Plan {
         let closed =
             !forces.is_empty() && forces.iter().all(|force| matches!(force, ForceSpec::Gravity { .. }));
         let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
-        let relative = matches!(method.scheme, Scheme::Multistep(_))
-            && closed
-            && (2..=CLOSED_MAX).contains(&active.len());
+        let relative = closed && forces.len() == 1 && serves(method, active.len());
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = gravity.is_none() || relative || (scene.copies > 1 && scene.particles <= RING_MAX);
         let layout = if batched { Layout::Batched } else { Layout::Packed };

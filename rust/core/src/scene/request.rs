@@ -3,7 +3,7 @@
 use super::Scene;
 use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
-use crate::integrators::Method;
+use crate::ode::Method;
 use crate::registry;
 use crate::words::{number, unknown};
 

@@ -1,30 +1,30 @@
 //! Runs that choose their own steps: tolerance, continuous extension, and the span they keep to.
 
-use super::support::{Each, Problem, adaptive, distance};
+use super::support::{Problem, adaptive, distance};
 use super::{Make, PROBLEMS, reference};
 use std::sync::{Arc, Mutex};
 use visviva_core::Result;
 use visviva_core::forces::{Dynamics, Force, Phase};
-use visviva_core::integrators::state::State;
-use visviva_core::integrators::{Embedded, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::Shape;
+use visviva_core::ode::Method;
+use visviva_core::ode::state::State;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
 /// The error of the continuous extension at the fraction `theta` of one step of `h`, from the start.
-fn dense_error(method: &Embedded, make: Make, h: f64, theta: f64) -> f64 {
+fn dense_error(method: &'static Method, make: Make, h: f64, theta: f64) -> f64 {
     let Problem { state, mut dynamics, .. } = make();
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
-    let (mut engine, mut clock) = adaptive(method, &state, 1e6, 1e3);
-    engine.start(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+    let (mut trial, mut clock, norm) = adaptive(method, &dynamics, dynamics.shape, &state, 1e6, 1e3);
+    trial.start(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
     clock.h = DoubleDouble::from(h);
-    let outcome = engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+    let outcome = trial.attempt(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
     assert!(outcome.accepted && !outcome.finished && !outcome.stuck);
-    engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
+    trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
     let mut between = state.clone();
-    engine.interpolate(&state, outcome.h, DoubleDouble::from(theta), &mut between);
+    trial.at(&state, outcome.h, DoubleDouble::from(theta), &mut between);
     distance(&between, &reference(make, theta * h, 64))
 }
 
@@ -32,11 +32,13 @@ fn dense_error(method: &Embedded, make: Make, h: f64, theta: f64) -> f64 {
 fn the_continuous_extension_has_its_declared_order() {
     for (name, make, _) in PROBLEMS {
         for method in METHODS {
-            let Scheme::Embedded(embedded) = &method.scheme else { continue };
+            if !method.adaptive() {
+                continue;
+            }
             for theta in [0.125, 0.3125, 0.5, 0.8125] {
                 let (coarse, fine) = (
-                    dense_error(embedded, make, 1.0 / 64.0, theta),
-                    dense_error(embedded, make, 1.0 / 128.0, theta),
+                    dense_error(method, make, 1.0 / 64.0, theta),
+                    dense_error(method, make, 1.0 / 128.0, theta),
                 );
                 // One step from exact data: the local error, one power more than the order.
                 let order = (coarse / fine).log2() - 1.0;
@@ -45,7 +47,7 @@ fn the_continuous_extension_has_its_declared_order() {
             }
             // At the ends it is the step itself.
             for theta in [0.0, 1.0] {
-                let error = dense_error(embedded, make, 1.0 / 128.0, theta);
+                let error = dense_error(method, make, 1.0 / 128.0, theta);
                 assert!(error < 1e-17, "{name}, {} at θ = {theta}: {error:e}", method.name);
             }
         }
@@ -57,20 +59,23 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
     for (name, make, t) in PROBLEMS {
         let exact = reference(make, t, 2048);
         for method in METHODS {
-            let Scheme::Embedded(embedded) = &method.scheme else { continue };
+            if !method.adaptive() {
+                continue;
+            }
             let mut before = f64::INFINITY;
             for exponent in [4, 6, 8, 10, 12, 14, 16] {
                 let rtol = 10f64.powi(-exponent);
                 let Problem { mut state, mut dynamics, .. } = make();
                 let control = Control::default();
                 let mut ticker = Ticker::quiet(&control);
-                let (mut engine, mut clock) = adaptive(embedded, &state, rtol, t);
-                engine.start(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+                let (mut trial, mut clock, norm) =
+                    adaptive(method, &dynamics, dynamics.shape, &state, rtol, t);
+                trial.start(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
                 let (mut steps, mut finished) = (0, false);
                 while !finished {
                     let outcome =
-                        engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
-                    engine.commit(outcome.accepted, &mut state);
+                        trial.attempt(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
+                    trial.keep(outcome.accepted, &mut state);
                     assert!(!outcome.stuck);
                     (finished, steps) = (outcome.finished, steps + 1);
                 }
@@ -99,22 +104,24 @@ impl Force<f64> for Watch {
 #[test]
 fn adaptive_methods_never_evaluate_beyond_the_span() {
     for method in METHODS {
-        let Scheme::Embedded(embedded) = &method.scheme else { continue };
+        if !method.adaptive() {
+            continue;
+        }
         for end in [0.01, 1.0, 7.3, -0.01, -7.3] {
             let seen = Arc::new(Mutex::new((0.0, 0.0)));
             let shape = Shape { rows: 1, components: 2 };
             let mut dynamics = Dynamics::new(shape, vec![Box::new(Watch(seen.clone()))]);
-            let mut state = State::new(shape, &[0.0, 1.0], &[1.0, 0.5]);
+            let mut state = State::new(&[0.0, 1.0], &[1.0, 0.5]);
             let control = Control::default();
             let mut ticker = Ticker::quiet(&control);
-            let (mut engine, mut clock) = adaptive(embedded, &state, 1e-8, end);
-            engine.start(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
+            let (mut trial, mut clock, norm) = adaptive(method, &dynamics, dynamics.shape, &state, 1e-8, end);
+            trial.start(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
             let mut finished = false;
             while !finished {
                 let outcome =
-                    engine.step(true, &state, &mut clock, &mut dynamics, &Each, &mut ticker).unwrap();
-                engine.prepare_dense(&state, outcome.h, &mut dynamics, &mut ticker).unwrap();
-                engine.commit(outcome.accepted, &mut state);
+                    trial.attempt(true, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
+                trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
+                trial.keep(outcome.accepted, &mut state);
                 finished = outcome.finished;
             }
             assert_eq!(clock.elapsed, end);

@@ -1,9 +1,9 @@
 //! Runs with a fixed step: their nodes, their limit, their round-off.
 
-use super::support::{Problem, Stepper, advance, distance, exactly, harmonic, three_bodies};
-use visviva_core::integrators::Method;
-use visviva_core::integrators::fixed::{FixedStep, Place, place, run};
+use super::support::{Problem, advance, distance, exactly, fixed_stepper, harmonic, three_bodies};
 use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::ode::Method;
+use visviva_core::ode::fixed::{Place, place, run};
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::registry::METHODS;
 
@@ -37,9 +37,9 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
         let mut seen = Vec::new();
         let places = [(0, None), (3, Some(0.01)), (3, Some(0.02)), (17, None), (25, None)]
             .map(|(node, past)| Place { node, past });
-        let mut stepper = FixedStep::new(method, h, &state).unwrap();
+        let mut stepper = fixed_stepper(method, h, &dynamics, &state);
         let (taken, outcome) = run(
-            &mut stepper,
+            &mut *stepper,
             20,
             &mut state,
             &mut dynamics,
@@ -73,14 +73,14 @@ fn round_off(method: &'static Method, compensated: bool) -> f64 {
     let Problem { mut state, mut dynamics, .. } = harmonic::<f64>();
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
-    let mut stepper = Stepper::new(method, h, &state);
-    for _ in 0..steps {
-        stepper.step(&mut state, &mut dynamics, &mut ticker);
+    let mut stepper = fixed_stepper(method, h, &dynamics, &state);
+    for node in 0..steps as u64 {
+        assert_eq!(stepper.step(node, 1, &mut state, &mut dynamics, &mut ticker), Ok(1));
         if !compensated {
             state.all_mut().1.fill(0.0);
         }
     }
-    stepper.complete(&mut state);
+    stepper.settle(&mut state);
     distance(&exactly(&state), &exact)
 }
 

@@ -1,7 +1,7 @@
 //! Textbook cases of single methods.
 
 use super::support::{Problem, advance, harmonic};
-use visviva_core::integrators::Scheme;
+use visviva_core::ode::Scheme;
 use visviva_core::registry::METHODS;
 
 fn golden(id: &str) -> serde_json::Value {

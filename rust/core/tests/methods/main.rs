@@ -14,8 +14,8 @@ mod order;
 mod structure;
 
 use support::{Problem, advance, henon_heiles, three_bodies};
-use visviva_core::integrators::state::State;
 use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::ode::state::State;
 use visviva_core::registry::METHODS;
 
 type Make = fn() -> Problem<DoubleDouble>;

@@ -2,8 +2,8 @@
 
 use super::support::{Problem, advance, bodies, distance, exactly, henon_heiles, momenta};
 use super::{Make, PROBLEMS};
-use visviva_core::integrators::{Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
+use visviva_core::ode::{Method, Scheme};
 use visviva_core::registry::METHODS;
 
 /// `max |Mᵀ J M − J|` of one step of `h`, J weighted by the masses; M by central differences.

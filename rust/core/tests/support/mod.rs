@@ -2,17 +2,20 @@
 #![allow(dead_code, missing_docs, unreachable_pub, reason = "every test binary takes what it needs")]
 
 use visviva_core::Result;
+use visviva_core::forces::gravity::closed::ClosedKernel;
 use visviva_core::forces::gravity::{FewBodies, Ring};
 use visviva_core::forces::{Dynamics, Force, Phase};
-use visviva_core::integrators::adaptive::{Adaptive, Reduce, Reference, Tolerance};
-use visviva_core::integrators::fixed::FixedStep;
-use visviva_core::integrators::runge_kutta::RungeKuttaStep;
-use visviva_core::integrators::state::State;
-use visviva_core::integrators::step_control::{Clock, Controlled};
-use visviva_core::integrators::{Embedded, Method, Scheme};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::{Element, Shape};
 use visviva_core::numerics::lanes::Lanes;
+use visviva_core::ode::norm::Norm;
+use visviva_core::ode::runge_kutta::RungeKuttaStep;
+use visviva_core::ode::state::State;
+use visviva_core::ode::step_control::{Clock, Controlled};
+use visviva_core::ode::stepper::{Stepper, stepper};
+use visviva_core::ode::system::System;
+use visviva_core::ode::trial::{Trial, trial};
+use visviva_core::ode::{Method, Scheme};
 use visviva_core::parallel::{Control, Ticker};
 
 /// Hénon and Heiles's potential: the textbook nonlinear oscillator, polynomial and so the same for any scalar.
@@ -57,7 +60,7 @@ pub fn henon_heiles<S: Element>() -> Problem<S> {
     let shape = Shape { rows: 1, components: 2 };
     Problem {
         dynamics: Dynamics::new(shape, vec![Box::new(HenonHeiles)]),
-        state: State::new(shape, &splat(&[0.12, 0.3]), &splat(&[0.35, -0.2])),
+        state: State::new(&splat(&[0.12, 0.3]), &splat(&[0.35, -0.2])),
         mass: vec![1.0; 2],
     }
 }
@@ -66,13 +69,13 @@ pub fn harmonic<S: Element>() -> Problem<S> {
     let shape = Shape { rows: 1, components: 1 };
     Problem {
         dynamics: Dynamics::new(shape, vec![Box::new(Harmonic)]),
-        state: State::new(shape, &splat(&[1.0]), &splat(&[0.0])),
+        state: State::new(&splat(&[1.0]), &splat(&[0.0])),
         mass: vec![1.0],
     }
 }
 
 /// Three unequal bodies in space, bound, with no symmetry and no close encounter for some time units.
-pub fn three_bodies<S: Element>() -> Problem<S>
+pub fn three_bodies<S: ClosedKernel>() -> Problem<S>
 where
     FewBodies<S>: Force<S>,
 {
@@ -84,73 +87,48 @@ where
 }
 
 /// Bodies under their mutual gravity, G = 1.
-pub fn bodies<S: Element>(mass: &[f64], q: &[f64], v: &[f64], softening: f64) -> Problem<S>
+pub fn bodies<S: ClosedKernel>(mass: &[f64], q: &[f64], v: &[f64], softening: f64) -> Problem<S>
 where
     FewBodies<S>: Force<S>,
 {
     let shape = Shape { rows: mass.len(), components: 3 };
     let strength = splat(mass);
     Problem {
-        dynamics: Dynamics::new(shape, vec![Box::new(FewBodies::new(shape, 1, strength, softening))]),
-        state: State::new(shape, &splat(q), &splat(v)),
+        dynamics: Dynamics::closed(FewBodies::new(shape, 1, strength, softening)),
+        state: State::new(&splat(q), &splat(v)),
         mass: mass.iter().copied().cycle().take(shape.len()).collect(),
     }
 }
 
 /// A method at a fixed step; of a method with step control, its tableau.
-pub enum Stepper<S: Element> {
-    Fixed(FixedStep<S>),
-    Tableau(RungeKuttaStep<S>),
-}
-
-impl<S: Element> Stepper<S> {
-    pub fn new(method: &'static Method, h: f64, state: &State<S>) -> Self {
-        match &method.scheme {
-            Scheme::Embedded(embedded) => {
-                Self::Tableau(RungeKuttaStep::new(&embedded.tableau, S::splat(h), state))
-            }
-            _ => Self::Fixed(FixedStep::new(method, h, state).unwrap()),
-        }
-    }
-
-    pub fn step(&mut self, state: &mut State<S>, dynamics: &mut Dynamics<S>, ticker: &mut Ticker<'_>) {
-        match self {
-            Self::Fixed(stepper) => {
-                let _ = stepper.step(state, dynamics, ticker, 1).unwrap();
-            }
-            Self::Tableau(stepper) => stepper.step(state, dynamics, ticker).unwrap(),
-        }
-    }
-
-    /// To be called before the velocities of the state are looked at.
-    pub fn complete(&mut self, state: &mut State<S>) {
-        if let Self::Fixed(stepper) = self {
-            stepper.complete(state);
-        }
-    }
-}
-
-/// Each lane is a trajectory of its own.
-pub struct Each;
-
-impl<S: Element> Reduce<S> for Each {
-    fn largest(&self, value: S) -> S {
-        value
+pub fn fixed_stepper<S: Element>(
+    method: &'static Method,
+    h: f64,
+    system: &dyn System<S>,
+    state: &State<S>,
+) -> Box<dyn Stepper<S>> {
+    match &method.scheme {
+        Scheme::Embedded(embedded) => Box::new(RungeKuttaStep::new(&embedded.tableau, h, system, state)),
+        _ => stepper(method, h, system, state).unwrap(),
     }
 }
 
 /// A method with step control and its clock, for a run from `state` to `end`; errors are measured from zero,
 /// against `rtol` both relative and absolute.
 pub fn adaptive<S: Controlled>(
-    method: &Embedded,
+    method: &'static Method,
+    system: &dyn System<S>,
+    shape: Shape,
     state: &State<S>,
     rtol: f64,
     end: f64,
-) -> (Adaptive<S>, Clock<S>) {
-    let rtol = S::splat(rtol);
-    let tolerance = Tolerance { rtol, atol_q: rtol, atol_v: rtol };
-    let zero = Reference { position: [S::zero(); 3], velocity: [S::zero(); 3] };
-    (Adaptive::new(method, state, tolerance, zero, f64::INFINITY), Clock::new(S::splat(end)))
+) -> (Box<dyn Trial<S>>, Clock<S>, Norm<S>) {
+    let mut norm = Norm::new(shape, system.form(), S::splat(rtol), false);
+    for block in &mut norm.blocks {
+        block.atol = S::splat(rtol);
+    }
+    let unlimited = S::splat(f64::INFINITY);
+    (trial(method, system, state, unlimited).unwrap(), Clock::new(S::splat(end)), norm)
 }
 
 /// Takes `steps` steps of `h`.
@@ -159,15 +137,15 @@ pub fn advance<S: Element>(
     h: f64,
     steps: usize,
     state: &mut State<S>,
-    dynamics: &mut Dynamics<S>,
+    system: &mut dyn System<S>,
 ) {
     let control = Control::default();
     let mut ticker = Ticker::quiet(&control);
-    let mut stepper = Stepper::new(method, h, state);
-    for _ in 0..steps {
-        stepper.step(state, dynamics, &mut ticker);
+    let mut stepper = fixed_stepper(method, h, system, state);
+    for node in 0..steps as u64 {
+        assert_eq!(stepper.step(node, 1, state, system, &mut ticker), Ok(1));
     }
-    stepper.complete(state);
+    stepper.settle(state);
 }
 
 /// Largest difference of any coordinate or velocity, compensations included.
@@ -181,12 +159,12 @@ pub fn exactly(state: &State<f64>) -> State<DoubleDouble> {
     let pair = |x: &[f64], rest: &[f64]| -> Vec<DoubleDouble> {
         x.iter().zip(rest).map(|(&x, &rest)| DoubleDouble::sum(x, rest)).collect()
     };
-    State::new(state.shape, &pair(state.q(), state.q_error()), &pair(state.v(), state.v_error()))
+    State::new(&pair(state.q(), state.q_compensation()), &pair(state.v(), state.v_compensation()))
 }
 
 /// `Σ m v` and `Σ m x × v` of bodies in component-major layout, summed in double-double.
 pub fn momenta(state: &State<DoubleDouble>, mass: &[f64]) -> [DoubleDouble; 6] {
-    let rows = state.shape.rows;
+    let rows = mass.len() / 3;
     let zero = DoubleDouble::default();
     let mut sums = [zero; 6];
     let get = |values: &[DoubleDouble], rest: &[DoubleDouble], c: usize, i: usize| {
@@ -194,8 +172,8 @@ pub fn momenta(state: &State<DoubleDouble>, mass: &[f64]) -> [DoubleDouble; 6] {
     };
     for i in 0..rows {
         let m = DoubleDouble::from(mass[i]);
-        let x: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.q(), state.q_error(), c, i));
-        let v: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.v(), state.v_error(), c, i));
+        let x: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.q(), state.q_compensation(), c, i));
+        let v: [DoubleDouble; 3] = core::array::from_fn(|c| get(state.v(), state.v_compensation(), c, i));
         for c in 0..3 {
             let (d, e) = ((c + 1) % 3, (c + 2) % 3);
             sums[c] += m * v[c];
@@ -219,7 +197,7 @@ pub fn five_lanes() -> Problem<Lanes> {
             shape,
             vec![Box::new(Ring::new(shape, vec![1.0, 0.7, 0.4, 0.01, 1e-6], 0.0))],
         ),
-        state: State::new(shape, &q.map(lanes), &still),
+        state: State::new(&q.map(lanes), &still),
         mass: vec![],
     }
 }

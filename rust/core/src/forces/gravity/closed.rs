@@ -5,21 +5,22 @@
 //! are weighed while they are in registers.
 
 use super::few::sums;
+use super::relative::Relative;
 use super::{CLOSED_MAX, FewBodies};
-use crate::forces::ClosedSystems;
+use crate::error::Result;
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::batch::view_nodes;
 use crate::numerics::element::multistep::step_group;
 use crate::numerics::element::{Element, Nodes, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
+use crate::ode::multistep::{MultistepStep, Past};
+use crate::ode::state::State;
+use crate::ode::stepper::Stepper;
+use crate::ode::system::System;
+use crate::ode::{Method, Scheme};
+use crate::parallel::Ticker;
 use crate::tiered;
-
-/// The systems, if they are small enough and there are no massless bodies.
-pub(super) fn systems<S: Element>(few: &FewBodies<S>) -> Option<ClosedSystems<'_, S>> {
-    let massive = few.strength.len() / few.systems;
-    (massive == few.bodies() && (2..=CLOSED_MAX).contains(&massive))
-        .then_some(ClosedSystems { count: few.systems, strength: &few.strength })
-}
 
 /// Accelerations relative to the first of `N` bodies, from coordinates relative to it: `G` numbers of the others.
 #[inline(always)]
@@ -123,11 +124,124 @@ fn lanes_kernel<V: Vector8 + InverseCube>(few: &FewBodies<Lanes>, nodes: Nodes<'
 }
 
 tiered! {
-    /// [`Force::multistep`](crate::forces::Force::multistep) for trajectories in lanes.
-    pub(super) fn lanes_multistep[][](few: &FewBodies<Lanes>, nodes: Nodes<'_, Lanes>, steps: u64) = lanes_kernel;
+    fn lanes_steps[][](few: &FewBodies<Lanes>, nodes: Nodes<'_, Lanes>, steps: u64) = lanes_kernel;
 }
 
-/// As [`lanes_multistep`], for one trajectory.
-pub(super) fn multistep<S: Element>(few: &FewBodies<S>, nodes: Nodes<'_, S>, steps: u64) {
+fn plain_steps<S: Element>(few: &FewBodies<S>, nodes: Nodes<'_, S>, steps: u64) {
     select_kernel(few.bodies(), few.shape, &few.strength, few.softening2, nodes, steps);
+}
+
+/// Scalars for which closed systems have a kernel.
+pub trait ClosedKernel: Element {
+    /// Steps of a multistep method, in coordinates relative to the first body of each system: those of the bodies from
+    /// the second on, system after system, the components of a body together. The present accelerations are those of
+    /// the last node after it.
+    fn steps(few: &FewBodies<Self>, nodes: Nodes<'_, Self>, steps: u64);
+}
+
+macro_rules! closed_kernel {
+    ($($type:ty: $steps:ident),+) => {$(
+        impl ClosedKernel for $type {
+            fn steps(few: &FewBodies<Self>, nodes: Nodes<'_, Self>, steps: u64) {
+                $steps(few, nodes, steps);
+            }
+        }
+    )+};
+}
+closed_kernel!(Lanes: lanes_steps, f64: plain_steps, DoubleDouble: plain_steps);
+
+/// Whether closed systems of so many bodies, none of them massless, have a kernel for the method.
+pub fn serves(method: &Method, massive: usize) -> bool {
+    matches!(method.scheme, Scheme::Multistep(_)) && (2..=CLOSED_MAX).contains(&massive)
+}
+
+/// A multistep method for closed systems: once it has started, the kernel takes the steps.
+#[derive(Debug)]
+pub(super) struct ClosedStep<S> {
+    few: FewBodies<S>,
+    general: MultistepStep<S>,
+    /// Other coordinates than those of the state, once it has started, and their past.
+    relative: Option<(Relative<S>, Past<S>)>,
+    /// Room for velocities in them.
+    velocity: Vec<S>,
+    /// Whether the state belongs to the present node.
+    settled: bool,
+}
+
+impl<S: ClosedKernel> ClosedStep<S> {
+    pub(super) fn new(few: FewBodies<S>, general: MultistepStep<S>) -> Self {
+        Self { few, general, relative: None, velocity: Vec::new(), settled: true }
+    }
+}
+
+impl<S: ClosedKernel> Stepper<S> for ClosedStep<S> {
+    fn restart(&mut self) {
+        self.general.restart();
+        self.relative = None;
+        self.settled = true;
+    }
+
+    fn step(
+        &mut self,
+        node: u64,
+        at_most: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<u64> {
+        if let Some((relative, past)) = &mut self.relative {
+            self.settled = false;
+            S::steps(&self.few, past.nodes(relative.coordinates_mut(), self.general.weights()), at_most);
+            system.count(at_most);
+            relative.pass(at_most);
+            past.pass(at_most);
+            return Ok(at_most);
+        }
+        let steps = self.general.step(node, at_most, state, system, ticker)?;
+        if !self.general.starting() {
+            let relative = Relative::new(&self.few, self.general.weights().h, state);
+            let (v, v_error) = relative.of_compensated(state.velocity());
+            let mut past = self.general.past().map(v.len(), |a, out| relative.of(a, out));
+            past.start((&v, &v_error), self.general.weights());
+            self.relative = Some((relative, past));
+        }
+        Ok(steps)
+    }
+
+    fn settle(&mut self, state: &mut State<S>) {
+        let (Some((relative, past)), false) = (&mut self.relative, self.settled) else { return };
+        self.velocity.resize(past.d.len(), S::zero());
+        past.velocity(&mut self.velocity, self.general.weights());
+        relative.write(state, &self.velocity);
+        self.settled = true;
+    }
+
+    fn between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.general.between(node, past, state, system, ticker)
+    }
+}
+
+impl<S: ClosedKernel> FewBodies<S> {
+    /// What takes steps `h` of the method for systems on which nothing else acts, if it is one that they have a kernel for.
+    pub fn closed_stepper(
+        &self,
+        method: &'static Method,
+        h: f64,
+        system: &dyn System<S>,
+        state: &State<S>,
+    ) -> Option<Box<dyn Stepper<S>>> {
+        let Scheme::Multistep(table) = &method.scheme else { return None };
+        let massive = self.strength.len() / self.systems;
+        if massive != self.bodies() || !serves(method, massive) {
+            return None;
+        }
+        Some(Box::new(ClosedStep::new(self.clone(), MultistepStep::new(table, h, system, state))))
+    }
 }

@@ -5,13 +5,12 @@
 //! systems, one after another in its rows: each pair waits long for its weight, and another system's pairs
 //! can be weighed meanwhile.
 
-use super::closed;
 use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
-use crate::forces::{ClosedSystems, Force, Phase};
+use crate::forces::{Force, Phase};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Nodes, Shape};
+use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::real::Real;
@@ -19,7 +18,7 @@ use crate::parallel::Ticker;
 use crate::tiered;
 
 /// Gravity among the massive bodies of each system and on the massless ones after them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub struct FewBodies<S> {
     pub(super) shape: Shape,
     pub(super) systems: usize,
@@ -33,6 +32,10 @@ impl<S: Element> FewBodies<S> {
     /// first in its rows.
     pub fn new(shape: Shape, systems: usize, strength: Vec<S>, softening: f64) -> Self {
         Self { shape, systems, strength, softening2: softening * softening }
+    }
+    /// How their coordinates lie.
+    pub fn shape(&self) -> Shape {
+        self.shape
     }
     /// Bodies of each system.
     pub(super) fn bodies(&self) -> usize {
@@ -266,12 +269,6 @@ impl Force<Lanes> for FewBodies<Lanes> {
         lanes_tier(self, phase.q, a, first);
         Ok(())
     }
-    fn closed_systems(&self) -> Option<ClosedSystems<'_, Lanes>> {
-        closed::systems(self)
-    }
-    fn multistep(&self, nodes: Nodes<'_, Lanes>, steps: u64) {
-        closed::lanes_multistep(self, nodes, steps);
-    }
 }
 
 macro_rules! plain_force {
@@ -293,12 +290,6 @@ macro_rules! plain_force {
                 };
                 select_kernel::<$type, false>(&systems, a, first);
                 Ok(())
-            }
-            fn closed_systems(&self) -> Option<ClosedSystems<'_, $type>> {
-                closed::systems(self)
-            }
-            fn multistep(&self, nodes: Nodes<'_, $type>, steps: u64) {
-                closed::multistep(self, nodes, steps);
             }
         }
     };

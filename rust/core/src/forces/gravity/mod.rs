@@ -11,11 +11,12 @@
 //!
 //! A massless body exerts nothing, so pairs of them are never formed.
 
-mod closed;
+pub mod closed;
 pub mod energy;
 pub mod few;
 mod pair;
 mod passive;
+mod relative;
 pub mod ring;
 pub mod tiles;
 

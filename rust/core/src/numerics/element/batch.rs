@@ -111,20 +111,20 @@ fn combine_velocity_compensated_lanes<V: Vector8>(
 fn largest_errors_lanes<V: Vector8 + InverseCube>(
     shape: Shape,
     y: &[Lanes],
-    reference: &[Lanes],
+    reference: &[Lanes; 4],
     tolerance: (&Lanes, &Lanes),
     h: &Lanes,
     terms: &[PairTerm<Lanes>],
-    k: &[Lanes],
+    k: (&[Lanes], usize),
 ) -> [Lanes; 2] {
     let [first, second] = loops::largest_errors::<V>(
         shape,
         V::view(y),
-        V::view(reference),
+        &reference.map(V::load),
         (V::load(*tolerance.0), V::load(*tolerance.1)),
         V::load(*h),
         view_pair_terms(terms),
-        V::view(k),
+        (V::view(k.0), k.1),
     );
     [first.store(), second.store()]
 }
@@ -213,7 +213,7 @@ tiered! {
     fn combine_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), q: (&[Lanes], &[Lanes]), slope: (&[Lanes], &Lanes), stages: Weighted<'_, Lanes>) = combine_compensated_lanes;
     fn combine_velocity_tier[][](out: &mut [Lanes], v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_lanes;
     fn combine_velocity_compensated_tier[][](out: (&mut [Lanes], &mut [Lanes]), v: (&[Lanes], &[Lanes]), stages: Weighted<'_, Lanes>) = combine_velocity_compensated_lanes;
-    fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes], tolerance: (&Lanes, &Lanes), h: &Lanes, terms: &[PairTerm<Lanes>], k: &[Lanes]) -> [Lanes; 2] = largest_errors_lanes;
+    fn largest_errors_tier[][](shape: Shape, y: &[Lanes], reference: &[Lanes; 4], tolerance: (&Lanes, &Lanes), h: &Lanes, terms: &[PairTerm<Lanes>], k: (&[Lanes], usize)) -> [Lanes; 2] = largest_errors_lanes;
 }
 
 impl Element for Lanes {
@@ -253,11 +253,11 @@ impl Element for Lanes {
     fn largest_errors(
         shape: Shape,
         y: &[Self],
-        reference: &[Self],
+        reference: &[Self; 4],
         tolerance: (&Self, &Self),
         h: &Self,
         terms: &[PairTerm<Self>],
-        k: &[Self],
+        k: (&[Self], usize),
     ) -> [Self; 2] {
         largest_errors_tier(shape, y, reference, tolerance, h, terms, k)
     }

@@ -148,16 +148,17 @@ const HUGE: f64 = 1e300;
 pub(super) fn largest_errors<S: InverseCube>(
     shape: Shape,
     y: &[S],
-    reference: &[S],
-    (atol, rtol): (S, S),
+    reference: &[S; 4],
+    tolerance: (S, S),
     h: S,
     terms: &[PairTerm<S>],
-    k: &[S],
+    k: (&[S], usize),
 ) -> [S; 2] {
-    if shape.components == 2 {
-        largest_vector_errors::<S, 2>(shape.rows, y, reference, (atol, rtol), h, terms, k)
-    } else {
-        largest_vector_errors::<S, 3>(shape.rows, y, reference, (atol, rtol), h, terms, k)
+    match shape.components {
+        1 => largest_vector_errors::<S, 1>(shape.rows, y, reference, tolerance, h, terms, k),
+        2 => largest_vector_errors::<S, 2>(shape.rows, y, reference, tolerance, h, terms, k),
+        3 => largest_vector_errors::<S, 3>(shape.rows, y, reference, tolerance, h, terms, k),
+        _ => largest_vector_errors::<S, 4>(shape.rows, y, reference, tolerance, h, terms, k),
     }
 }
 
@@ -166,11 +167,11 @@ pub(super) fn largest_errors<S: InverseCube>(
 fn largest_vector_errors<S: InverseCube, const C: usize>(
     rows: usize,
     y: &[S],
-    reference: &[S],
+    reference: &[S; 4],
     (atol, rtol): (S, S),
     h: S,
     terms: &[PairTerm<S>],
-    k: &[S],
+    (k, stride): (&[S], usize),
 ) -> [S; 2] {
     let mut largest = [S::zero(); 2];
     for row in 0..rows {
@@ -185,7 +186,7 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
         let inverse_scale = (scale * scale).rough_inverse_root();
         let mut sums = [[S::zero(); C]; 2];
         for &PairTerm { stage, weights } in terms {
-            let column = &k[stage * C * rows + row..][..(C - 1) * rows + 1];
+            let column = &k[stage * stride + row..][..(C - 1) * rows + 1];
             for c in 0..C {
                 let k = column[c * rows];
                 sums[0][c] = weights[0].multiply_add(k, sums[0][c]);

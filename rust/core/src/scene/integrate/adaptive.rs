@@ -13,17 +13,17 @@ use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
 use crate::forces::Dynamics;
-use crate::integrators::Embedded;
-use crate::integrators::adaptive::Adaptive;
-use crate::integrators::state::State;
-use crate::integrators::step_control::{Clock, Outcome};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
+use crate::ode::norm::Norm;
+use crate::ode::state::State;
+use crate::ode::step_control::{Clock, Outcome};
+use crate::ode::system::System;
+use crate::ode::trial::{Cost, Trial, trial};
 use crate::parallel::Ticker;
 use core::iter::Enumerate;
 use core::slice;
-use measure::Measure;
 
 /// Units of progress of a unit: thousandths of its time.
 pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
@@ -34,12 +34,11 @@ pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
 /// As [`run`](super::run).
 pub(super) fn run(
     job: &Job<'_>,
-    method: &Embedded,
     units: &[Unit],
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
-    let mut run = Run::new(job, method, units, threads);
+    let mut run = Run::new(job, units, threads)?;
     loop {
         let fresh = match run.take_up(ticker) {
             Ok(fresh) => fresh,
@@ -84,16 +83,17 @@ struct Run<'a> {
     state: State<Lanes>,
     /// A state between two steps.
     between: State<Lanes>,
+    /// The forces on the units that are in the lanes now.
     dynamics: Dynamics<Lanes>,
-    measure: Measure,
+    norm: Norm<Lanes>,
     clock: Clock<Lanes>,
-    engine: Adaptive<Lanes>,
-    /// Force evaluations of a step that is rejected; of one that is kept, one more.
-    evaluations: u64,
+    trial: Box<dyn Trial<Lanes>>,
+    cost: Cost,
 }
 
 impl<'a> Run<'a> {
-    fn new(job: &'a Job<'a>, method: &Embedded, units: &'a [Unit], threads: usize) -> Self {
+    /// For units of one make-up.
+    fn new(job: &'a Job<'a>, units: &'a [Unit], threads: usize) -> Result<Self> {
         let plan = job.plan;
         let elapsed = |&t: &f64| scale(t - job.scene.t0, -plan.units.time);
         let outputs: Vec<f64> = job.times.iter().map(elapsed).collect();
@@ -102,10 +102,10 @@ impl<'a> Run<'a> {
         for lane in 0..plan.layout.units() {
             first.write(&mut state, lane);
         }
-        let measure = Measure::new(job.rtol);
-        let (tolerance, reference) = measure.parts();
-        let max_step = scale(job.max_step, -plan.units.time);
-        Self {
+        let dynamics = unit::dynamics(plan, &[&first], threads);
+        let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
+        let trial = trial(plan.method, &dynamics, &state, max_step)?;
+        Ok(Self {
             job,
             units,
             threads,
@@ -113,15 +113,20 @@ impl<'a> Run<'a> {
             slots: [const { None }; WIDTH],
             reports: units.iter().map(|_| None).collect(),
             clock: Clock::new(Lanes::splat(outputs[outputs.len() - 1])),
-            engine: Adaptive::new(method, &state, tolerance, reference, max_step),
-            dynamics: unit::dynamics(plan, &[&first], threads),
+            cost: trial.cost(),
+            trial,
+            norm: Norm::new(
+                dynamics.shape,
+                dynamics.form(),
+                Lanes::splat(job.rtol),
+                plan.layout == Layout::Packed,
+            ),
+            dynamics,
             between: state.clone(),
-            evaluations: u64::from(method.tableau.b.len() as u32) - 1,
             outputs,
             first,
             state,
-            measure,
-        }
+        })
     }
 
     /// The end as elapsed time in the plan's units.
@@ -147,13 +152,12 @@ impl<'a> Run<'a> {
                 let unit = self.job.prepare(unit);
                 let mask = self.job.plan.layout.mask(lane);
                 unit.write(&mut self.state, lane);
-                self.measure.set(self.job, &unit, mask);
+                measure::set(&mut self.norm, self.job, &unit, mask);
                 let mut slot = Slot {
                     unit,
                     index,
                     next_output: 0,
-                    // The start of a unit costs two.
-                    counts: Counts { evaluations: 2, ..Counts::default() },
+                    counts: Counts { evaluations: self.cost.start, ..Counts::default() },
                     progress: 0,
                 };
                 self.record_start(&mut slot, lane, ticker)?;
@@ -185,7 +189,7 @@ impl<'a> Run<'a> {
                 return Err(error);
             }
         };
-        self.engine.commit(outcome.accepted, &mut self.state);
+        self.trial.keep(outcome.accepted, &mut self.state);
         for lane in 0..self.job.plan.layout.units() {
             self.settle(lane, &outcome, ticker);
         }
@@ -194,26 +198,21 @@ impl<'a> Run<'a> {
 
     /// Tries a step and records the outputs on it, up to where the state moves.
     fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Outcome<Lanes>> {
-        let Self { engine, state, clock, dynamics, .. } = self;
-        let outcome = engine.step(running, state, clock, dynamics, &self.job.plan.layout, ticker)?;
+        let Self { trial, state, clock, dynamics, norm, .. } = self;
+        let outcome = trial.attempt(running, dynamics, state, clock, norm, ticker)?;
         self.record(&outcome, ticker)?;
         Ok(outcome)
     }
 
     fn start(&mut self, fresh: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
-        let plan = self.job.plan;
-        if plan.layout == Layout::Batched {
-            // Masses differ from unit to unit, so the forces are set up again with the new lanes.
-            let slots = self.slots.iter();
-            let units: Vec<&Prepared> =
-                slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
-            self.dynamics = unit::dynamics(plan, &units, self.threads);
-        }
-        let (tolerance, reference) = self.measure.parts();
-        self.engine.set_measure(tolerance, reference);
+        // Masses differ from unit to unit, so the forces are set up again with the new lanes.
+        let slots = self.slots[..self.job.plan.layout.units()].iter();
+        let units: Vec<&Prepared> =
+            slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
+        self.dynamics = unit::dynamics(self.job.plan, &units, self.threads);
         self.clock.restart(fresh, Lanes::splat(self.end()));
-        let Self { engine, state, clock, dynamics, .. } = self;
-        engine.start(fresh, state, clock, dynamics, &plan.layout, ticker)
+        let Self { trial, state, clock, dynamics, norm, .. } = self;
+        trial.start(fresh, dynamics, state, clock, norm, ticker)
     }
 
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
@@ -223,10 +222,10 @@ impl<'a> Run<'a> {
         let elapsed = self.clock.elapsed.0[lane];
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
         // taken when it is kept.
-        slot.counts.evaluations += self.evaluations;
+        slot.counts.evaluations += self.cost.tried;
         if outcome.accepted.lane(lane) {
             slot.counts.steps += 1;
-            slot.counts.evaluations += 1;
+            slot.counts.evaluations += self.cost.kept;
             let done = (elapsed / end * PROGRESS_PER_UNIT as f64) as u64;
             ticker.advance(done - slot.progress);
             slot.progress = done;

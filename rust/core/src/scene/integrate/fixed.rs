@@ -4,11 +4,14 @@ use super::super::unit::{self, Prepared, Unit};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
-use crate::integrators::fixed::{self, FixedStep, Place};
-use crate::integrators::state::State;
+use crate::numerics::element::Shape;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
+use crate::ode::fixed::{self, Place};
+use crate::ode::state::State;
+use crate::ode::stepper::{Stepper, stepper};
+use crate::ode::system::System;
 use crate::parallel::Ticker;
 
 /// Runs the units, a state full of them at a time.
@@ -29,8 +32,8 @@ pub(super) fn run(
     Ok(reports)
 }
 
-/// A state and what advances it, for one group of units after another.
-type Room = (State<Lanes>, FixedStep<Lanes>);
+/// How a state lies, the state and what advances it, for one group of units after another.
+type Room = (Shape, State<Lanes>, Box<dyn Stepper<Lanes>>);
 
 fn lockstep(
     job: &Job<'_>,
@@ -44,12 +47,15 @@ fn lockstep(
     let views: Vec<&Prepared> = prepared.iter().collect();
     let mut dynamics = unit::dynamics(plan, &views, threads);
     let dt = plan.dt.unwrap_or(plan.direction);
-    if room.as_ref().is_none_or(|(state, _)| state.shape != dynamics.shape) {
+    let shape = dynamics.shape;
+    // A special kernel holds the masses of its group.
+    let own = plan.relative;
+    if own || room.as_ref().is_none_or(|(other, ..)| *other != shape) {
         let state = prepared[0].blank_state(units.len());
-        let stepper = FixedStep::new(plan.method, scale(dt, -plan.units.time), &state)?;
-        *room = Some((state, stepper));
+        let stepper = stepper(plan.method, scale(dt, -plan.units.time), &dynamics, &state)?;
+        *room = Some((shape, state, stepper));
     }
-    let Some((state, stepper)) = room else { return Ok(Vec::new()) };
+    let Some((_, state, stepper)) = room else { return Ok(Vec::new()) };
     state.clear();
     for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
         // Lanes without a unit run along with a copy of the last.
@@ -68,16 +74,21 @@ fn lockstep(
         rows: 0,
         last: None,
     };
-    let (steps, outcome) =
-        fixed::run(stepper, job.max_steps, state, &mut dynamics, places, ticker, |index, state, ticker| {
-            records.take(index, state, ticker)
-        });
+    let (steps, outcome) = fixed::run(
+        &mut **stepper,
+        job.max_steps,
+        state,
+        &mut dynamics,
+        places,
+        ticker,
+        |index, state, ticker| records.take(index, state, ticker),
+    );
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
         Err(Error::Interrupted) => Ending::Interrupted,
         Err(other) => return Err(other),
     };
-    let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations };
+    let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() };
     Ok(records.reports(state, t0 + steps as f64 * dt, &short, counts))
 }
 

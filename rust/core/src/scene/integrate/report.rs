@@ -2,8 +2,8 @@
 
 use super::super::unit::{Prepared, Unit};
 use super::Job;
-use crate::integrators::state::State;
 use crate::numerics::lanes::Lanes;
+use crate::ode::state::State;
 use core::ops::AddAssign;
 
 /// How a unit ended.

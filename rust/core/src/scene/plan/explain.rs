@@ -3,7 +3,7 @@
 use super::super::layout::Layout;
 use super::super::request::columns;
 use super::{Plan, Solution};
-use crate::integrators::Scheme;
+use crate::ode::Scheme;
 use core::fmt;
 
 /// A line of the plan.

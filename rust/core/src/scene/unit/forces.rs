@@ -13,6 +13,9 @@ use crate::potentials::Potential;
 /// The forces on `units` of the same make-up: one if packed, up to eight for each block of rows if batched.
 pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<Lanes> {
     let shape = units[0].state_shape(units.len());
+    if let (true, [ForceSpec::Gravity { softening, .. }]) = (plan.relative, &plan.forces[..]) {
+        return Dynamics::closed(few_bodies(shape, scale(*softening, -plan.units.length), units));
+    }
     let kernel = |force: &ForceSpec| -> Box<dyn Force<Lanes>> {
         match force {
             ForceSpec::UniformField { g } => {
@@ -64,14 +67,16 @@ fn central_field(
     scaled.central_force(shape, center, inverse_mass)
 }
 
+fn few_bodies(shape: Shape, softening: f64, units: &[&Prepared]) -> FewBodies<Lanes> {
+    let strength = in_rows(units, units[0].unit.active, |unit, slot| unit.strength[slot]);
+    FewBodies::new(shape, units.len().div_ceil(WIDTH), strength, softening)
+}
+
 fn gravity(shape: Shape, softening: f64, units: &[&Prepared], threads: usize) -> Box<dyn Force<Lanes>> {
     let first = units[0];
     let active = first.unit.active;
     match first.layout {
-        Layout::Batched => {
-            let strength = in_rows(units, active, |unit, slot| unit.strength[slot]);
-            Box::new(FewBodies::new(shape, units.len().div_ceil(WIDTH), strength, softening))
-        }
+        Layout::Batched => Box::new(few_bodies(shape, softening, units)),
         Layout::Packed if active <= RING_MAX => Box::new(Ring::new(shape, first.strength.clone(), softening)),
         Layout::Packed => {
             let mut strength = vec![Lanes::zero(); active.div_ceil(WIDTH)];

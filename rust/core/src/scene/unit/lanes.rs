@@ -5,10 +5,10 @@
 
 use super::super::columns::Entry;
 use super::{Layout, Origin, Plan, Prepared, Unit, scale};
-use crate::integrators::state::State;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
+use crate::ode::state::State;
 
 /// Padding lanes stand far out, each elsewhere, where nothing they feel or exert is felt.
 const FAR_OUT: f64 = 1.267_650_600_228_229_4e30; // 2^100
@@ -44,12 +44,13 @@ impl Prepared {
     pub fn blank_state(&self, units: usize) -> State<Lanes> {
         let shape = self.state_shape(units);
         let zeros = vec![Lanes::zero(); shape.len()];
-        State::new(shape, &zeros, &zeros)
+        State::new(&zeros, &zeros)
     }
 
     /// Lays the unit into a state (at one place in it if batched).
     pub fn write(&self, state: &mut State<Lanes>, unit_lane: usize) {
-        let Shape { rows, components } = state.shape;
+        let components = self.shape.components;
+        let rows = state.q().len() / components;
         let ((q, q_error), (v, v_error)) = state.halves_mut();
         if self.layout == Layout::Packed {
             for c in 0..components {
@@ -73,7 +74,8 @@ impl Prepared {
 
     /// Reads a body off a state, in the scene's units and about its origin.
     pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
-        let Shape { rows, components } = state.shape;
+        let components = self.shape.components;
+        let rows = state.q().len() / components;
         let (length, speed) = (self.units.length, -self.units.velocity());
         let (row, lane) = self.locate(slot, unit_lane);
         let mut entry = Entry::default();
@@ -82,11 +84,11 @@ impl Prepared {
             let take = |values: &[Lanes], exponent: i32| scale(values[at].0[lane], exponent);
             let (x, rest) = self.origin.restore(c, take(state.q(), length), elapsed);
             entry.position[c] = x;
-            entry.position_rest[c] = rest + take(state.q_error(), length);
+            entry.position_rest[c] = rest + take(state.q_compensation(), length);
             let still = Origin { center: self.origin.drift, drift: [0.0; 3] };
             let (v, rest) = still.restore(c, take(state.v(), speed), 0.0);
             entry.velocity[c] = v;
-            entry.velocity_rest[c] = rest + take(state.v_error(), speed);
+            entry.velocity_rest[c] = rest + take(state.v_compensation(), speed);
         }
         if components == 2 {
             entry.position[2] = self.origin.center[2] + self.origin.drift[2] * elapsed;

@@ -8,10 +8,10 @@ use super::super::frame::Units;
 use super::{Layout, Origin, Prepared, Unit};
 use crate::error::Result;
 use crate::forces::bodies::Of;
-use crate::integrators::state::State;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::Mask;
+use crate::ode::state::State;
 use crate::parallel::Ticker;
 use crate::tiered;
 
@@ -120,7 +120,7 @@ impl Prepared {
         unit_lane: usize,
         [length, speed]: [f64; 2],
     ) -> bool {
-        let stride = state.shape.rows * WIDTH;
+        let stride = state.q().len() / COMPONENTS * WIDTH;
         let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
         // Sums of their own, lest each addition wait for the one before.
         let mut check = [[0.0; 2]; COMPONENTS];
@@ -183,7 +183,8 @@ impl Prepared {
                 bodies.set(slot, masses[unit.bodies[slot]], position, [entry.velocity, entry.velocity_rest]);
             }
         } else {
-            let rows = state.shape.rows;
+            let components = self.shape.components;
+            let rows = state.q().len() / components;
             let (y, error) = state.all();
             let (y, error) = (as_numbers(y), as_numbers(error));
             let (row, lane) = self.locate(0, unit_lane);
@@ -192,10 +193,8 @@ impl Prepared {
                 bodies.set_mass(slot, masses[body]);
             }
             let [length, speed] = self.reading.factors;
-            for (of, factor, first) in
-                [(Of::Position, length, 0), (Of::Velocity, speed, state.shape.components)]
-            {
-                for c in 0..state.shape.components {
+            for (of, factor, first) in [(Of::Position, length, 0), (Of::Velocity, speed, components)] {
+                for c in 0..components {
                     let from = ((first + c) * rows + row) * WIDTH + lane;
                     let [values, rests] = bodies.coordinates_mut(of, c);
                     for (into, from) in [(values, &y[from..]), (rests, &error[from..])] {
@@ -228,7 +227,7 @@ fn rows_as_points<V: Vector8, const COMPONENTS: usize>(
     output: &Output<'_>,
 ) -> bool {
     let (length, speed) = (V::splat(length), V::splat(speed));
-    let rows = state.shape.rows;
+    let rows = state.q().len() / COMPONENTS;
     // Velocities follow the coordinates.
     let (y, _) = state.all();
     let mut finite = Bits::splat(true);

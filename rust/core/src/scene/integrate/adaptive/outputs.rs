@@ -5,9 +5,9 @@
 
 use super::{Run, Slot};
 use crate::error::Result;
-use crate::integrators::step_control::Outcome;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
+use crate::ode::step_control::Outcome;
 use crate::parallel::Ticker;
 
 /// The next outputs that a step has passed.
@@ -47,12 +47,12 @@ impl Run<'_> {
                 return Ok(());
             }
             if round.inside.any() {
-                let Self { engine, state, between, dynamics, .. } = self;
+                let Self { trial, state, between, dynamics, .. } = self;
                 if !ready {
-                    engine.prepare_dense(state, outcome.h, dynamics, ticker)?;
+                    trial.dense(outcome, dynamics, state, ticker)?;
                     ready = true;
                 }
-                engine.interpolate(state, outcome.h, round.theta, between);
+                trial.at(state, outcome.h, round.theta, between);
                 self.charge(round.inside.and(charged.not()));
                 charged = charged.or(round.inside);
             }
@@ -91,7 +91,7 @@ impl Run<'_> {
                 continue;
             }
             let Some(slot) = self.slots[lane].as_mut() else { continue };
-            let state = if round.inside.lane(lane) { &self.between } else { self.engine.next() };
+            let state = if round.inside.lane(lane) { &self.between } else { self.trial.next() };
             let elapsed = self.job.times[slot.next_output] - self.job.scene.t0;
             // A step is only accepted with a finite error, so its states are finite.
             let _: bool =
@@ -103,7 +103,7 @@ impl Run<'_> {
 
     /// Counts the evaluations of the continuous extension for the units that read it.
     fn charge(&mut self, lanes: Bits) {
-        let evaluations = self.engine.dense_stages();
+        let evaluations = self.cost.dense;
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {
                 slot.counts.evaluations += if lanes.lane(lane) { evaluations } else { 0 };

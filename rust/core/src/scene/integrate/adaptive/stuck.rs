@@ -3,8 +3,8 @@
 use super::super::super::unit::Prepared;
 use super::super::super::{ForceSpec, distance};
 use super::super::{Ending, Job};
-use crate::integrators::state::State;
 use crate::numerics::lanes::Lanes;
+use crate::ode::state::State;
 
 /// The ending of a unit whose step fell to zero.
 pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize) -> Ending {

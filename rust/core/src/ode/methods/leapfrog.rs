@@ -1,8 +1,8 @@
 //! Leapfrog (Störmer–Verlet), kick–drift–kick: the symplectic method of order 2 that all others of this
 //! kind are composed of.
 
-use super::{Method, Scheme, Splitting, dd};
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Method, Scheme, Splitting, dd};
 
 /// Leapfrog, kick–drift–kick.
 pub static METHOD: Method = Method {

@@ -5,8 +5,9 @@
 //! close encounters, as the step is one for all times. It starts with steps of dop853: their error, of order 9, is
 //! far below its own wherever it is of use.
 
-use super::{Method, Multistep, Scheme, dd, dop853};
+use super::dop853;
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Method, Multistep, Scheme, dd};
 
 /// Störmer's method of order 13.
 pub static METHOD: Method = Method {

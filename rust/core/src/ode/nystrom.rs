@@ -31,7 +31,7 @@ impl<S: Element> Row<S> {
     pub fn new(row: &[DoubleDouble], fraction: DoubleDouble, a: &Rows) -> Self {
         Self {
             fraction: S::from_double_double(fraction),
-            position: terms(&twice(row, a)),
+            position: terms(&nystrom_weights(row, a)),
             velocity: terms(row),
         }
     }
@@ -51,13 +51,13 @@ impl<S: Element> Row<S> {
             }
             terms
         };
-        Self { fraction: S::one(), position: exact(&twice(weights, a)), velocity: exact(weights) }
+        Self { fraction: S::one(), position: exact(&nystrom_weights(weights, a)), velocity: exact(weights) }
     }
 }
 
-/// The weights of accelerations in `Σ row·k`, `k` being velocities of stages with the rows `a`, less what the
-/// velocity at the start is worth.
-pub fn twice(row: &[DoubleDouble], a: &Rows) -> Vec<DoubleDouble> {
+/// The Nyström weights `ā = row·A`: those of the accelerations in `Σ row·k` when the `k` are velocities of stages with the
+/// rows `a`, less what the velocity at the start is worth.
+pub fn nystrom_weights(row: &[DoubleDouble], a: &Rows) -> Vec<DoubleDouble> {
     let mut product = vec![DoubleDouble::zero(); row.len()];
     for (weight, stage) in row.iter().zip(a) {
         for (sum, &coefficient) in product.iter_mut().zip(stage) {

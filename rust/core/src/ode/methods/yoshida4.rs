@@ -1,7 +1,7 @@
 //! Yoshida's method of order 4 (also Forest and Ruth's): three leapfrogs, the middle one backwards.
 
-use super::{Method, Scheme, Splitting, dd};
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Method, Scheme, Splitting, dd};
 
 /// Yoshida's triple jump of leapfrogs.
 pub static METHOD: Method = Method {

@@ -4,10 +4,10 @@
 //! differences from those of one body, and to the centre of mass, which moves uniformly: nothing but round-off
 //! changes, and that body is skipped.
 
-use super::super::state::State;
-use crate::forces::ClosedSystems;
+use super::FewBodies;
 use crate::numerics::double_double::{two_product, two_sum};
 use crate::numerics::element::{self, Element, Shape};
+use crate::ode::state::State;
 
 /// Numbers, and what they leave out.
 type Pairs<S> = (Vec<S>, Vec<S>);
@@ -33,13 +33,13 @@ pub(super) struct Relative<S> {
 
 impl<S: Element> Relative<S> {
     /// The systems at a state, which is node 0 of steps `h`.
-    pub(super) fn new(closed: &ClosedSystems<'_, S>, h: S, state: &State<S>) -> Self {
-        let (shape, systems) = (state.shape, closed.count);
+    pub(super) fn new(few: &FewBodies<S>, h: S, state: &State<S>) -> Self {
+        let (shape, systems) = (few.shape, few.systems);
         let mut relative = Self {
             shape,
             systems,
             coordinates: (Vec::new(), Vec::new()),
-            shares: shares(closed, shape.rows / systems),
+            shares: shares(&few.strength, shape.rows / systems),
             center: (Vec::new(), Vec::new()),
             drift: (Vec::new(), Vec::new()),
             h,
@@ -132,7 +132,7 @@ impl<S: Element> Relative<S> {
 }
 
 /// The share of each body but the first in the mass of its system; nothing if there is no mass.
-fn shares<S: Element>(closed: &ClosedSystems<'_, S>, bodies: usize) -> Pairs<S> {
+fn shares<S: Element>(strength: &[S], bodies: usize) -> Pairs<S> {
     let share = |system: &[S], own: S| {
         let mut total = (S::zero(), S::zero());
         for &strength in system {
@@ -142,11 +142,11 @@ fn shares<S: Element>(closed: &ClosedSystems<'_, S>, bodies: usize) -> Pairs<S> 
         let share = own / total.0;
         let (product, error) = two_product(share, total.0);
         let rest = ((own - product) - error) - share * total.1;
-        let some = S::zero().less(total.0);
+        // Repelling bodies have negative strengths; only without any is there no center to speak of.
+        let some = S::zero().less(total.0.abs());
         (S::select(some, share, S::zero()), S::select(some, rest / total.0, S::zero()))
     };
-    closed
-        .strength
+    strength
         .chunks_exact(bodies)
         .flat_map(|system| system[1..].iter().map(move |&own| share(system, own)))
         .unzip()

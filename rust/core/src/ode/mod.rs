@@ -1,27 +1,30 @@
-//! Integrators: a method is a table; the loops that run tables are written once.
+//! Integrators of ordinary differential equations: a method is a table; the loops that run tables are written once.
 //!
-//! To add a method, write one file that defines `METHOD` and add its line to
+//! The one idea: problem ([`system`]), method ([`Method`]), state ([`state`]) and the loop over steps ([`fixed`], and
+//! whoever drives a [`trial`]) know each other only by what they declare. Nothing here knows particles.
+//!
+//! To add a method, write one file in `methods` that defines `METHOD` and add its line to
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
-pub mod adaptive;
-pub mod dop853;
+pub mod embedded;
 pub mod fixed;
-pub mod kahan_li8;
-pub mod leapfrog;
+pub mod methods;
 pub mod multistep;
+pub mod norm;
 pub mod nystrom;
 #[cfg(test)]
 mod order_conditions;
-pub mod rk4;
 pub mod runge_kutta;
 pub mod splitting;
 pub mod state;
 pub mod step_control;
-pub mod stormer13;
-pub mod yoshida4;
+pub mod stepper;
+pub mod system;
+pub mod trial;
 
 use crate::numerics::double_double::DoubleDouble;
+use system::{Form, Needs};
 
 /// An integration method: what it declares about itself, and its table.
 #[derive(Debug)]
@@ -125,5 +128,16 @@ impl Method {
     /// Whether the method chooses its own steps.
     pub const fn adaptive(&self) -> bool {
         matches!(self.scheme, Scheme::Embedded(_))
+    }
+
+    /// Whether the method can take systems of this form that look at these things.
+    pub const fn serves(&self, form: Form, needs: Needs) -> bool {
+        match self.scheme {
+            Scheme::RungeKutta(_) | Scheme::Embedded(_) => true,
+            // Between two kicks, and at the nodes of a multistep method, there is no velocity of the same time.
+            Scheme::Splitting(_) | Scheme::Multistep(_) => {
+                matches!(form, Form::SecondOrder(_)) && !needs.velocity
+            }
+        }
     }
 }

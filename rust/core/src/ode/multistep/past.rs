@@ -3,27 +3,29 @@
 //! The one idea: its loops go over numbers, each by itself. So the numbers may be coordinates of the state or any others
 //! that depend on them linearly.
 
+use super::Weights;
 use crate::numerics::double_double::two_product;
 use crate::numerics::element::{Differences, Element, Nodes, Scaled};
 
 /// What the method holds of the present node and those before it, of any coordinates.
 #[derive(Debug)]
-pub(super) struct Past<S> {
+pub struct Past<S> {
     /// The accelerations at the present node and at the one before.
-    pub(super) acceleration: Vec<S>,
+    pub acceleration: Vec<S>,
     last: Vec<S>,
     /// See [`Differences`].
     first: Vec<S>,
     second: Vec<S>,
     newest: usize,
     /// The last difference of the coordinates, compensated.
-    pub(super) d: Vec<S>,
-    pub(super) d_error: Vec<S>,
+    pub d: Vec<S>,
+    /// What that leaves out.
+    pub d_error: Vec<S>,
 }
 
 impl<S: Element> Past<S> {
     /// Of `len` coordinates and `count` second differences.
-    pub(super) fn new(len: usize, count: usize) -> Self {
+    pub fn new(len: usize, count: usize) -> Self {
         let block = || vec![S::zero(); len];
         Self {
             acceleration: block(),
@@ -37,12 +39,12 @@ impl<S: Element> Past<S> {
     }
 
     /// Begins anew.
-    pub(super) fn restart(&mut self) {
+    pub fn restart(&mut self) {
         self.newest = 0;
     }
 
     /// The same nodes in other coordinates, `len` of them, which `of` writes; `d` is still to be found.
-    pub(super) fn map(&self, len: usize, of: impl Fn(&[S], &mut [S])) -> Self {
+    pub fn map(&self, len: usize, of: impl Fn(&[S], &mut [S])) -> Self {
         let mut past = Self::new(len, self.second.len() / self.last.len());
         of(&self.acceleration, &mut past.acceleration);
         of(&self.last, &mut past.last);
@@ -53,19 +55,18 @@ impl<S: Element> Past<S> {
     }
 
     /// For a step of coordinates `q`.
-    pub(super) fn nodes<'a>(
+    pub fn nodes<'a>(
         &'a mut self,
         q: (&'a mut [S], &'a mut [S]),
-        h2: &'a S,
-        weights: &'a [S],
+        Weights { h2, second_differences, .. }: &'a Weights<S>,
     ) -> Nodes<'a, S> {
         let Self { acceleration, last, first, second, newest, d, d_error } = self;
         let past = Differences { last, first, second, newest: *newest };
-        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights }
+        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights: second_differences }
     }
 
     /// Takes in the accelerations at a further node, which is then the one before.
-    pub(super) fn take_in(&mut self, acceleration: &[S]) {
+    pub fn take_in(&mut self, acceleration: &[S]) {
         let len = acceleration.len();
         for i in 0..len {
             let change = acceleration[i] - self.last[i];
@@ -77,28 +78,32 @@ impl<S: Element> Past<S> {
     }
 
     /// So many nodes have joined the ring.
-    pub(super) fn pass(&mut self, nodes: u64) {
+    pub fn pass(&mut self, nodes: u64) {
         let count = (self.second.len() / self.last.len()) as u64;
         self.newest = ((self.newest as u64 + nodes) % count) as usize;
     }
 
     /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
-    pub(super) fn velocity(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
+    pub fn velocity(&mut self, v: &mut [S], weights: &Weights<S>) {
+        self.backward(v, (&weights.h, &weights.h_inverse), &weights.velocity);
+    }
+
+    fn backward(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
         let Self { acceleration, last, first, second, newest, d, .. } = self;
         let past = Differences { last, first, second, newest: *newest };
         S::backward_velocity(v, d, past, acceleration, h, weights);
     }
 
-    /// The last difference of the coordinates that belongs to the velocities, to twice the digits:
+    /// Finds the last difference of the coordinates that belongs to the velocities, to twice the digits:
     /// `d = h v - h² Σ`.
-    pub(super) fn start(&mut self, (v, v_error): (&[S], &[S]), h: S, h2: S, weights: &[S]) {
+    pub fn start(&mut self, (v, v_compensation): (&[S], &[S]), weights: &Weights<S>) {
         let mut sum = vec![S::zero(); v.len()];
         self.d.fill(S::zero());
-        self.velocity(&mut sum, (&S::one(), &(S::one(), S::zero())), weights);
+        self.backward(&mut sum, (&S::one(), &(S::one(), S::zero())), &weights.velocity);
         for i in 0..v.len() {
-            (self.d[i], self.d_error[i]) = two_product(h, v[i]);
-            self.d_error[i] += h * v_error[i];
+            (self.d[i], self.d_error[i]) = two_product(weights.h, v[i]);
+            self.d_error[i] += weights.h * v_compensation[i];
         }
-        S::advance((&mut self.d, &mut self.d_error), &sum, &(-h2, S::zero()));
+        S::advance((&mut self.d, &mut self.d_error), &sum, &(-weights.h2, S::zero()));
     }
 }

@@ -1,8 +1,8 @@
 //! Kahan and Li's symmetric composition of 17 leapfrogs, order 8: small coefficients for its order, so
 //! that a symplectic run reaches round-off at usable steps.
 
-use super::{Method, Scheme, Splitting, dd};
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Method, Scheme, Splitting, dd};
 
 /// Kahan and Li's composition of 17 leapfrogs.
 pub static METHOD: Method = Method {

@@ -1,7 +1,7 @@
 //! The classical Runge–Kutta method of order 4, with a fixed step.
 
-use super::{Method, Scheme, Tableau, ZERO, dd};
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Method, Scheme, Tableau, ZERO, dd};
 
 /// The classical Runge–Kutta method.
 pub static METHOD: Method = Method {

@@ -6,8 +6,8 @@
 //! follow from the ends of the step for f0, f1, f2 (value and derivative there) and are published
 //! for f3 to f6.
 
-use super::{Embedded, Method, Scheme, Tableau, ZERO, dd};
 use crate::numerics::double_double::DoubleDouble;
+use crate::ode::{Embedded, Method, Scheme, Tableau, ZERO, dd};
 
 /// The method of order 8 of Dormand and Prince, as published by Hairer, Nørsett and Wanner.
 pub static METHOD: Method = Method {

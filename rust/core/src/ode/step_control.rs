@@ -48,11 +48,23 @@ pub struct Outcome<S: Real> {
 
 /// What the choice of a step rests on, for a whole run.
 #[derive(Clone, Copy, Debug)]
-pub struct Rule {
-    /// The step goes with the scaled error to the power `-1 / error_exponent`, a power of two.
-    pub error_exponent: u32,
+pub struct Rule<S> {
+    /// The step goes with the squared scaled error to the power of minus this, as a binary fraction of
+    /// [`POWER_PLACES`] places: of a method with the error exponent n, 1/(2n).
+    power: u32,
     /// Longest step.
-    pub max_step: f64,
+    pub max_step: S,
+}
+
+/// Places of the power that the step goes with. They tell 1/(2n) to 1.2e-4, which a step never feels: errors of 1e-12
+/// change it by less than 0.4 %.
+const POWER_PLACES: u32 = 12;
+
+impl<S> Rule<S> {
+    /// Of an estimate that goes with the step to the power `error_exponent`.
+    pub fn new(error_exponent: u32, max_step: S) -> Self {
+        Self { power: ((1 << POWER_PLACES) + error_exponent) / (2 * error_exponent), max_step }
+    }
 }
 
 impl<S: Real> Clock<S> {
@@ -83,7 +95,7 @@ impl<S: Real> Clock<S> {
 
     /// Moves on by the step if its squared scaled error is at most 1, and chooses the next one.
     #[inline(always)]
-    fn settle(&mut self, running: S::Mask, size2: S, rule: Rule) -> Outcome<S> {
+    fn settle(&mut self, running: S::Mask, size2: S, rule: &Rule<S>) -> Outcome<S> {
         let (h, last) = self.next_step(running);
         let accepted = size2.less_equal(S::one()).and(running);
 
@@ -92,7 +104,7 @@ impl<S: Real> Clock<S> {
         let factor = S::select(size2.less_equal(S::zero()), S::splat(GROW), factor);
         let factor = S::select(self.rejected.or(accepted.not()), factor.min(S::one()), factor);
         let from = self.elapsed;
-        let (proposed, max_step) = (h * factor, S::splat(rule.max_step));
+        let (proposed, max_step) = (h * factor, rule.max_step);
         let longest = S::select(proposed.less(S::zero()), -max_step, max_step);
         let proposed = S::select(max_step.less(proposed.abs()), longest, proposed);
         self.h = S::select(running, proposed, self.h);
@@ -108,14 +120,20 @@ impl<S: Real> Clock<S> {
     }
 }
 
-/// `square^(1 / (2·error_exponent))`.
+/// `square^(1 / (2·error_exponent))`: the product of the repeated square roots that the power, in binary, names.
 #[inline(always)]
-pub(super) fn root<S: Real>(square: S, rule: Rule) -> S {
-    let mut root = square;
-    for _ in 0..(2 * rule.error_exponent).ilog2() {
+pub(super) fn root<S: Real>(square: S, rule: &Rule<S>) -> S {
+    let (mut root, mut product, mut left) = (square, S::one(), rule.power);
+    let mut place = POWER_PLACES;
+    while left != 0 && place > 0 {
         root = root.sqrt();
+        place -= 1;
+        if left >> place != 0 {
+            product = product * root;
+            left -= 1 << place;
+        }
     }
-    root
+    product
 }
 
 /// Scalars whose steps can be controlled.
@@ -123,7 +141,10 @@ pub trait Controlled: Element {
     /// The next step of the running lanes, 0 in the others.
     fn next_step(clock: &Clock<Self>, running: Self::Mask) -> Self;
     /// Moves the clock on by that step if its squared scaled error is at most 1, and chooses the next one.
-    fn settle(clock: &mut Clock<Self>, running: Self::Mask, size2: Self, rule: Rule) -> Outcome<Self>;
+    fn settle(clock: &mut Clock<Self>, running: Self::Mask, size2: Self, rule: &Rule<Self>) -> Outcome<Self>;
+    /// The largest of the lanes, in every lane.
+    #[must_use]
+    fn largest_lane(self) -> Self;
 }
 
 macro_rules! controlled {
@@ -132,8 +153,11 @@ macro_rules! controlled {
             fn next_step(clock: &Clock<Self>, running: bool) -> Self {
                 clock.next_step(running).0
             }
-            fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: Rule) -> Outcome<Self> {
+            fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: &Rule<Self>) -> Outcome<Self> {
                 clock.settle(running, size2, rule)
+            }
+            fn largest_lane(self) -> Self {
+                self
             }
         }
     )+};
@@ -158,10 +182,11 @@ fn settle_lanes<V: Vector8>(
     clock: &mut Clock<Lanes>,
     running: Bits,
     size2: Lanes,
-    rule: Rule,
+    rule: &Rule<Lanes>,
 ) -> Outcome<Lanes> {
     let mut now = load::<V>(clock);
-    let Outcome { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), rule);
+    let rule = Rule { power: rule.power, max_step: V::load(rule.max_step) };
+    let Outcome { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), &rule);
     let Clock { elapsed, error, h: next, end, rejected } = now;
     *clock =
         Clock { elapsed: elapsed.store(), error: error.store(), h: next.store(), end: end.store(), rejected };
@@ -170,15 +195,21 @@ fn settle_lanes<V: Vector8>(
 
 tiered! {
     fn next_step_tier[][](clock: &Clock<Lanes>, running: Bits) -> Lanes = next_step_lanes;
-    fn settle_tier[][](clock: &mut Clock<Lanes>, running: Bits, size2: Lanes, rule: Rule) -> Outcome<Lanes> = settle_lanes;
+    fn settle_tier[][](clock: &mut Clock<Lanes>, running: Bits, size2: Lanes, rule: &Rule<Lanes>) -> Outcome<Lanes> = settle_lanes;
 }
 
 impl Controlled for Lanes {
     fn next_step(clock: &Clock<Self>, running: Bits) -> Self {
         next_step_tier(clock, running)
     }
-    fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: Rule) -> Outcome<Self> {
+    fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: &Rule<Self>) -> Outcome<Self> {
         settle_tier(clock, running, size2, rule)
+    }
+    fn largest_lane(self) -> Self {
+        let [a, b, c, d, e, f, g, h] = self.0;
+        let larger = |x: f64, y: f64| if x > y { x } else { y };
+        let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
+        Self::splat(larger(low, high))
     }
 }
 
@@ -186,7 +217,8 @@ impl Controlled for Lanes {
 mod tests {
     use super::*;
 
-    const RULE: Rule = Rule { error_exponent: 8, max_step: f64::INFINITY };
+    /// That of a method with the error exponent 8.
+    const RULE: &Rule<f64> = &Rule { power: 1 << (POWER_PLACES - 4), max_step: f64::INFINITY };
 
     /// A clock under way: a step of 1 was taken, and the next is 1 again.
     fn under_way() -> Clock<f64> {

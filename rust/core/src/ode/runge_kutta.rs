@@ -1,0 +1,216 @@
+//! The stages of an explicit Runge–Kutta method, and its steps of fixed length.
+//!
+//! Of a system of the second order only accelerations are stages ([`nystrom`](super::nystrom)); of one of the first
+//! order the rates are, and the rows of the tableau weigh them as they stand.
+
+use super::Tableau;
+use super::nystrom::Row;
+use super::state::State;
+use super::stepper::{Nodes, Stepper};
+use super::system::{Form, Needs, System};
+use crate::error::Result;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::element::{Element, Weighted};
+use crate::parallel::Ticker;
+
+/// The stages of a method and room for their derivatives: accelerations, or rates of a system of the first order.
+#[derive(Clone, Debug)]
+pub struct Stages<S> {
+    form: Form,
+    needs: Needs,
+    rows: Vec<Row<S>>,
+    end: Row<S>,
+    /// Derivatives, stage after stage.
+    pub k: Vec<S>,
+    /// Where a stage is evaluated: coordinates, or all numbers of a system of the first order.
+    position: Vec<S>,
+    velocity: Vec<S>,
+}
+
+impl<S: Element> Stages<S> {
+    /// For a tableau with `extra` further stages, and a system.
+    pub fn new(tableau: &Tableau, extra: usize, system: &dyn System<S>) -> Self {
+        let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
+        let form = system.form();
+        let len = form.evaluated();
+        Self {
+            form,
+            needs: system.needs(),
+            rows: a.iter().zip(tableau.c).map(|(row, &c)| Row::new(row, c, &a)).collect(),
+            end: Row::end(tableau.b, &a),
+            k: vec![S::zero(); (tableau.b.len() + extra) * len],
+            position: vec![S::zero(); len],
+            velocity: vec![S::zero(); len],
+        }
+    }
+    /// The form of the system.
+    pub fn form(&self) -> Form {
+        self.form
+    }
+    /// Numbers per derivative.
+    pub fn len(&self) -> usize {
+        self.position.len()
+    }
+    /// Whether a derivative has no numbers.
+    pub fn is_empty(&self) -> bool {
+        self.position.is_empty()
+    }
+    /// The derivative of stage `stage`.
+    pub fn derivative(&self, stage: usize) -> &[S] {
+        &self.k[stage * self.len()..][..self.len()]
+    }
+
+    /// Writes the derivative at a state as that of `stage`.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn evaluate(
+        &mut self,
+        stage: usize,
+        t: S,
+        state: &State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let len = self.len();
+        let k = &mut self.k[stage * len..][..len];
+        match self.form {
+            Form::FirstOrder(_) => system.rate(t, state.all().0, k, ticker),
+            Form::SecondOrder(_) => system.acceleration(t, state.q(), state.v(), k, ticker),
+        }
+    }
+
+    /// Writes the derivative of stage `stage`, at the point that the row leads to in a step `h` from `t`.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn evaluate_at(
+        &mut self,
+        stage: usize,
+        (t, h): (S, &S),
+        state: &State<S>,
+        row: &Row<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let len = self.len();
+        let stages = |terms| Weighted { h, terms, a: &self.k };
+        let t = if self.needs.time { t + *h * row.fraction } else { t };
+        if matches!(self.form, Form::FirstOrder(_)) {
+            S::combine_velocity(&mut self.position, state.all(), stages(&row.velocity));
+            return system.rate(t, &self.position, &mut self.k[stage * len..][..len], ticker);
+        }
+        let slope = (state.v(), &row.fraction);
+        S::combine(&mut self.position, state.position(), slope, stages(&row.position));
+        let velocity = if self.needs.velocity {
+            S::combine_velocity(&mut self.velocity, state.velocity(), stages(&row.velocity));
+            &self.velocity
+        } else {
+            state.v()
+        };
+        system.acceleration(t, &self.position, velocity, &mut self.k[stage * len..][..len], ticker)
+    }
+
+    /// All stages of the tableau from the second on; the first must be there.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn evaluate_rest(
+        &mut self,
+        step: (S, &S),
+        state: &State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let rows = core::mem::take(&mut self.rows);
+        let outcome = rows
+            .iter()
+            .enumerate()
+            .skip(1)
+            .try_for_each(|(stage, row)| self.evaluate_at(stage, step, state, row, system, ticker));
+        self.rows = rows;
+        outcome
+    }
+
+    /// Writes the end of the step, all stages of the tableau being there.
+    pub fn finish(&self, state: &State<S>, h: &S, next: &mut State<S>) {
+        self.state_at(&self.end, state, h, next);
+    }
+
+    /// Writes the state that the row leads to, compensated.
+    pub fn state_at(&self, row: &Row<S>, state: &State<S>, h: &S, into: &mut State<S>) {
+        let stages = |terms| Weighted { h, terms, a: &self.k };
+        if matches!(self.form, Form::FirstOrder(_)) {
+            S::combine_velocity_compensated(into.all_mut(), state.all(), stages(&row.velocity));
+            return;
+        }
+        let (q, v) = into.halves_mut();
+        let slope = (state.v(), &row.fraction);
+        S::combine_compensated(q, state.position(), slope, stages(&row.position));
+        S::combine_velocity_compensated(v, state.velocity(), stages(&row.velocity));
+    }
+}
+
+/// A Runge–Kutta method with a fixed step.
+#[derive(Clone, Debug)]
+pub struct RungeKuttaStep<S> {
+    stages: Stages<S>,
+    next: State<S>,
+    h: S,
+    nodes: Nodes,
+}
+
+impl<S: Element> RungeKuttaStep<S> {
+    /// The method `tableau` with step `h`, for a system and states like `state`.
+    pub fn new(tableau: &Tableau, h: f64, system: &dyn System<S>, state: &State<S>) -> Self {
+        let stages = Stages::new(tableau, 0, system);
+        Self { stages, next: state.clone(), h: S::splat(h), nodes: Nodes::new(h, system) }
+    }
+
+    /// The derivative at the state before the last step.
+    pub fn first_derivative(&self) -> &[S] {
+        self.stages.derivative(0)
+    }
+
+    /// Advances the state at time `t` by a step `h`.
+    fn advance(
+        &mut self,
+        (t, h): (S, S),
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.stages.evaluate(0, t, state, system, ticker)?;
+        self.stages.evaluate_rest((t, &h), state, system, ticker)?;
+        self.stages.finish(state, &h, &mut self.next);
+        core::mem::swap(state, &mut self.next);
+        Ok(())
+    }
+}
+
+impl<S: Element> Stepper<S> for RungeKuttaStep<S> {
+    fn restart(&mut self) {}
+
+    fn step(
+        &mut self,
+        node: u64,
+        _: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<u64> {
+        self.advance((self.nodes.time(node), self.h), state, system, ticker)?;
+        Ok(1)
+    }
+
+    fn between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.advance((self.nodes.time(node), S::splat(past)), state, system, ticker)
+    }
+}

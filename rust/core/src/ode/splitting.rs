@@ -1,0 +1,154 @@
+//! A splitting method at work: kicks by the forces, drifts by the velocities.
+//!
+//! The kick at the end of a step and the one at the start of the next act at the same place and time, so their
+//! acceleration is evaluated once and kept.
+
+use super::Splitting;
+use super::state::State;
+use super::stepper::{Nodes, Stepper};
+use super::system::System;
+use crate::error::Result;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::element::{Element, Scaled};
+use crate::numerics::real::Real;
+use crate::parallel::Ticker;
+
+/// The kicks and drifts of a step.
+#[derive(Debug)]
+struct Moves<S> {
+    table: &'static Splitting,
+    /// `kick[i]`, then `drift[i]`, and the time of the kick after the start of the step.
+    pairs: Vec<(Scaled<S>, Scaled<S>, S)>,
+    last_kick: Scaled<S>,
+    h: S,
+}
+
+impl<S: Element> Moves<S> {
+    fn new(table: &'static Splitting, h: f64) -> Self {
+        let nothing = (S::zero(), S::zero());
+        let pairs = vec![(nothing, nothing, S::zero()); table.drifts.len()];
+        let mut moves = Self { table, pairs, last_kick: nothing, h: S::zero() };
+        moves.set(h);
+        moves
+    }
+
+    fn set(&mut self, h: f64) {
+        let h = S::splat(h);
+        let mut drifted = DoubleDouble::zero();
+        let coefficients = self.table.kicks.iter().zip(self.table.drifts);
+        for (pair, (&kick, &drift)) in self.pairs.iter_mut().zip(coefficients) {
+            *pair = (h.scaled_by(kick), h.scaled_by(drift), h * S::from_double_double(drifted));
+            drifted += drift;
+        }
+        self.last_kick = h.scaled_by(self.table.kicks[self.pairs.len()]);
+        self.h = h;
+    }
+}
+
+/// The last acceleration, and when none is needed.
+#[derive(Debug)]
+struct Force<S> {
+    /// Whether a kick of a pair is nothing (a method that starts with a drift).
+    idle: Vec<bool>,
+    last_idle: bool,
+    acceleration: Vec<S>,
+    /// Whether `acceleration` belongs to the present coordinates and time.
+    fresh: bool,
+}
+
+impl<S: Element> Force<S> {
+    #[inline(always)]
+    fn advance(
+        &mut self,
+        moves: &Moves<S>,
+        t: S,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        for (index, (kick, drift, time)) in moves.pairs.iter().enumerate() {
+            if self.idle[index] {
+                let (q, (v, _)) = state.halves_mut();
+                S::advance(q, v, drift);
+            } else {
+                if !self.fresh {
+                    system.acceleration(t + *time, state.q(), state.v(), &mut self.acceleration, ticker)?;
+                }
+                let (q, v) = state.halves_mut();
+                S::kick_drift(q, v, &self.acceleration, kick, drift);
+            }
+            self.fresh = false;
+        }
+        if !self.last_idle {
+            system.acceleration(t + moves.h, state.q(), state.v(), &mut self.acceleration, ticker)?;
+            self.fresh = true;
+            let (_, v) = state.halves_mut();
+            S::advance(v, &self.acceleration, &moves.last_kick);
+        }
+        Ok(())
+    }
+}
+
+/// A splitting method with its step.
+#[derive(Debug)]
+pub struct SplittingStep<S> {
+    moves: Moves<S>,
+    force: Force<S>,
+    nodes: Nodes,
+    /// What takes steps to times between nodes, from the first of them on, and the acceleration at the node.
+    between: Option<(Moves<S>, Vec<S>)>,
+}
+
+impl<S: Element> SplittingStep<S> {
+    /// The method `table` with step `h`, for a system of the second order.
+    pub fn new(table: &'static Splitting, h: f64, system: &dyn System<S>) -> Self {
+        let zero = |kick: &DoubleDouble| kick.to_f64() == 0.0;
+        let stages = table.drifts.len();
+        let force = Force {
+            idle: table.kicks[..stages].iter().map(zero).collect(),
+            last_idle: zero(&table.kicks[stages]),
+            acceleration: vec![S::zero(); system.form().evaluated()],
+            fresh: false,
+        };
+        Self { moves: Moves::new(table, h), force, nodes: Nodes::new(h, system), between: None }
+    }
+}
+
+impl<S: Element> Stepper<S> for SplittingStep<S> {
+    fn restart(&mut self) {
+        self.force.fresh = false;
+    }
+
+    fn step(
+        &mut self,
+        node: u64,
+        _: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<u64> {
+        self.force.advance(&self.moves, self.nodes.time(node), state, system, ticker)?;
+        Ok(1)
+    }
+
+    fn between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let Self { moves, force, nodes, between } = self;
+        let (shorter, at_node) =
+            between.get_or_insert_with(|| (Moves::new(moves.table, past), force.acceleration.clone()));
+        shorter.set(past);
+        at_node.copy_from_slice(&force.acceleration);
+        let fresh = force.fresh;
+        let outcome = force.advance(shorter, nodes.time(node), state, system, ticker);
+        // What was looked at leaves no trace.
+        core::mem::swap(&mut force.acceleration, at_node);
+        force.fresh = fresh;
+        outcome
+    }
+}

@@ -1,0 +1,94 @@
+//! Steps of a given length: what every method with a fixed step offers to the run.
+//!
+//! The one idea: the run knows nodes and never what happens between them, so a method may take many steps in one call
+//! and keep its state to itself until somebody reads it.
+
+use super::multistep::MultistepStep;
+use super::runge_kutta::RungeKuttaStep;
+use super::splitting::SplittingStep;
+use super::state::State;
+use super::system::System;
+use super::{Method, Scheme};
+use crate::error::{Error, Result};
+use crate::numerics::element::Element;
+use crate::parallel::Ticker;
+
+/// A method with a step `h`, ready to advance a state from node to node, `n·h` after the start.
+pub trait Stepper<S: Element>: Send {
+    /// Begins anew, at another state, which is node 0.
+    fn restart(&mut self);
+
+    /// Advances the state at `node` by one step or, where that saves time, by more, up to `at_most`; returns how many.
+    /// What it makes may stay behind until [`settle`](Self::settle).
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn step(
+        &mut self,
+        node: u64,
+        at_most: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<u64>;
+
+    /// Completes the state at the present node, which is to be read.
+    fn settle(&mut self, state: &mut State<S>) {
+        let _ = state;
+    }
+
+    /// Advances a copy of the settled state at `node` by a step `past` instead, leaving the sequence as it is.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn between(
+        &mut self,
+        node: u64,
+        past: f64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
+}
+
+/// The time of nodes, for systems that need it.
+#[derive(Clone, Copy, Debug)]
+pub struct Nodes {
+    h: f64,
+    needed: bool,
+}
+
+impl Nodes {
+    /// Of steps `h` of a system.
+    pub fn new<S: Element>(h: f64, system: &dyn System<S>) -> Self {
+        Self { h, needed: system.needs().time }
+    }
+    /// The time of a node, as a product and never as a sum of steps.
+    #[inline(always)]
+    pub fn time<S: Element>(&self, node: u64) -> S {
+        if self.needed { S::splat(self.h * node as f64) } else { S::zero() }
+    }
+}
+
+/// The method with step `h`, for a system and states like `state`.
+///
+/// # Errors
+/// A method that chooses its own steps.
+pub fn stepper<S: Element>(
+    method: &'static Method,
+    h: f64,
+    system: &dyn System<S>,
+    state: &State<S>,
+) -> Result<Box<dyn Stepper<S>>> {
+    if let Some(special) = system.special(method, h, state) {
+        return Ok(special);
+    }
+    Ok(match &method.scheme {
+        Scheme::Splitting(table) => Box::new(SplittingStep::new(table, h, system)),
+        Scheme::RungeKutta(tableau) => Box::new(RungeKuttaStep::new(tableau, h, system, state)),
+        Scheme::Multistep(table) => Box::new(MultistepStep::new(table, h, system, state)),
+        Scheme::Embedded(_) => {
+            return Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)));
+        }
+    })
+}

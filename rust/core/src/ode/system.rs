@@ -1,0 +1,108 @@
+//! What an integrator asks of a mechanical system: its derivatives, and what it can do besides.
+//!
+//! The one idea: problem and method meet in this trait and nowhere else. What a system is and needs is asked once per
+//! run, never per step, so a kernel that fuses much stays whole behind one virtual call.
+
+use super::Method;
+use super::state::State;
+use super::stepper::Stepper;
+use crate::error::{Error, Result};
+use crate::numerics::element::Element;
+use crate::parallel::Ticker;
+
+/// The form of a system's equations.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// `y' = f(t, y)`, so many numbers.
+    FirstOrder(usize),
+    /// `q'' = a(t, q, v)`, so many coordinates; the state is `[q | v]`.
+    SecondOrder(usize),
+}
+
+impl Form {
+    /// Numbers of a state.
+    pub const fn len(self) -> usize {
+        match self {
+            Self::FirstOrder(numbers) => numbers,
+            Self::SecondOrder(coordinates) => 2 * coordinates,
+        }
+    }
+    /// Whether a state has no numbers.
+    pub const fn is_empty(self) -> bool {
+        self.len() == 0
+    }
+    /// Numbers of a derivative that has to be evaluated: the velocities of the second order are known.
+    pub const fn evaluated(self) -> usize {
+        match self {
+            Self::FirstOrder(numbers) => numbers,
+            Self::SecondOrder(coordinates) => coordinates,
+        }
+    }
+}
+
+/// What the evaluation of a system looks at besides coordinates.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Needs {
+    /// The time.
+    pub time: bool,
+    /// The velocities.
+    pub velocity: bool,
+}
+
+impl Needs {
+    /// What either looks at.
+    #[must_use]
+    pub const fn and(self, other: Self) -> Self {
+        Self { time: self.time | other.time, velocity: self.velocity | other.velocity }
+    }
+}
+
+/// A system of ordinary differential equations, of one trajectory or of eight in lanes. Times are counted from the start
+/// of the run, so that a start far from zero costs no digits; a system that does not need them may be given any.
+pub trait System<S: Element>: Send {
+    /// The form of its equations, for the whole run.
+    fn form(&self) -> Form;
+
+    /// What its evaluation looks at.
+    fn needs(&self) -> Needs {
+        Needs { time: true, velocity: true }
+    }
+
+    /// Evaluations so far.
+    fn evaluations(&self) -> u64;
+
+    /// Counts evaluations that a [`special`](Self::special) kernel has done.
+    fn count(&mut self, evaluations: u64) {
+        let _ = evaluations;
+    }
+
+    /// Writes `f(t, y)` of a system of the first order.
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`] when the caller asked to stop; the derivative is then unfinished.
+    fn rate(&mut self, t: S, y: &[S], rate: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        let _ = (t, y, rate, ticker);
+        Err(Error::Internal("the system has no rates".to_owned()))
+    }
+
+    /// Writes `a(t, q, v)` of a system of the second order. If it does not need velocities they may be of any time.
+    ///
+    /// # Errors
+    /// As [`rate`](Self::rate).
+    fn acceleration(&mut self, t: S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        let _ = (t, q, v, a, ticker);
+        Err(Error::Internal("the system has no accelerations".to_owned()))
+    }
+
+    /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever changes a
+    /// state between evaluations must then be able to take that back.
+    fn stops_midway(&self) -> bool {
+        false
+    }
+
+    /// A kernel that takes steps `h` of the method itself, faster than a force evaluation at a time.
+    fn special(&self, method: &'static Method, h: f64, state: &State<S>) -> Option<Box<dyn Stepper<S>>> {
+        let _ = (method, h, state);
+        None
+    }
+}

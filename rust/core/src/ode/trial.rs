@@ -1,0 +1,99 @@
+//! Steps that may be refused, each lane by itself: what every method that chooses its steps offers to the run.
+//!
+//! The one idea: a step is computed for all lanes and kept where it is accepted, so eight trajectories with eight step
+//! sequences share every instruction, and one trajectory packed over the lanes is the same code with all lanes alike.
+//! Outputs and events read the same continuous extension and never steer; only the last step is clamped to the end.
+
+use super::Method;
+use super::Scheme;
+use super::embedded::EmbeddedStep;
+use super::norm::Norm;
+use super::state::State;
+use super::step_control::{Clock, Controlled, Outcome};
+use super::system::System;
+use crate::error::{Error, Result};
+use crate::parallel::Ticker;
+
+/// Evaluations that a step costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cost {
+    /// The start of a trajectory.
+    pub start: u64,
+    /// A step that is tried.
+    pub tried: u64,
+    /// One that is kept, besides.
+    pub kept: u64,
+    /// Its continuous extension, besides.
+    pub dense: u64,
+}
+
+/// A method that chooses its own steps, at work on one state.
+pub trait Trial<S: Controlled>: Send {
+    /// Starts the lanes of `fresh`: evaluates their first derivative and chooses their first step.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn start(
+        &mut self,
+        fresh: S::Mask,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        norm: &Norm<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
+
+    /// Tries one step in every running lane. The state stays where it is.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn attempt(
+        &mut self,
+        running: S::Mask,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        norm: &Norm<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Outcome<S>>;
+
+    /// The state at the end of the step tried last.
+    fn next(&self) -> &State<S>;
+
+    /// Between [`attempt`](Self::attempt) and [`keep`](Self::keep): readies the continuous extension.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn dense(
+        &mut self,
+        outcome: &Outcome<S>,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
+
+    /// The state at the fraction `theta` of the step, lane by lane; needs [`dense`](Self::dense).
+    fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>);
+
+    /// Moves the accepted lanes to the end of their step.
+    fn keep(&mut self, accepted: S::Mask, state: &mut State<S>);
+
+    /// What steps cost.
+    fn cost(&self) -> Cost;
+}
+
+/// The method for a system and states like `state`, with steps of at most `max_step`.
+///
+/// # Errors
+/// A method with a fixed step.
+pub fn trial<S: Controlled>(
+    method: &'static Method,
+    system: &dyn System<S>,
+    state: &State<S>,
+    max_step: S,
+) -> Result<Box<dyn Trial<S>>> {
+    match &method.scheme {
+        Scheme::Embedded(table) => Ok(Box::new(EmbeddedStep::new(table, system, state, max_step))),
+        _ => Err(Error::invalid("dt", format!("{} needs a step dt", method.name))),
+    }
+}
