@@ -122,6 +122,21 @@ class Recorded(ABC):
         return self._column("energy")
 
     @property
+    def kinetic_energy(self) -> NDArray[np.float64]:
+        """Kinetic energy, shape (T,), or (B, T)."""
+        return self._column("kinetic_energy")
+
+    @property
+    def potential_energy(self) -> NDArray[np.float64]:
+        """Potential energy of all forces, shape (T,), or (B, T)."""
+        return self._column("potential_energy")
+
+    @property
+    def virial(self) -> NDArray[np.float64]:
+        """The virial Σ r·F, shape (T,), or (B, T)."""
+        return self._column("virial")
+
+    @property
     def momentum(self) -> NDArray[np.float64]:
         """Total momentum, shape (T, 3), or (B, T, 3)."""
         return self._column("momentum")

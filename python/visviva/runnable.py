@@ -56,7 +56,8 @@ class Runnable(ABC, Generic[_Result]):
             The run ends with an error beyond this number of steps, of any method.
         record : str or sequence of str, optional
             Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
-            ``angular_momentum``, ``center_of_mass``. What is not asked for is not computed.
+            ``angular_momentum``, ``center_of_mass``, ``kinetic_energy``, ``potential_energy``, ``virial``. What is not
+            asked for is not computed.
         events : sequence, optional
             Must be empty: events are not offered yet.
         threads : int, optional
@@ -80,6 +81,12 @@ class Runnable(ABC, Generic[_Result]):
             an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
         visviva.Interrupted
             Ctrl-C; ``.trajectory`` likewise. It is a `KeyboardInterrupt`, which ``except Exception`` lets pass.
+
+        Warns
+        -----
+        visviva.AccuracyWarning
+            Fixed steps resolved nothing: the energy at the end is off by more than a hundredth of kinetic +
+            |potential|, or the step is longer than the run.
 
         Examples
         --------

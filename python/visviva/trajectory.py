@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva import _core
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 __all__ = ["Status", "Trajectory"]
 
-_DERIVED = ("energy", "momentum", "angular_momentum", "center_of_mass")
+_DERIVED = {name: needs_velocity for name, _, _, needs_velocity in _core.columns()}
 
 
 @known_keywords
@@ -35,7 +36,7 @@ class Trajectory(Recorded):
     t : ndarray, shape (T,)
         Output times; fewer than asked for if the run failed.
     position, velocity : ndarray, shape (T, N, 3)
-    energy : ndarray, shape (T,)
+    energy, kinetic_energy, potential_energy, virial : ndarray, shape (T,)
     momentum, angular_momentum, center_of_mass : ndarray, shape (T, 3)
         Recorded, or computed from position and velocity on first use. The angular momentum is about
         the origin.
@@ -88,7 +89,7 @@ class Trajectory(Recorded):
     def _derive(self, name: str, about: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
         from visviva.invariants import conserved
 
-        needs = ("position",) if name == "center_of_mass" else ("position", "velocity")
+        needs = ("position", "velocity") if _DERIVED[name] else ("position",)
         missing = [column for column in needs if column not in self._result["columns"]]
         if missing:
             raise InvalidInput(

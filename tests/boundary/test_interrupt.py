@@ -274,7 +274,7 @@ def test_ctrl_c_leaves_bodies_that_do_not_interact_at_one_time() -> None:
         scene = vv.Scene(vv.Particles(np.ones(8), x, v), field)
         print("ready", flush=True)
         try:
-            scene.run(t=np.linspace(0.0, 1e7, 10001), method="dop853", rtol=1e-13, threads=1)
+            scene.run(t=np.linspace(0.0, 1e7, 1000001), method="dop853", rtol=1e-13, threads=1)
         except vv.Interrupted as error:
             out = error.trajectory
             same = out.final.t0 == out.t[-1] and np.array_equal(out.final.particles.position, out.position[-1])

@@ -11,7 +11,7 @@ PLANETS = vv.problems.outer_solar_system().scene
 
 
 def step_named(message: str) -> float:
-    return float(message.split("try dt = ")[1].split(",")[0])
+    return float(message.split("try dt = ")[1].split(",", maxsplit=1)[0])
 
 
 @pytest.mark.parametrize(

@@ -49,8 +49,9 @@ impl Scaled {
     /// The sum.
     #[inline]
     pub fn plus(self, other: Self) -> Self {
-        if self.exponent == other.exponent {
-            return Self { value: self.value + other.value, exponent: self.exponent };
+        let value = self.value + other.value;
+        if self.exponent == other.exponent && value.is_finite() {
+            return Self { value, exponent: self.exponent };
         }
         self.plus_apart(other)
     }
@@ -135,6 +136,8 @@ mod tests {
         let infinite = Scaled::new(DoubleDouble::from(f64::NEG_INFINITY), 3);
         assert_eq!(infinite.plus(Scaled::from(1.0)).to_f64(), f64::NEG_INFINITY);
         assert_eq!(Scaled::from(1.0).plus(infinite).to_f64(), f64::NEG_INFINITY);
+        assert_eq!(infinite.plus(infinite).to_f64(), f64::NEG_INFINITY);
+        assert_eq!(Scaled::ZERO.plus(Scaled::from(f64::INFINITY)).to_f64(), f64::INFINITY);
         assert_eq!(infinite.times(-2.0).to_f64(), f64::INFINITY);
     }
 }

@@ -54,6 +54,9 @@ pub struct Output {
     pub outcomes: Vec<Outcome>,
     /// The states reached.
     pub reached: Reached,
+    /// Of a scene of one copy, what is still to be made NaN where the rows beyond the last common one are wanted at all:
+    /// the pages of millions of them may never have been touched.
+    pub missing: Vec<Missing>,
 }
 
 /// Copies that are run together.
@@ -106,8 +109,12 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     let mut columns = Columns::new(scene.copies, request.times.len(), scene.particles, &wanted)?;
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
     let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
+    let mut missing = Vec::new();
     for part in &parts {
-        run_part(part, request, &mut columns, &mut outcomes, &mut reached, ticker)?;
+        missing = run_part(part, request, &mut columns, &mut outcomes, &mut reached, ticker)?;
+        if scene.copies > 1 {
+            columns.finish(&core::mem::take(&mut missing));
+        }
     }
     if wanted.keep_states {
         let rows: Vec<usize> = outcomes.iter().map(|outcome| outcome.rows).collect();
@@ -123,7 +130,7 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
             give_back(core::mem::take(array));
         }
     }
-    Ok(Output { plan, columns, outcomes, reached })
+    Ok(Output { plan, columns, outcomes, reached, missing })
 }
 
 /// Refuses what there is no memory for: the columns, the times of each thread, the states reached.
@@ -145,6 +152,7 @@ fn check_memory(scene: &Scene, request: &Request, wanted: &Wanted, threads: usiz
     )
 }
 
+/// Runs a part; gives what was not recorded of it.
 fn run_part(
     part: &Part<'_>,
     request: &Request,
@@ -152,7 +160,7 @@ fn run_part(
     outcomes: &mut [Outcome],
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
-) -> Result<()> {
+) -> Result<Vec<Missing>> {
     let Part { scene, plan, .. } = *part;
     if plan.solution != Solution::Integration {
         let writer = columns.writer(scene, part.members, 1);
@@ -163,7 +171,7 @@ fn run_part(
             reached.position[to..to + size].copy_from_slice(&end.position[from..from + size]);
             reached.velocity[to..to + size].copy_from_slice(&end.velocity[from..from + size]);
         }
-        return Ok(());
+        return Ok(Vec::new());
     }
     check_units(part)?;
     let writer = columns.writer(scene, part.members, plan.threads.1);
@@ -190,9 +198,9 @@ fn run_part(
             })
         })
         .collect();
-    columns.finish(&missing);
     gather(part, request, &reports, columns, outcomes, reached, ticker)?;
-    resolved::look(part, request, outcomes, reached, ticker)
+    resolved::look(part, request, outcomes, reached, ticker)?;
+    Ok(missing)
 }
 
 /// That each particle is recorded from one unit: what lets threads write side by side.

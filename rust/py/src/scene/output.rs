@@ -38,13 +38,15 @@ pub(super) fn output_dict<'py>(
     py: Python<'py>,
     scene: &Scene,
     request: Request,
-    output: Output,
+    mut output: Output,
     seconds: f64,
     ensemble: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (copies, particles) = (scene.copies, scene.particles);
-    let outcomes = &output.outcomes;
-    let times = if ensemble { request.times.len() } else { outcomes[0].rows };
+    let times = if ensemble { request.times.len() } else { output.outcomes[0].rows };
+    if ensemble {
+        output.columns.finish(&output.missing);
+    }
     let columns = PyDict::new(py);
     let set = |name: &str, mut values: Vec<f64>, shape: &[usize]| {
         values.truncate(shape.iter().product());
@@ -61,6 +63,7 @@ pub(super) fn output_dict<'py>(
         set(column.name, values, if column.width == 1 { &shape[..2] } else { &shape })?;
     }
     let dict = PyDict::new(py);
+    let outcomes = &output.outcomes;
     let span = request.times.last().map_or(0.0, |end| (end - scene.t0).abs());
     let mut reached = request.times;
     reached.truncate(times);

@@ -9,7 +9,7 @@ use super::{Outcome, Part, Reached};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::term::potential_and_virial;
+use crate::forces::term::{conserved_by, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 
@@ -32,7 +32,8 @@ pub(super) fn look(
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     let (scene, plan) = (part.scene, part.plan);
-    if plan.method.adaptive() || plan.active.len() > MOST || request.times.is_empty() {
+    let conserved = conserved_by(&scene.forces, &scene.bodies()).energy;
+    if !conserved || plan.method.adaptive() || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
     let pairs = plan.pairs_per_evaluation();
