@@ -180,7 +180,7 @@ def test_a_spring_and_gravity_add() -> None:
 @pytest.mark.parametrize("method", ["leapfrog", "yoshida4", "kahan_li8", "stormer13"])
 @pytest.mark.parametrize("force", [vv.LinearDrag(1.0), vv.UniformMagneticField([0.0, 0.0, 1.0])], ids=repr)
 def test_a_method_without_velocities_refuses_a_force_that_looks_at_them(method: str, force: vv.forces.Force) -> None:
-    with pytest.raises(vv.InvalidInput, match=rf"{type(force).__name__}.*rk4, dop853") as caught:
+    with pytest.raises(vv.InvalidInput, match=rf"{type(force).__name__}.*rk4, .*dop853") as caught:
         vv.Scene(ONE, force).run(t=1.0, method=method, dt=0.1)
     assert caught.value.argument == "method"
 
