@@ -192,7 +192,7 @@ fn a_near_parabola_is_not_straight_before_its_time() {
     for k in [61, 75, 90] {
         let t = 2f64.powi(k);
         let (position, velocity) = orbit.state(t);
-        let distance = (4.5 * t * t).cbrt();
+        let distance = (4.5_f64 * t * t).cbrt();
         // Of relative order β r/μ ≤ 2^-20 and (q/r)^½ ≥ 2^-20.
         assert!((position.norm() / distance - 1.0).abs() < 1e-5, "{:e} {distance:e}", position.norm());
         assert!((velocity.norm() / (2.0 / distance).sqrt() - 1.0).abs() < 1e-5);
@@ -231,7 +231,7 @@ fn open_motion_at_any_time_in_any_unit() {
     let parabola = |r: f64| KeplerOrbit::new(r, Vector3::x() * r, Vector3::new(1.0, 1.0, 0.0)).unwrap();
     for t in [1e-20_f64, 1.0, 1e10] {
         // r³ = 9μt²/2, the rest is (q/r)^½ < 2^-300 of it.
-        let distance = (4.5 * t * t).cbrt() * unit.cbrt();
+        let distance = (4.5_f64 * t * t).cbrt() * unit.cbrt();
         close(parabola(unit).state(t).0.norm(), distance);
         close(parabola(unit).state(t).1.norm(), (2.0 * unit / distance).sqrt());
     }
