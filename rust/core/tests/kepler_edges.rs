@@ -256,7 +256,9 @@ fn elements_that_overflow_are_infinite() {
     // The speed at 1e-100 of a mass of 1e300 is 1e200, though μ/r is not a number.
     let (_, velocity) = state_from_elements(1e300, shape(1e-100, 0.0), Anomaly::True(0.0)).unwrap();
     close(velocity.y, 1e200);
-    assert!(state_from_elements(1.0, shape(1e305, 1.0), Anomaly::True(core::f64::consts::PI - 1e-4)).is_err());
+    assert!(
+        state_from_elements(1.0, shape(1e305, 1.0), Anomaly::True(core::f64::consts::PI - 1e-4)).is_err()
+    );
 }
 
 /// An angular momentum of 2^±900 times what energy and strength make: e = √(1 + 2El²/mγ²) and the rest, of which l²
