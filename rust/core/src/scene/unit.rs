@@ -16,6 +16,7 @@ use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
 use crate::forces::bodies::PreciseBodies;
+use crate::forces::term::Coupling;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
@@ -44,8 +45,12 @@ impl Unit {
         self.recorded.start == 0
     }
 
-    /// Whether nothing that has a mass is elsewhere.
+    /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
+    /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {
+        if scene.forces.iter().any(|force| matches!(force.coupling(), Coupling::Listed(_))) {
+            return self.bodies.iter().copied().eq(0..scene.particles);
+        }
         let massive = scene.masses(self.copy).iter().filter(|&&mass| mass > 0.0).count();
         let own = self.bodies.iter().filter(|&&body| scene.masses(self.copy)[body] > 0.0).count();
         self.bodies.len() == scene.particles || (own > 0 && own == massive)
