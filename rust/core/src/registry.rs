@@ -8,7 +8,7 @@ use crate::forces::{
 };
 use crate::ode::Method;
 use crate::ode::methods::{
-    bogacki_shampine32, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+    bogacki_shampine32, boris, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
@@ -23,6 +23,7 @@ pub static METHODS: &[&Method] = &[
     &leapfrog::METHOD,
     &yoshida4::METHOD,
     &kahan_li8::METHOD,
+    &boris::METHOD,
     &stormer13::METHOD,
 ];
 
@@ -42,7 +43,9 @@ static IMPLICIT: [&str; 3] = ["Radau", "BDF", "LSODA"];
 /// # Errors
 /// A name that is none, or of a method that does not take such equations; the message lists those that do.
 pub fn solver(name: &str) -> Result<&'static Method> {
-    let serves = |method: &&Method| method.serves(Form::FirstOrder(1), Needs { time: true, velocity: true });
+    let serves = |method: &&Method| {
+        method.serves(Form::FirstOrder(1), Needs { time: true, velocity: true, rotation: false })
+    };
     let ours = METHODS.iter().copied().filter(serves).map(|method| method.name);
     let names = SCIPY.iter().map(|(scipy, _)| *scipy).chain(ours);
     let refused = |why: &str| {

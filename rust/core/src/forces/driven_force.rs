@@ -88,7 +88,7 @@ impl ForceTerm for DrivenForce {
         self.amplitude.iter().any(|&f| f != 0.0)
     }
     fn needs(&self) -> Needs {
-        Needs { velocity: false, time: true }
+        Needs { time: true, ..Needs::default() }
     }
     fn keeps_plane(&self) -> bool {
         self.amplitude[2] == 0.0
@@ -144,6 +144,6 @@ impl Force<Lanes> for Kernel {
         Ok(())
     }
     fn needs(&self) -> Needs {
-        Needs { velocity: false, time: true }
+        Needs { time: true, ..Needs::default() }
     }
 }

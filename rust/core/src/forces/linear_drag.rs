@@ -50,7 +50,7 @@ impl ForceTerm for LinearDrag {
         Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
     }
     fn needs(&self) -> Needs {
-        Needs { velocity: true, time: false }
+        Needs { velocity: true, ..Needs::default() }
     }
     fn keeps_plane(&self) -> bool {
         true
@@ -86,6 +86,6 @@ impl Force<Lanes> for Kernel {
         Ok(())
     }
     fn needs(&self) -> Needs {
-        Needs { velocity: true, time: false }
+        Needs { velocity: true, ..Needs::default() }
     }
 }

@@ -233,7 +233,7 @@ impl Request {
                 }
                 Ok(Box::new(EqualSteps::new(tableau, self.direction() * dt, system, state)))
             }
-            Scheme::Splitting(_) | Scheme::Multistep(_) => {
+            Scheme::Splitting(_) | Scheme::Boris(_) | Scheme::Multistep(_) => {
                 refused("method", format!("{} takes no equations y' = f(t, y)", method.name))
             }
         }

@@ -108,7 +108,7 @@ impl<S: Element> Stages<S> {
             slope,
             stages: stages(&row.position),
         });
-        let velocity = if self.needs.velocity {
+        let velocity = if self.needs.velocities() {
             S::pass(Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) });
             &self.velocity
         } else {

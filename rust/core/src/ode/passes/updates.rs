@@ -14,7 +14,7 @@ use crate::numerics::real::Real;
 /// Kahan's three operations instead of Knuth's six: they differ only where a coordinate is smaller than its own
 /// increment, by no more than the rounding that every increment brings along.
 #[inline(always)]
-pub(super) fn add_compensated<S: Real>(y: S, e: S, increment: S) -> (S, S) {
+pub(crate) fn add_compensated<S: Real>(y: S, e: S, increment: S) -> (S, S) {
     let increment = increment + e;
     let sum = y + increment;
     (sum, increment - (sum - y))
