@@ -93,13 +93,14 @@ def orbit_elements(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]: ...
 def orbit_state(
+    name: str,
     mu: NDArray[np.float64],
-    pericentre: NDArray[np.float64],
+    pericenter: NDArray[np.float64],
     eccentricity: NDArray[np.float64],
     inclination: NDArray[np.float64],
     node: NDArray[np.float64],
-    argument_of_pericentre: NDArray[np.float64],
-    true_anomaly: NDArray[np.float64],
+    argument_of_pericenter: NDArray[np.float64],
+    anomaly: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def orbit_propagate(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64], t: NDArray[np.float64]

@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._declared import Declared, make
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -32,11 +32,7 @@ class Force(Declared):
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         if "_parameters" not in vars(cls):
-            raise InvalidInput(
-                "Force",
-                f"expected one of visviva.forces, got the subclass {cls.__name__}; forces are described in the "
-                "core, one file each: docs/how-to/add-a-force.md",
-            )
+            refuse_subclass(cls, "forces are described in it, one file each: docs/how-to/add-a-force.md")
 
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
