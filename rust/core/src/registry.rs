@@ -1,5 +1,8 @@
-//! What the package offers, one line each: methods, potentials and forces.
+//! What the package offers, one line each: methods, potentials, forces and closed forms.
 
+use crate::closed_forms::{
+    ClosedForm, crossed_fields, fixed_center, free, linear_drag, one_massive, two_body, uniform,
+};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{ForceDeclaration, central_field, uniform_field};
@@ -76,3 +79,14 @@ pub static FORCES: &[&ForceDeclaration] =
 pub fn force(name: &str) -> Option<&'static ForceDeclaration> {
     FORCES.iter().copied().find(|declaration| declaration.name == name)
 }
+
+/// Every closed form; of those that apply to an ensemble member, the first is taken.
+pub static CLOSED_FORMS: &[&ClosedForm] = &[
+    &free::FORM,
+    &uniform::FORM,
+    &two_body::FORM,
+    &one_massive::FORM,
+    &fixed_center::FORM,
+    &linear_drag::FORM,
+    &crossed_fields::FORM,
+];

@@ -2,6 +2,7 @@
 
 pub mod angles;
 pub mod binary;
+pub mod decay;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
@@ -12,6 +13,7 @@ pub mod philox;
 pub mod points;
 pub mod power_of_two;
 pub mod real;
+pub mod rotation;
 pub mod scaled;
 pub mod simd;
 pub mod stumpff;

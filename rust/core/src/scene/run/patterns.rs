@@ -1,19 +1,24 @@
-//! Batches whose copies differ in which bodies are massless: each such pattern is a run of its own.
+//! Batches whose copies differ in how their motion is found, or in which bodies are massless: each such pattern is a run
+//! of its own.
 
 use super::super::Scene;
+use super::super::plan::Solutions;
 use std::collections::BTreeMap;
 
-/// Copies with the same set of massless bodies, and their scene; `None` if that is all of them.
+/// Copies that have closed forms, copies that are integrated with the same set of massless bodies, and their scenes;
+/// `None` if that is all of them.
 ///
 /// They are run apart, so that each has the bits it has alone.
-pub(super) fn patterns(scene: &Scene) -> Option<Vec<(Vec<usize>, Scene)>> {
+pub(super) fn patterns(scene: &Scene, solutions: &Solutions) -> Option<Vec<(Vec<usize>, Scene)>> {
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
-    if (1..scene.copies).all(|copy| pattern(copy).eq(pattern(0))) {
+    let alike = || (1..scene.copies).all(|copy| pattern(copy).eq(pattern(0)));
+    if !solutions.integrates() || (solutions.integrates_all() && alike()) {
         return None;
     }
-    let mut groups: BTreeMap<Vec<bool>, Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<Option<Vec<bool>>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
-        groups.entry(pattern(copy).collect()).or_default().push(copy);
+        let integrated = solutions.of_member(copy).is_none();
+        groups.entry(integrated.then(|| pattern(copy).collect())).or_default().push(copy);
     }
     Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect())
 }
