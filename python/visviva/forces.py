@@ -47,11 +47,12 @@ class Force(Declared):
             For a boost, if the force has a place or a medium at rest, which would move.
         """
         points = [p.name for p in self._parameters if p.kind == "point"]
-        if velocity.any() and points:
+        if velocity.any() and self._at_rest:
+            advice = ", or let a heavy body be the center" if points else ""
             raise InvalidInput(
                 "velocity",
-                f"{type(self).__name__} has a fixed {points[0]}, which would move in the boosted frame; "
-                f"shift the position only, or let a heavy body be the {points[0]}",
+                f"{type(self).__name__} has a fixed {self._at_rest}, which would move in the boosted frame; "
+                f"shift the position only{advice}",
             )
         moved = {name: np.add(getattr(self, name), position) for name in points}
         return type(self)(**(self._values() | moved)) if moved else self
@@ -68,6 +69,19 @@ class Force(Declared):
             p.name: axial @ np.array(getattr(self, p.name)) for p in self._parameters if p.kind == "axial_vector"
         }
         return type(self)(**(self._values() | turned)) if turned else self
+
+    def reversed(self) -> Self:
+        """The force under which bodies with their velocities turned round retrace their path.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is none: for drag, or a force that goes on with time.
+        """
+        if self._one_way:
+            raise InvalidInput("forces", f"{type(self).__name__} cannot be reversed: {self._one_way}")
+        axial = {p.name: np.negative(getattr(self, p.name)) for p in self._parameters if p.kind == "axial_vector"}
+        return type(self)(**(self._values() | axial)) if axial else self
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit.

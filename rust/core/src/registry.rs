@@ -5,7 +5,10 @@ use crate::closed_forms::{
 };
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
-use crate::forces::{ForceDeclaration, central_field, uniform_field};
+use crate::forces::{
+    ForceDeclaration, central_field, driven_force, linear_drag, pair_potential, spring, uniform_field,
+    uniform_magnetic_field,
+};
 use crate::ode::Method;
 use crate::ode::methods::{
     bogacki_shampine32, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
@@ -72,8 +75,16 @@ pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
 }
 
 /// Every force, in the order of the documentation.
-pub static FORCES: &[&ForceDeclaration] =
-    &[&newton::DECLARATION, &uniform_field::DECLARATION, &central_field::DECLARATION];
+pub static FORCES: &[&ForceDeclaration] = &[
+    &newton::DECLARATION,
+    &uniform_field::DECLARATION,
+    &central_field::DECLARATION,
+    &linear_drag::DECLARATION,
+    &uniform_magnetic_field::DECLARATION,
+    &driven_force::DECLARATION,
+    &spring::DECLARATION,
+    &pair_potential::DECLARATION,
+];
 
 /// The force of a name.
 pub fn force(name: &str) -> Option<&'static ForceDeclaration> {

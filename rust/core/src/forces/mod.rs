@@ -10,9 +10,14 @@
 pub mod bodies;
 pub mod central_field;
 pub mod context;
+pub mod driven_force;
 pub mod gravity;
+pub mod linear_drag;
+pub mod pair_potential;
+pub mod spring;
 pub mod term;
 pub mod uniform_field;
+pub mod uniform_magnetic_field;
 
 pub use term::{ForceDeclaration, ForceTerm};
 

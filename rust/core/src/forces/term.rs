@@ -90,6 +90,25 @@ impl<'a> Bodies<'a> {
         let (copy, particle) = (index / self.particles, index % self.particles);
         if self.copies == 1 { format!("{what}[{particle}]") } else { format!("{what}[{copy}, {particle}]") }
     }
+    /// Two bodies of one copy in one place, by their places in the arrays, if that matters for their masses.
+    pub fn coincident(&self, matters: impl Fn(f64, f64) -> bool) -> Option<(usize, usize)> {
+        for copy in 0..self.copies {
+            let (mass, position) = self.copy(copy);
+            // Sorted along x, bodies that coincide are neighbours: O(N log N), not O(N²).
+            let mut order: Vec<usize> = (0..self.particles).collect();
+            order.sort_by(|&i, &j| {
+                let (a, b) = (position[i], position[j]);
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2])).then(i.cmp(&j))
+            });
+            for pair in order.windows(2) {
+                let (i, j) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                if position[i] == position[j] && matters(mass[i], mass[j]) {
+                    return Some((copy * self.particles + i, copy * self.particles + j));
+                }
+            }
+        }
+        None
+    }
     /// Refuses an array of a parameter that is neither one number nor one for each body.
     ///
     /// # Errors

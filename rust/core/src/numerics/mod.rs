@@ -2,6 +2,7 @@
 
 pub mod angles;
 pub mod binary;
+pub mod cosine;
 pub mod decay;
 pub mod double_double;
 pub mod element;

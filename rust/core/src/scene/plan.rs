@@ -14,12 +14,14 @@ use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
 use crate::ode::Method;
+use crate::ode::system::{Form, Needs};
+use crate::registry::METHODS;
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -66,6 +68,8 @@ pub struct Plan {
     pub outputs_between: usize,
     /// Columns to be computed.
     pub record: Vec<String>,
+    /// The time of the scene.
+    pub t0: f64,
     copies: usize,
     particles: usize,
 }
@@ -80,6 +84,7 @@ impl Plan {
         let Checked { method, automatic, direction, dt } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
+        check_method(method, &forces)?;
         let groups = Groups::of(scene.particles, &forces);
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
@@ -120,6 +125,7 @@ impl Plan {
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
             record: request.record.clone(),
+            t0: scene.t0,
             copies: scene.copies,
             particles: scene.particles,
         };
@@ -212,6 +218,24 @@ impl Plan {
         };
         self.forces.iter().map(of).sum()
     }
+}
+
+/// Refuses a method that cannot take what a force looks at.
+fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
+    // The numbers of a state do not matter here.
+    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
+    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
+    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
+    Err(Error::invalid(
+        "method",
+        format!(
+            "{} cannot take {}, which looks at velocities; expected one of {}",
+            method.name,
+            force.declaration().class_name,
+            others.collect::<Vec<_>>().join(", ")
+        ),
+    ))
 }
 
 /// The forces that do anything in this scene.

@@ -20,6 +20,7 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         active: units[0].unit.active,
         systems: &systems,
         units: plan.units,
+        t0: plan.t0,
         threads,
     };
     if let (true, Some((constant, softening))) = (plan.relative, plan.forces[0].as_newtonian()) {
