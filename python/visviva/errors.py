@@ -151,7 +151,7 @@ class CloseEncounter(Error, RuntimeError):
         )
         return (
             f"the step size fell to zero at t = {self.time}: {who}; "
-            "soften the force, or use a fixed step that passes over the encounter"
+            "soften the force, or end the run before it"
         )
 
 

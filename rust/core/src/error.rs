@@ -50,7 +50,7 @@ impl fmt::Display for Error {
             Self::CloseEncounter { time, bodies: (i, j), distance } => write!(
                 formatter,
                 "the step size fell to zero at t = {}: bodies {i} and {j} are {} apart; \
-                 soften the force, or use a fixed step that passes over the encounter",
+                 soften the force, or end the run before it",
                 number(*time),
                 number(*distance)
             ),

@@ -1,8 +1,6 @@
 //! What the package offers, one line each: methods, potentials, forces and closed forms.
 
-use crate::closed_forms::{
-    ClosedForm, crossed_fields, fixed_center, free, linear_drag, one_massive, two_body, uniform,
-};
+use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
@@ -93,11 +91,11 @@ pub fn force(name: &str) -> Option<&'static ForceDeclaration> {
 
 /// Every closed form; of those that apply to an ensemble member, the first is taken.
 pub static CLOSED_FORMS: &[&ClosedForm] = &[
-    &free::FORM,
-    &uniform::FORM,
-    &two_body::FORM,
-    &one_massive::FORM,
-    &fixed_center::FORM,
-    &linear_drag::FORM,
-    &crossed_fields::FORM,
+    &closed_forms::free::FORM,
+    &closed_forms::uniform::FORM,
+    &closed_forms::two_body::FORM,
+    &closed_forms::one_massive::FORM,
+    &closed_forms::fixed_center::FORM,
+    &closed_forms::linear_drag::FORM,
+    &closed_forms::crossed_fields::FORM,
 ];

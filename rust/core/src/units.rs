@@ -6,7 +6,7 @@ use crate::numerics::power_of_two::scale;
 pub type Dimension = [i32; 3];
 
 /// Units, as exponents of two.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Units {
     /// Of length.
     pub length: i32,

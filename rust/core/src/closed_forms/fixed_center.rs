@@ -11,9 +11,7 @@ use nalgebra::Vector3;
 pub static FORM: ClosedForm = ClosedForm {
     name: "Kepler orbits",
     reason: "the only force is an inverse-distance centre",
-    applies: |member| {
-        matches!(&member.forces[..], [force] if force.as_inverse_distance_center().is_some())
-    },
+    applies: |member| matches!(&member.forces[..], [force] if force.as_inverse_distance_center().is_some()),
     motion: |member, ticker| {
         let center = member.forces.iter().find_map(|force| force.as_inverse_distance_center());
         let Some((k, center)) = center else {
@@ -33,14 +31,9 @@ pub(super) struct Orbit {
 
 impl Orbit {
     /// From the gravitational parameter and the states of the center and the particle.
-    pub(super) fn new(
-        mu: f64,
-        center: ([f64; 3], [f64; 3]),
-        particle: ([f64; 3], [f64; 3]),
-    ) -> Result<Self> {
+    pub(super) fn new(mu: f64, center: ([f64; 3], [f64; 3]), particle: ([f64; 3], [f64; 3])) -> Result<Self> {
         let difference = |a: [f64; 3], b: [f64; 3]| Vector3::from_fn(|c, _| b[c] - a[c]);
-        let orbit =
-            KeplerOrbit::new(mu, difference(center.0, particle.0), difference(center.1, particle.1))?;
+        let orbit = KeplerOrbit::new(mu, difference(center.0, particle.0), difference(center.1, particle.1))?;
         Ok(Self { orbit, center: Parabola::line(center.0, center.1) })
     }
 }

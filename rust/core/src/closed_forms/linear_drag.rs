@@ -38,9 +38,9 @@ impl Drag {
         let times: Vec<f64> = member.forces.iter().filter_map(|force| force.as_linear_drag()).collect();
         let tau = match times[..] {
             [only] => Scaled::from(only),
-            _ => one.over(
-                times.iter().fold(Scaled::ZERO, |rate, &tau| rate.plus(one.over(Scaled::from(tau)))),
-            ),
+            _ => {
+                one.over(times.iter().fold(Scaled::ZERO, |rate, &tau| rate.plus(one.over(Scaled::from(tau)))))
+            }
         };
         let g = uniform_part(&member.forces);
         Self {

@@ -20,8 +20,7 @@ pub static FORM: ClosedForm = ClosedForm {
         let (Some((constant, _)), &[one, other]) = (constant, member.mass) else {
             return Err(Error::Internal("two bodies that are not".to_owned()));
         };
-        let states =
-            [0, 1].map(|i| (Vector3::from(member.position[i]), Vector3::from(member.velocity[i])));
+        let states = [0, 1].map(|i| (Vector3::from(member.position[i]), Vector3::from(member.velocity[i])));
         Ok(Box::new(TwoBody::new(constant, [one, other], states)?))
     },
 };

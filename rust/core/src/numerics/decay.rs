@@ -45,11 +45,7 @@ impl Decay {
         }
         let first = DoubleDouble::one() - u * second;
         let factor = DoubleDouble::one() - u * first;
-        Self {
-            factor: Scaled::new(factor, 0),
-            first: Scaled::new(first, 0),
-            second: Scaled::new(second, 0),
-        }
+        Self { factor: Scaled::new(factor, 0), first: Scaled::new(first, 0), second: Scaled::new(second, 0) }
     }
 }
 

@@ -50,6 +50,9 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
                 let value = a[c * shape.rows + row].0[lane];
                 result[prepared.unit.bodies[slot]][c] = scale(value, -plan.units.acceleration());
             }
+            for c in 0..3 {
+                result[prepared.unit.bodies[slot]][c] += prepared.origin.fall[c];
+            }
         }
     }
     Ok(result)

@@ -1,41 +1,59 @@
 //! The units and the origin in which a scene is integrated.
 //!
 //! Lengths, times and masses are divided by powers of two near the scene's own, which is exact and keeps
-//! 1e±100 units from overflowing. A scene of pair forces that sits far from the origin, or moves fast as
-//! a whole, is integrated about its centre of mass: the small differences that matter then keep their
-//! digits. The centre is only moved away from the origin where that saves some.
+//! 1e±100 units from overflowing. Bodies between which forces act but on which nothing else does, unless it
+//! accelerates all of them alike, are integrated about their center of mass, and fall with it: the differences that
+//! matter keep their digits, however far the whole may go.
 
 pub use crate::units::Units;
 
 use super::Scene;
-use crate::numerics::double_double::two_sum;
+use crate::forces::ForceTerm;
+use crate::forces::term::Coupling;
+use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::power_of_two::exponent;
+use crate::numerics::real::Real;
+use std::sync::Arc;
+
+/// Units are powers of 2 to the power of multiples of this: members of an ensemble of about the same size share theirs,
+/// and what is up to 2^32 larger or smaller than its unit is far from overflowing.
+const COARSE: i32 = 64;
+
+/// The nearest multiple.
+fn coarse(exponent: i32) -> i32 {
+    (exponent + COARSE / 2).div_euclid(COARSE) * COARSE
+}
 
 impl Units {
-    /// Units near the scene's own sizes.
-    pub fn of(scene: &Scene, offsets: &[Origin]) -> Self {
+    /// Units near the own sizes of a copy of a scene.
+    pub fn of(scene: &Scene, copy: usize, origin: &Origin) -> Self {
         let mut size = 0.0_f64;
         let mut speed = 0.0_f64;
-        for copy in 0..scene.copies {
-            let origin = offsets[copy];
-            for (x, v) in scene.positions(copy).iter().zip(scene.velocities(copy)) {
-                for c in 0..3 {
-                    size = size.max((x[c] - origin.center[c]).abs());
-                    speed = speed.max((v[c] - origin.drift[c]).abs());
-                }
+        for (x, v) in scene.positions(copy).iter().zip(scene.velocities(copy)) {
+            for c in 0..3 {
+                size = size.max((x[c] - origin.center[c]).abs());
+                speed = speed.max((v[c] - origin.drift[c]).abs());
             }
         }
+        let masses = scene.masses(copy);
         let length = exponent(scene.forces.iter().map(|force| force.length()).fold(size, f64::max));
-        let mass = exponent(scene.mass.iter().copied().fold(0.0, f64::max));
+        let mass = exponent(masses.iter().copied().fold(0.0, f64::max));
         // The time in which a force moves the largest mass over that length, else the crossing time.
-        let massive = scene.mass.iter().any(|&mass| mass > 0.0);
+        let massive = masses.iter().any(|&mass| mass > 0.0);
         let given =
             scene.forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
         let time = given.unwrap_or(if speed > 0.0 { length - exponent(speed) } else { 0 });
+        let length = coarse(length);
         // One factor then takes a length or a velocity back to the scene's units.
-        let time = time.clamp(length - 1000, length + 1000);
-        Self { length, time, mass }
+        Self { length, time: coarse(time).clamp(length - 1000, length + 1000), mass: coarse(mass) }
     }
+}
+
+/// Whether the forces act between bodies, and on all of them alike.
+pub fn closed(forces: &[Arc<dyn ForceTerm>]) -> bool {
+    let between =
+        |force: &Arc<dyn ForceTerm>| force.coupling() != Coupling::None && force.conserves().momentum;
+    forces.iter().any(between) && forces.iter().all(|force| between(force) || force.as_uniform().is_some())
 }
 
 /// Where the origin of the integration lies, and how it moves.
@@ -45,36 +63,75 @@ pub struct Origin {
     pub center: [f64; 3],
     /// Its velocity.
     pub drift: [f64; 3],
+    /// Its acceleration.
+    pub fall: [f64; 3],
 }
 
-/// How far from the origin, in units of its own extent, a scene must sit to be moved.
-const FAR: f64 = 8.0;
+/// An origin at some time: place and velocity, with what they leave out.
+#[derive(Clone, Copy, Debug)]
+pub struct Moved {
+    /// Its place, component by component.
+    pub position: [(f64, f64); 3],
+    /// Its velocity.
+    pub velocity: [(f64, f64); 3],
+}
+
+impl Moved {
+    /// The origin of the scene.
+    pub const NOWHERE: Self = Self { position: [(0.0, 0.0); 3], velocity: [(0.0, 0.0); 3] };
+}
+
+/// Below this share of the extent a center is where it should be, up to rounding, and is left there.
+const NEAR: f64 = 8.881_784_197_001_252e-16; // 2^-50
 
 impl Origin {
-    /// The origin for a copy of a scene; `closed` when only pair forces act.
-    pub fn of(scene: &Scene, copy: usize, closed: bool) -> Self {
-        if !closed {
-            return Self::default();
-        }
+    /// The origin for a copy of a scene whose forces are [`closed`].
+    pub fn of(scene: &Scene, copy: usize, forces: &[Arc<dyn ForceTerm>]) -> Self {
         let mass = scene.masses(copy);
-        Self { center: far_mean(mass, scene.positions(copy)), drift: far_mean(mass, scene.velocities(copy)) }
+        let mut fall = [0.0; 3];
+        for g in forces.iter().filter_map(|force| force.as_uniform()) {
+            for c in 0..3 {
+                fall[c] += g[c];
+            }
+        }
+        Self { center: mean(mass, scene.positions(copy)), drift: mean(mass, scene.velocities(copy)), fall }
     }
 
-    /// A coordinate of the scene from one relative to this origin, as (nearest number, rest).
-    #[inline]
-    pub fn restore(&self, component: usize, relative: f64, elapsed: f64) -> (f64, f64) {
-        let (center, drift) = (self.center[component], self.drift[component]);
-        if center == 0.0 && drift == 0.0 {
-            return (relative, 0.0);
+    /// Whether it is anywhere but at rest in the origin of the scene.
+    pub fn is_elsewhere(&self) -> bool {
+        *self != Self::default()
+    }
+
+    /// Where it is after a time.
+    pub fn at(&self, elapsed: f64) -> Moved {
+        let pair = |x: DoubleDouble| (x.high(), x.low());
+        let mut moved = Moved::NOWHERE;
+        for c in 0..3 {
+            let [center, drift, fall] = [self.center[c], self.drift[c], self.fall[c]];
+            if drift == 0.0 && fall == 0.0 {
+                moved.position[c] = (center, 0.0);
+                continue;
+            }
+            let t = DoubleDouble::from(elapsed);
+            let [center, drift, fall] = [center, drift, fall].map(DoubleDouble::from);
+            moved.position[c] = pair(center + t * (drift + fall * t.scale(0.5)));
+            moved.velocity[c] = pair(drift + fall * t);
         }
-        let (moved, first) = two_sum(center, drift * elapsed);
-        let (sum, second) = two_sum(moved, relative);
-        (sum + (first + second), (sum - (sum + (first + second))) + (first + second))
+        moved
     }
 }
 
-/// The mass-weighted mean of the points if it is far from zero compared with their extent, else zero.
-fn far_mean(mass: &[f64], points: &[[f64; 3]]) -> [f64; 3] {
+/// A coordinate of the scene from one relative to an origin, each with what it leaves out.
+#[inline(always)]
+pub fn restored<S: Real>(origin: (S, S), relative: (S, S)) -> (S, S) {
+    let (sum, error) = two_sum(origin.0, relative.0);
+    let rest = error + (origin.1 + relative.1);
+    let value = sum + rest;
+    (value, rest - (value - sum))
+}
+
+/// The mass-weighted mean of the points, or zero where it is as good as that.
+fn mean(mass: &[f64], points: &[[f64; 3]]) -> [f64; 3] {
     let total: f64 = mass.iter().sum();
     let count = points.len() as f64;
     // Masses are divided first, so that 1e300-kilogram stars do not overflow the sum.
@@ -93,5 +150,5 @@ fn far_mean(mass: &[f64], points: &[[f64; 3]]) -> [f64; 3] {
         }
     }
     let distance = mean.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
-    if distance.is_finite() && distance > FAR * extent { mean } else { [0.0; 3] }
+    if distance.is_finite() && distance > NEAR * extent { mean } else { [0.0; 3] }
 }

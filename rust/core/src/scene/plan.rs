@@ -10,7 +10,7 @@ pub use solutions::{Solutions, member};
 
 use super::Scene;
 use super::closed_form::rows_per_chunk;
-use super::frame::{Origin, Units};
+use super::frame::{Origin, Units, closed};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
@@ -58,6 +58,10 @@ pub struct Plan {
     pub units: Units,
     /// Its origin, for each copy.
     pub origins: Vec<Origin>,
+    /// Forces that accelerate all alike, which the origin's motion takes out.
+    pub alike: usize,
+    /// The time from the start to the end.
+    pub span: f64,
     /// Whether the method moves the massive bodies relative to the first one.
     pub relative: bool,
     /// How units lie in lanes.
@@ -95,9 +99,15 @@ impl Plan {
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
         let solutions = if automatic { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
-        let closed = !forces.is_empty()
-            && forces.iter().all(|force| force.coupling() != Coupling::None && force.conserves().momentum);
-        let origins: Vec<Origin> = (0..scene.copies).map(|copy| Origin::of(scene, copy, closed)).collect();
+        let planar = planar(scene, &forces);
+        let closed = solutions.integrates() && closed(&forces);
+        let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
+        let origins: Vec<Origin> = (0..scene.copies).map(origin).collect();
+        // What accelerates all alike moves the origin, and nothing relative to it.
+        let alike =
+            if closed { forces.iter().filter(|force| force.as_uniform().is_some()).count() } else { 0 };
+        let forces: Vec<_> =
+            forces.into_iter().filter(|force| !closed || force.as_uniform().is_none()).collect();
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && serves(method, active.len());
@@ -113,8 +123,10 @@ impl Plan {
             dt,
             direction,
             solutions,
-            planar: planar(scene, &forces),
-            units: Units::of(scene, &origins),
+            planar,
+            alike,
+            span: (request.times[request.times.len() - 1] - scene.t0).abs(),
+            units: Units::of(scene, 0, &origins[0]),
             forces,
             groups,
             active,

@@ -87,7 +87,7 @@ impl Part<'_> {
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
     let plan = Plan::new(scene, request)?;
-    let groups = patterns(scene, &plan.solutions);
+    let groups = patterns(scene, &plan);
     let plans: Vec<Plan> =
         groups.iter().flatten().map(|(_, part)| Plan::new(part, request)).collect::<Result<_>>()?;
     let parts: Vec<Part<'_>> = match &groups {

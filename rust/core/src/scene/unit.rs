@@ -16,13 +16,14 @@ use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
 use crate::forces::bodies::PreciseBodies;
+use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
 use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
 
-/// PreciseBodies that are integrated together: massive ones first.
+/// Bodies that are integrated together: massive ones first.
 #[derive(Clone, Debug)]
 pub struct Unit {
     /// Which copy of the scene.
@@ -60,6 +61,8 @@ pub struct Prepared {
     pub position: Vec<[f64; 3]>,
     /// Velocities.
     pub velocity: Vec<[f64; 3]>,
+    /// What the positions and the velocities leave out.
+    pub rests: Vec<[[f64; 3]; 2]>,
     /// `G·m` of the active bodies; zero without gravity.
     pub strength: Vec<f64>,
     /// Masses.
@@ -87,12 +90,17 @@ impl Prepared {
         let (masses, positions, velocities) =
             (scene.masses(unit.copy), scene.positions(unit.copy), scene.velocities(unit.copy));
         let relative = |x: [f64; 3], origin: [f64; 3], exponent: i32| {
-            core::array::from_fn(|c| scale(x[c] - origin[c], exponent))
+            let [a, b, c] = [0, 1, 2].map(|c| two_sum(x[c], -origin[c]));
+            [[a.0, b.0, c.0], [a.1, b.1, c.1]].map(|values| values.map(|value| scale(value, exponent)))
         };
-        let position: Vec<[f64; 3]> =
-            unit.bodies.iter().map(|&i| relative(positions[i], origin.center, -units.length)).collect();
-        let velocity: Vec<[f64; 3]> =
-            unit.bodies.iter().map(|&i| relative(velocities[i], origin.drift, units.velocity())).collect();
+        let (mut position, mut velocity, mut rests) = (Vec::new(), Vec::new(), Vec::new());
+        for &i in unit.bodies.iter() {
+            let [x, x_rest] = relative(positions[i], origin.center, -units.length);
+            let [v, v_rest] = relative(velocities[i], origin.drift, units.velocity());
+            position.push(x);
+            velocity.push(v);
+            rests.push([x_rest, v_rest]);
+        }
         let mass: Vec<f64> = unit.bodies.iter().map(|&i| scale(masses[i], -units.mass)).collect();
         let constants = plan.forces.iter().filter_map(|force| force.as_newtonian());
         let constant: f64 = constants.map(|(constant, _)| units.take(constant, [3, -1, -2])).sum();
@@ -103,6 +111,7 @@ impl Prepared {
             unit,
             position,
             velocity,
+            rests,
             strength,
             mass,
             origin,

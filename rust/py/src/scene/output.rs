@@ -120,7 +120,7 @@ fn status(ending: &Ending) -> i8 {
     match ending {
         Ending::Finished => 0,
         Ending::CloseEncounter { .. } => 1,
-        Ending::NotFinite => 2,
+        Ending::NoStep | Ending::NotFinite => 2,
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
     }
@@ -134,6 +134,12 @@ fn failure(outcome: &Outcome) -> Option<Error> {
         Ending::CloseEncounter { bodies, distance } => {
             Some(Error::CloseEncounter { time, bodies: *bodies, distance: *distance })
         }
+        Ending::NoStep => Some(Error::Convergence {
+            message: "the step size fell to zero, and no bodies are close: the tolerances ask for more than a step can \
+                      give; raise rtol or atol"
+                .to_owned(),
+            time,
+        }),
         Ending::NotFinite => Some(Error::Convergence {
             message: "the state became infinite or undefined; a smaller step, a softening or an adaptive \
                       method may pass"

@@ -235,7 +235,7 @@ impl<'a> Run<'a> {
         let ending = if outcome.finished.lane(lane) {
             Ending::Finished
         } else if outcome.stuck.lane(lane) {
-            stuck::why(self.job, &slot.unit, &self.state, lane)
+            stuck::why(self.job, &slot.unit, &self.state, lane, elapsed)
         } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
             Ending::TooManySteps
         } else {

@@ -18,6 +18,8 @@ pub enum Ending {
         /// Their distance.
         distance: f64,
     },
+    /// The step fell to zero, and no bodies are close.
+    NoStep,
     /// The state became infinite or undefined.
     NotFinite,
     /// The most steps allowed were taken.

@@ -102,6 +102,12 @@ impl Plan {
             if !self.solutions.integrates_all() {
                 skip("stepping of some ensemble members", "their motion has a closed form".to_owned());
             }
+            if self.alike > 0 {
+                skip(
+                    "uniform fields",
+                    "they accelerate all bodies alike: the origin falls with them".to_owned(),
+                );
+            }
             if self.planar {
                 skip("the z components", "z and v_z are zero and no force acts along z".to_owned());
             }

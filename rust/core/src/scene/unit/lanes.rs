@@ -4,7 +4,8 @@
 //! one lane, and the rows are its bodies; the rows of eight further units may follow those of the first eight.
 
 use super::super::columns::Entry;
-use super::{Layout, Origin, Plan, Prepared, Unit, scale};
+use super::super::frame::restored;
+use super::{Layout, Plan, Prepared, Unit, scale};
 use crate::forces::context::packed_place;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -65,8 +66,8 @@ impl Prepared {
                 let at = c * rows + row;
                 q[at].0[lane] = self.position[slot][c];
                 v[at].0[lane] = self.velocity[slot][c];
-                q_error[at].0[lane] = 0.0;
-                v_error[at].0[lane] = 0.0;
+                q_error[at].0[lane] = self.rests[slot][0][c];
+                v_error[at].0[lane] = self.rests[slot][1][c];
             }
         }
     }
@@ -80,27 +81,41 @@ impl Prepared {
         })
     }
 
+    /// Where a body is, in the units and about the origin of the integration.
+    pub fn place(&self, slot: usize, state: &State<Lanes>, unit_lane: usize) -> [f64; 3] {
+        let rows = state.q().len() / self.shape.components;
+        let (row, lane) = self.locate(slot, unit_lane);
+        let mut place = [0.0; 3];
+        for c in 0..self.shape.components {
+            place[c] = state.q()[c * rows + row].0[lane];
+        }
+        place
+    }
+
     /// Reads a body off a state, in the scene's units and about its origin.
     pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
         let components = self.shape.components;
         let rows = state.q().len() / components;
         let (length, speed) = (self.units.length, -self.units.velocity());
         let (row, lane) = self.locate(slot, unit_lane);
+        let moved = self.origin.at(elapsed);
         let mut entry = Entry::default();
         for c in 0..components {
             let at = c * rows + row;
             let take = |values: &[Lanes], exponent: i32| scale(values[at].0[lane], exponent);
-            let (x, rest) = self.origin.restore(c, take(state.q(), length), elapsed);
-            entry.position[c] = x;
-            entry.position_rest[c] = rest + take(state.q_compensation(), length);
-            let still = Origin { center: self.origin.drift, drift: [0.0; 3] };
-            let (v, rest) = still.restore(c, take(state.v(), speed), 0.0);
-            entry.velocity[c] = v;
-            entry.velocity_rest[c] = rest + take(state.v_compensation(), speed);
+            let position = (take(state.q(), length), take(state.q_compensation(), length));
+            let velocity = (take(state.v(), speed), take(state.v_compensation(), speed));
+            let [x, v] = if self.origin.is_elsewhere() {
+                [restored(moved.position[c], position), restored(moved.velocity[c], velocity)]
+            } else {
+                [position, velocity]
+            };
+            (entry.position[c], entry.position_rest[c]) = x;
+            (entry.velocity[c], entry.velocity_rest[c]) = v;
         }
         if components == 2 {
-            entry.position[2] = self.origin.center[2] + self.origin.drift[2] * elapsed;
-            entry.velocity[2] = self.origin.drift[2];
+            (entry.position[2], entry.position_rest[2]) = moved.position[2];
+            (entry.velocity[2], entry.velocity_rest[2]) = moved.velocity[2];
         }
         entry
     }

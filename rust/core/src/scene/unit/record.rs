@@ -4,7 +4,7 @@
 //! unit is prepared; and packed bodies go eight at a time, coordinates into points by the tier's vectors.
 
 use super::super::columns::{Output, Run, Writer};
-use super::super::frame::Units;
+use super::super::frame::{Moved, Units, restored};
 use super::{Layout, Origin, Prepared, Unit};
 use crate::error::Result;
 use crate::forces::bodies::Of;
@@ -20,13 +20,13 @@ use crate::tiered;
 pub(super) struct Reading {
     /// What takes a length and a velocity back to the scene's units.
     factors: [f64; 2],
+    /// Whether they are relative to an origin that has to be added.
+    moved: bool,
     way: Way,
 }
 
 #[derive(Clone, Debug)]
 enum Way {
-    /// About an origin of its own, which has to be restored.
-    Restored,
     /// Body after body.
     Bodies,
     /// Row after row, from the row `start` on.
@@ -35,14 +35,9 @@ enum Way {
 
 impl Reading {
     pub(super) fn new(unit: &Unit, layout: Layout, origin: &Origin, units: Units) -> Self {
-        let way = if *origin != Origin::default() {
-            Way::Restored
-        } else if layout == Layout::Packed {
-            rows(unit).unwrap_or(Way::Bodies)
-        } else {
-            Way::Bodies
-        };
-        Self { factors: [power_of_two(units.length), power_of_two(-units.velocity())], way }
+        let moved = origin.is_elsewhere();
+        let way = if layout == Layout::Packed { rows(unit).unwrap_or(Way::Bodies) } else { Way::Bodies };
+        Self { factors: [power_of_two(units.length), power_of_two(-units.velocity())], moved, way }
     }
 }
 
@@ -93,44 +88,59 @@ impl Prepared {
         unit_lane: usize,
         elapsed: f64,
     ) -> bool {
-        let Reading { factors, way } = &self.reading;
-        match way {
-            Way::Rows { start, runs } if !writer.keeps_rest() => {
-                if self.shape.components == 2 {
-                    record_rows::<2>(runs, *start, state, *factors, output)
-                } else {
-                    record_rows::<3>(runs, *start, state, *factors, output)
-                }
+        if writer.keeps_rest() {
+            return self.record_precisely(output, state, unit_lane, elapsed);
+        }
+        let Reading { factors, moved, way } = &self.reading;
+        let planar = self.shape.components == 2;
+        let origin = if *moved { self.origin.at(elapsed) } else { Moved::NOWHERE };
+        match (way, planar, *moved) {
+            (Way::Rows { start, runs }, true, false) => {
+                record_rows::<2, false>(runs, *start, state, *factors, &origin, output)
             }
-            Way::Bodies if !writer.keeps_rest() => {
-                if self.shape.components == 2 {
-                    self.record_bodies::<2>(output, state, unit_lane, *factors)
-                } else {
-                    self.record_bodies::<3>(output, state, unit_lane, *factors)
-                }
+            (Way::Rows { start, runs }, false, false) => {
+                record_rows::<3, false>(runs, *start, state, *factors, &origin, output)
             }
-            _ => self.record_precisely(output, state, unit_lane, elapsed),
+            (Way::Rows { start, runs }, true, true) => {
+                record_rows::<2, true>(runs, *start, state, *factors, &origin, output)
+            }
+            (Way::Rows { start, runs }, false, true) => {
+                record_rows::<3, true>(runs, *start, state, *factors, &origin, output)
+            }
+            (Way::Bodies, true, false) => self.record_bodies::<2, false>(output, state, unit_lane, &origin),
+            (Way::Bodies, false, false) => self.record_bodies::<3, false>(output, state, unit_lane, &origin),
+            (Way::Bodies, true, true) => self.record_bodies::<2, true>(output, state, unit_lane, &origin),
+            (Way::Bodies, false, true) => self.record_bodies::<3, true>(output, state, unit_lane, &origin),
         }
     }
 
-    fn record_bodies<const COMPONENTS: usize>(
+    fn record_bodies<const COMPONENTS: usize, const MOVED: bool>(
         &self,
         output: &Output<'_>,
         state: &State<Lanes>,
         unit_lane: usize,
-        [length, speed]: [f64; 2],
+        origin: &Moved,
     ) -> bool {
+        let [length, speed] = self.reading.factors;
         let stride = state.q().len() / COMPONENTS * WIDTH;
         let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
+        let (q_rest, v_rest) = (as_numbers(state.q_compensation()), as_numbers(state.v_compensation()));
         // Sums of their own, lest each addition wait for the one before.
         let mut check = [[0.0; 2]; COMPONENTS];
         for slot in self.unit.recorded.clone() {
             let (row, lane) = self.locate(slot, unit_lane);
             let (mut position, mut velocity) = ([0.0; 3], [0.0; 3]);
+            if MOVED {
+                (position[2], velocity[2]) = (origin.position[2].0, origin.velocity[2].0);
+            }
             for c in 0..COMPONENTS {
                 let at = c * stride + row * WIDTH + lane;
                 position[c] = q[at] * length;
                 velocity[c] = v[at] * speed;
+                if MOVED {
+                    position[c] = restored(origin.position[c], (position[c], q_rest[at] * length)).0;
+                    velocity[c] = restored(origin.velocity[c], (velocity[c], v_rest[at] * speed)).0;
+                }
                 // Zero times a finite number is zero; times anything else it is not a number.
                 check[c][0] += 0.0 * position[c];
                 check[c][1] += 0.0 * velocity[c];
@@ -140,7 +150,7 @@ impl Prepared {
         check.iter().flatten().all(|&sum| sum == 0.0)
     }
 
-    /// With what the rounded values leave out, or about another origin than the scene's.
+    /// With what the rounded values leave out.
     fn record_precisely(
         &self,
         output: &Output<'_>,
@@ -176,36 +186,37 @@ impl Prepared {
         let count = if unit.active > 0 { unit.active } else { unit.bodies.len() };
         let mut bodies = self.scratch.borrow_mut();
         bodies.clear(count);
-        if matches!(self.reading.way, Way::Restored) {
-            for slot in 0..count {
-                let entry = self.read(slot, state, unit_lane, elapsed);
-                let position = [entry.position, entry.position_rest];
-                bodies.set(slot, masses[unit.bodies[slot]], position, [entry.velocity, entry.velocity_rest]);
+        let rows = state.q().len() / self.shape.components;
+        let (y, error) = state.all();
+        let (y, error) = (as_numbers(y), as_numbers(error));
+        let (row, lane) = self.locate(0, unit_lane);
+        let step = if self.layout == Layout::Packed { 1 } else { WIDTH };
+        for (slot, &body) in unit.bodies[..count].iter().enumerate() {
+            bodies.set_mass(slot, masses[body]);
+        }
+        let [length, speed] = self.reading.factors;
+        for (of, factor, first) in [(Of::Position, length, 0), (Of::Velocity, speed, self.shape.components)] {
+            for c in 0..self.shape.components {
+                let from = ((first + c) * rows + row) * WIDTH + lane;
+                let [values, rests] = bodies.coordinates_mut(of, c);
+                for (into, from) in [(values, &y[from..]), (rests, &error[from..])] {
+                    if step == 1 {
+                        into.iter_mut().zip(from).for_each(|(into, from)| *into = from * factor);
+                    } else {
+                        into.iter_mut()
+                            .zip(from.iter().step_by(step))
+                            .for_each(|(into, from)| *into = from * factor);
+                    }
+                }
             }
-        } else {
-            let rows = state.q().len() / self.shape.components;
-            let (y, error) = state.all();
-            let (y, error) = (as_numbers(y), as_numbers(error));
-            let (row, lane) = self.locate(0, unit_lane);
-            let step = if self.layout == Layout::Packed { 1 } else { WIDTH };
-            for (slot, &body) in unit.bodies[..count].iter().enumerate() {
-                bodies.set_mass(slot, masses[body]);
-            }
-            let [length, speed] = self.reading.factors;
-            for (of, factor, first) in
-                [(Of::Position, length, 0), (Of::Velocity, speed, self.shape.components)]
-            {
-                for c in 0..self.shape.components {
-                    let from = ((first + c) * rows + row) * WIDTH + lane;
+        }
+        if self.reading.moved {
+            let origin = self.origin.at(elapsed);
+            for (of, origin) in [(Of::Position, origin.position), (Of::Velocity, origin.velocity)] {
+                for c in 0..3 {
                     let [values, rests] = bodies.coordinates_mut(of, c);
-                    for (into, from) in [(values, &y[from..]), (rests, &error[from..])] {
-                        if step == 1 {
-                            into.iter_mut().zip(from).for_each(|(into, from)| *into = from * factor);
-                        } else {
-                            into.iter_mut()
-                                .zip(from.iter().step_by(step))
-                                .for_each(|(into, from)| *into = from * factor);
-                        }
+                    for (value, rest) in values.iter_mut().zip(rests) {
+                        (*value, *rest) = restored(origin[c], (*value, *rest));
                     }
                 }
             }
@@ -216,28 +227,45 @@ impl Prepared {
 }
 
 tiered! {
-    fn record_rows[const COMPONENTS: usize][COMPONENTS](runs: &[Run], start: usize, state: &State<Lanes>, factors: [f64; 2], output: &Output<'_>) -> bool = rows_as_points;
+    fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](runs: &[Run], start: usize, state: &State<Lanes>, factors: [f64; 2], origin: &Moved, output: &Output<'_>) -> bool = rows_as_points;
+}
+
+/// A pair of numbers in every lane.
+#[inline(always)]
+fn splat<V: Vector8>((value, rest): (f64, f64)) -> (V, V) {
+    (V::splat(value), V::splat(rest))
 }
 
 #[inline(always)]
-fn rows_as_points<V: Vector8, const COMPONENTS: usize>(
+fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
     runs: &[Run],
     start: usize,
     state: &State<Lanes>,
     [length, speed]: [f64; 2],
+    origin: &Moved,
     output: &Output<'_>,
 ) -> bool {
     let (length, speed) = (V::splat(length), V::splat(speed));
     let rows = state.q().len() / COMPONENTS;
     // Velocities follow the coordinates.
-    let (y, _) = state.all();
+    let (y, rest) = state.all();
     let mut finite = Bits::splat(true);
     for (row, run) in (start..).zip(runs) {
         let (mut position, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
+        if MOVED {
+            position[2] = V::splat(origin.position[2].0);
+            velocity[2] = V::splat(origin.velocity[2].0);
+        }
         let mut check = V::zero();
         for c in 0..COMPONENTS {
-            position[c] = V::load(y[c * rows + row]) * length;
-            velocity[c] = V::load(y[(COMPONENTS + c) * rows + row]) * speed;
+            let (q, v) = (c * rows + row, (COMPONENTS + c) * rows + row);
+            position[c] = V::load(y[q]) * length;
+            velocity[c] = V::load(y[v]) * speed;
+            if MOVED {
+                let (q_rest, v_rest) = (V::load(rest[q]) * length, V::load(rest[v]) * speed);
+                position[c] = restored(splat::<V>(origin.position[c]), (position[c], q_rest)).0;
+                velocity[c] = restored(splat::<V>(origin.velocity[c]), (velocity[c], v_rest)).0;
+            }
             // As in `record_bodies`.
             check += V::zero() * position[c] + V::zero() * velocity[c];
         }

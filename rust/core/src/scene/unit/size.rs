@@ -10,10 +10,6 @@ impl Prepared {
     /// Finds the unit's reference and size.
     pub(super) fn measure(&mut self, plan: &Plan) {
         self.reference = self.find_reference(plan);
-        if self.moves_as_a_polynomial(plan) {
-            self.size = (f64::INFINITY, f64::INFINITY);
-            return;
-        }
         let mut extent = 0.0_f64;
         let mut speed = 0.0_f64;
         for (x, v) in self.position.iter().zip(&self.velocity) {
@@ -21,26 +17,36 @@ impl Prepared {
             speed = speed.max(distance(*v, self.reference.drift));
         }
         let separation = self.smallest_separation(plan, extent);
-        let length = if separation > 0.0 && separation.is_finite() { separation } else { 1.0 };
+        let field = self.field_strength(plan);
+        let length = if separation > 0.0 && separation.is_finite() {
+            separation
+        } else {
+            self.path(plan, speed, field)
+        };
         // The speed of a circular orbit there: a system at rest has a velocity scale too.
         let total: f64 = self.strength.iter().map(|x| x.abs()).sum();
         let orbital = (total / extent.max(length)).sqrt();
         let velocity = speed.max(orbital);
         // A body at rest in a field gets its scale from the fall over that length.
-        let velocity = if velocity > 0.0 { velocity } else { (length * self.field_strength(plan)).sqrt() };
+        let velocity = if velocity > 0.0 { velocity } else { (length * field).sqrt() };
         self.size = (length, if velocity > 0.0 { velocity } else { 1.0 });
     }
 
-    /// Whether the unit is one massive body on which nothing acts, or a uniform field: every adaptive method moves it
-    /// exactly, in steps of any length. Nothing about it would tell a size either, it being its own reference; one of
-    /// the plan's units instead would make its steps depend on the other copies of an ensemble.
-    fn moves_as_a_polynomial(&self, plan: &Plan) -> bool {
-        let mut forces = plan.forces.iter();
-        let gentle = forces.all(|force| force.as_uniform().is_some() || force.as_newtonian().is_some());
-        self.unit.active == 1 && self.position.len() == 1 && gentle
+    /// A length for a body that is where distances are measured from: the radius of its path, or what it passes or falls in
+    /// the time of the run. By nothing but the body and the run, lest its steps depend on others.
+    fn path(&self, plan: &Plan, speed: f64, field: f64) -> f64 {
+        let span = self.units.take(plan.span, [0, 0, 1]);
+        let passed = speed * span;
+        let length = match (speed > 0.0, field > 0.0) {
+            (true, true) => passed.min(speed * speed / field),
+            (true, false) => passed,
+            (false, _) => 0.5 * field * span * span,
+        };
+        // Where nothing ever moves any length will do.
+        if length > 0.0 && length.is_finite() { length } else { 1.0 }
     }
 
-    /// A fixed centre if there is one, else the centre of mass.
+    /// A fixed center if there is one, else the centre of mass.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
         let center = plan.forces.iter().find_map(|force| force.center());

@@ -1,16 +1,26 @@
-//! Why a step fell to zero: the closest bodies, or a state that is no longer finite.
+//! Why a step fell to zero: an encounter that is closer than steps can follow, a state that is no longer finite, or neither.
 
 use super::super::super::distance;
 use super::super::super::unit::Prepared;
 use super::super::{Ending, Job};
 use crate::numerics::lanes::Lanes;
+use crate::numerics::power_of_two::scale;
 use crate::ode::state::State;
 
-/// The ending of a unit whose step fell to zero.
-pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize) -> Ending {
+/// Bodies are what takes the steps away if they are closer than this share of their smallest distance at the start (an orbit
+/// there is a billion times as quick), …
+const CLOSE: f64 = 1e-6;
+/// … or so close that an orbit there is over in so many of the shortest steps that the time can tell.
+const STEPS: f64 = 1e6;
+
+/// The ending of a unit whose step fell to zero at that time.
+pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize, elapsed: f64) -> Ending {
     let bodies = &unit.unit.bodies;
-    let places: Vec<[f64; 3]> =
-        (0..bodies.len()).map(|slot| unit.read(slot, state, lane, 0.0).position).collect();
+    // Relative to the unit's own origin: differences of places far away would have no digits.
+    let places: Vec<[f64; 3]> = (0..bodies.len()).map(|slot| unit.place(slot, state, lane)).collect();
+    if places.iter().flatten().any(|x| !x.is_finite()) {
+        return Ending::NotFinite;
+    }
     let mut closest = (f64::INFINITY, (0, 0));
     for i in 0..unit.unit.active {
         for j in i + 1..bodies.len() {
@@ -20,19 +30,21 @@ pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: us
             }
         }
     }
-    for force in &job.plan.forces {
-        if let Some(center) = force.center() {
-            for (slot, &body) in bodies.iter().enumerate() {
-                let distance = distance(places[slot], center);
-                if distance < closest.0 {
-                    closest = (distance, (body, body));
-                }
+    for center in job.plan.forces.iter().filter_map(|force| force.center()) {
+        let center = job.plan.units.take_vector(center, [1, 0, 0]);
+        for (slot, &body) in bodies.iter().enumerate() {
+            let distance = distance(places[slot], center);
+            if distance < closest.0 {
+                closest = (distance, (body, body));
             }
         }
     }
-    if closest.0.is_finite() {
-        Ending::CloseEncounter { distance: closest.0, bodies: closest.1 }
+    let (length, speed) = unit.size;
+    let share = closest.0 / length;
+    let quick = share * share.sqrt() * (length / speed) <= STEPS * f64::EPSILON * elapsed.abs();
+    if share <= CLOSE || quick {
+        Ending::CloseEncounter { distance: scale(closest.0, job.plan.units.length), bodies: closest.1 }
     } else {
-        Ending::NotFinite
+        Ending::NoStep
     }
 }
