@@ -27,7 +27,7 @@ pub static FORM: ClosedForm = ClosedForm {
             Ok(if i == center {
                 About::Center(Parabola::line(position, velocity))
             } else {
-                About::Orbit(Orbit::new(mu, state(center), state(i))?)
+                About::Orbit(Box::new(Orbit::new(mu, state(center), state(i))?))
             })
         })
     },
@@ -35,7 +35,7 @@ pub static FORM: ClosedForm = ClosedForm {
 
 enum About {
     Center(Parabola),
-    Orbit(Orbit),
+    Orbit(Box<Orbit>),
 }
 
 impl Path for About {
