@@ -1,5 +1,6 @@
-//! What the package offers, one line each: methods, potentials and forces.
+//! What the package offers, one line each: methods, potentials, forces and closed forms.
 
+use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
@@ -90,3 +91,14 @@ pub static FORCES: &[&ForceDeclaration] = &[
 pub fn force(name: &str) -> Option<&'static ForceDeclaration> {
     FORCES.iter().copied().find(|declaration| declaration.name == name)
 }
+
+/// Every closed form; of those that apply to an ensemble member, the first is taken.
+pub static CLOSED_FORMS: &[&ClosedForm] = &[
+    &closed_forms::free::FORM,
+    &closed_forms::uniform::FORM,
+    &closed_forms::two_body::FORM,
+    &closed_forms::one_massive::FORM,
+    &closed_forms::fixed_center::FORM,
+    &closed_forms::linear_drag::FORM,
+    &closed_forms::crossed_fields::FORM,
+];

@@ -55,6 +55,9 @@ impl ForceTerm for LinearDrag {
     fn keeps_plane(&self) -> bool {
         true
     }
+    fn as_linear_drag(&self) -> Option<f64> {
+        Some(self.tau)
+    }
 }
 
 #[derive(Debug)]

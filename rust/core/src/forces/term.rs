@@ -206,6 +206,30 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         None
     }
+    /// The time τ of decay, if it is the acceleration −v/τ on every body.
+    fn as_linear_drag(&self) -> Option<f64> {
+        None
+    }
+    /// The field and the charges, if it is that of a uniform magnetic field.
+    fn as_magnetic(&self) -> Option<MagneticField<'_>> {
+        None
+    }
+}
+
+/// A uniform magnetic field, which acts by the force charge v × field.
+#[derive(Clone, Copy, Debug)]
+pub struct MagneticField<'a> {
+    /// The field.
+    pub field: [f64; 3],
+    /// One charge for all bodies, or one for each.
+    pub charge: &'a [f64],
+}
+
+impl MagneticField<'_> {
+    /// The charge of a body.
+    pub fn charge_of(&self, particle: usize) -> f64 {
+        if let [all] = self.charge { *all } else { self.charge.get(particle).copied().unwrap_or(0.0) }
+    }
 }
 
 /// Refuses a massless body on which a force acts that moves only what has mass.

@@ -2,7 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::Context;
-use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm, MagneticField};
 use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::angles::sin_cos;
@@ -57,7 +57,7 @@ struct UniformMagneticField {
 
 impl UniformMagneticField {
     fn charge(&self, particle: usize) -> f64 {
-        if let [all] = self.charge[..] { all } else { self.charge.get(particle).copied().unwrap_or(0.0) }
+        MagneticField { field: self.field, charge: &self.charge }.charge_of(particle)
     }
 }
 
@@ -98,6 +98,9 @@ impl ForceTerm for UniformMagneticField {
     }
     fn keeps_plane(&self) -> bool {
         self.field[0] == 0.0 && self.field[1] == 0.0
+    }
+    fn as_magnetic(&self) -> Option<MagneticField<'_>> {
+        Some(MagneticField { field: self.field, charge: &self.charge })
     }
 }
 

@@ -2,11 +2,14 @@
 
 mod coupling;
 mod explain;
+mod solutions;
 
 pub use coupling::Groups;
 pub use explain::Row;
+pub use solutions::{Solutions, member};
 
 use super::Scene;
+use super::closed_form::rows_per_chunk;
 use super::frame::{Origin, Units, closed};
 use super::layout::Layout;
 use super::request::{Checked, Request};
@@ -25,30 +28,10 @@ use std::sync::Arc;
 const PAIRS_FOR_THREADS: u64 = 60_000;
 /// From this many units times pairs on, units are shared out over threads: fewer are done before a thread wakes.
 const WORK_FOR_THREADS: u64 = 64;
+/// From this many states of bodies on, closed forms are shared out over threads.
+const STATES_FOR_THREADS: usize = 4_096;
 /// Massless bodies that share the steps of one adaptive unit.
 const PASSIVE_PER_UNIT: usize = 64;
-
-/// How the motion is found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Solution {
-    /// No force acts: straight lines.
-    Free,
-    /// The same acceleration on everything: parabolas.
-    Uniform([f64; 3]),
-    /// Two bodies, at least one of them massive.
-    TwoBody,
-    /// One massive body, and massless ones that orbit it.
-    OneMassive(usize),
-    /// An inverse-distance potential `k/r` of a fixed centre.
-    FixedCenter {
-        /// Its strength.
-        k: f64,
-        /// Its place.
-        center: [f64; 3],
-    },
-    /// Step by step.
-    Integration,
-}
 
 /// What will be done.
 #[derive(Clone, Debug)]
@@ -59,8 +42,8 @@ pub struct Plan {
     pub dt: Option<f64>,
     /// +1 forward, -1 backward.
     pub direction: f64,
-    /// How the motion is found.
-    pub solution: Solution,
+    /// How the motion of each ensemble member is found.
+    pub solutions: Solutions,
     /// The forces that do something, in order.
     pub forces: Vec<Arc<dyn ForceTerm>>,
     /// What they make depend on each other.
@@ -115,9 +98,9 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solution = if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
+        let solutions = if automatic { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
-        let closed = solution == Solution::Integration && closed(&forces);
+        let closed = solutions.integrates() && closed(&forces);
         let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
         let origins: Vec<Origin> = (0..scene.copies).map(origin).collect();
         // What accelerates all alike moves the origin, and nothing relative to it.
@@ -139,7 +122,7 @@ impl Plan {
             method,
             dt,
             direction,
-            solution,
+            solutions,
             planar,
             alike,
             span: (request.times[request.times.len() - 1] - scene.t0).abs(),
@@ -158,13 +141,17 @@ impl Plan {
             copies: scene.copies,
             particles: scene.particles,
         };
-        plan.threads = plan.share_threads(request.threads);
+        plan.threads = plan.share_threads(request);
         Ok(plan)
     }
 
-    fn share_threads(&self, threads: usize) -> (usize, usize) {
-        if self.solution != Solution::Integration {
-            return (1, 1);
+    fn share_threads(&self, request: &Request) -> (usize, usize) {
+        let threads = request.threads;
+        if !self.solutions.integrates() {
+            let rows = self.copies.saturating_mul(request.times.len());
+            let work = rows.saturating_mul(self.particles);
+            let threads = threads.min(rows.div_ceil(rows_per_chunk(self.particles)));
+            return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
         }
         let units = self.unit_list().len();
         let groups = units.div_ceil(self.layout.units());
@@ -277,22 +264,4 @@ fn outputs_between(scene: &Scene, request: &Request) -> usize {
 fn planar(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> bool {
     scene.position.iter().chain(&scene.velocity).all(|x| x[2] == 0.0)
         && forces.iter().all(|force| force.keeps_plane())
-}
-
-fn closed_form(scene: &Scene, forces: &[Arc<dyn ForceTerm>], active: &[usize]) -> Solution {
-    if forces.is_empty() {
-        return Solution::Free;
-    }
-    let fields: Option<Vec<[f64; 3]>> = forces.iter().map(|force| force.as_uniform()).collect();
-    if let Some(fields) = fields {
-        let add = |sum: [f64; 3], g: [f64; 3]| core::array::from_fn(|c| sum[c] + g[c]);
-        return Solution::Uniform(fields.into_iter().fold([0.0; 3], add));
-    }
-    let [force] = forces else { return Solution::Integration };
-    match (force.as_newtonian(), force.as_inverse_distance_center()) {
-        (Some((_, 0.0)), _) if scene.particles == 2 => Solution::TwoBody,
-        (Some((_, 0.0)), _) if active.len() == 1 => Solution::OneMassive(active[0]),
-        (_, Some((k, center))) => Solution::FixedCenter { k, center },
-        _ => Solution::Integration,
-    }
 }
