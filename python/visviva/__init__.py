@@ -33,6 +33,8 @@ _HOME = {
     "InvalidInput": "errors",
     "Invariants": "invariants",
     "Method": "integrators",
+    "OdeResult": "initial_value",
+    "OdeSolution": "initial_value",
     "Particles": "particles",
     "Plan": "plan",
     "Scene": "scene",
@@ -42,6 +44,7 @@ _HOME = {
     "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
+    "solve_ivp": "initial_value",
 }
 _ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering")
 
@@ -59,6 +62,8 @@ __all__ = [
     "InvalidInput",
     "Invariants",
     "Method",
+    "OdeResult",
+    "OdeSolution",
     "Particles",
     "Plan",
     "Scene",
@@ -75,6 +80,7 @@ __all__ = [
     "potentials",
     "problems",
     "scattering",
+    "solve_ivp",
 ]
 
 if TYPE_CHECKING:
@@ -91,6 +97,7 @@ if TYPE_CHECKING:
         UnknownKeyword,
     )
     from visviva.forces import CentralField, Gravity, UniformField
+    from visviva.initial_value import OdeResult, OdeSolution, solve_ivp
     from visviva.integrators import Method, methods
     from visviva.invariants import Invariants
     from visviva.io import load

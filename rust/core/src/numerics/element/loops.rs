@@ -248,3 +248,34 @@ pub(super) fn replace<S: Real>(into: &mut [S], from: &[S], mask: S::Mask) {
         *into = S::select(mask, *from, *into);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_drift_takes_the_compensation_of_the_velocity_along() {
+        // Nine tenths of what rounds 1 up: three times 1 and that is nearer to the number above 3.
+        let left_out = 0.45 * f64::EPSILON;
+        let (mut q, mut q_left, mut v, mut v_left) = ([0.0], [0.0], [1.0], [left_out]);
+        kick_drift((&mut q, &mut q_left), (&mut v, &mut v_left), &[0.0], &(0.0, 0.0), &(3.0, 0.0));
+        assert_eq!((v[0], v_left[0]), (1.0, left_out));
+        assert_eq!(q[0], 3.0_f64.next_up());
+    }
+
+    #[test]
+    fn stages_take_the_compensations_along() {
+        let (left_out, small) = (f64::EPSILON / 1024.0, f64::EPSILON / 16.0);
+        let terms = [Term { stage: 0, weight: 1.0 }];
+        let stages = Weighted { h: &1.0, terms: &terms, a: &[small] };
+        let (mut out, mut left) = ([0.0], [0.0]);
+        combine(&mut out, (&[0.0], &[left_out]), (&[0.0], &0.5), stages);
+        assert_eq!(out[0], small + left_out);
+        combine_velocity(&mut out, (&[0.0], &[left_out]), stages);
+        assert_eq!(out[0], small + left_out);
+        combine_compensated((&mut out, &mut left), (&[1.0], &[left_out]), (&[0.0], &0.5), stages);
+        assert_eq!((out[0], left[0]), (1.0, small + left_out));
+        combine_velocity_compensated((&mut out, &mut left), (&[1.0], &[left_out]), stages);
+        assert_eq!((out[0], left[0]), (1.0, small + left_out));
+    }
+}
