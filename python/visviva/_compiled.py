@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 __all__ = ["Compiled", "compiled"]
 
 _SIGNATURE = "void f(double t, const double *y, double *rate), with void *data at the end or without"
+_FUNCTION: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]  # ctypes names it with an underscore
 _POINTER = ctypes.POINTER(ctypes.c_double)
 _PLAIN = "void(double,double*,double*)"
 _WITH_DATA = ("void(double,double*,double*,void*)", "void(double,double*,double*,double*)")
@@ -54,7 +55,7 @@ def compiled(fun: Any, args: object) -> Compiled | None:
     if isinstance(fun, int | np.integer) and not isinstance(fun, bool):
         data = _numbers(args)
         return Compiled(int(fun), None if data is None else data.ctypes.data, data)
-    if isinstance(fun, ctypes._CFuncPtr):
+    if isinstance(fun, _FUNCTION):
         return _with(fun, ctypes.cast(fun, ctypes.c_void_p).value, _takes_data(_of_ctypes(fun)), args)
     if isinstance(fun, tuple) and type(fun).__name__ == "LowLevelCallable":
         return _low_level(fun, args)

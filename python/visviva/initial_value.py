@@ -53,10 +53,12 @@ class OdeSolution:
 
     @property
     def t_min(self) -> float:
+        """The smaller end of the span."""
         return float(min(self.ts[0], self.ts[-1]))
 
     @property
     def t_max(self) -> float:
+        """The larger end of the span."""
         return float(max(self.ts[0], self.ts[-1]))
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
@@ -153,31 +155,31 @@ def solve_ivp(
 ) -> OdeResult:
     """Solve ``y' = f(t, y)`` from ``y(t0) = y0``.
 
-    Arguments and result are those of ``scipy.integrate.solve_ivp``, and so are the norm of the error, the first step and
-    the limits of the steps: equal tolerances lead to about equal steps.
+    Arguments and result are those of ``scipy.integrate.solve_ivp``, and so are the norm of the error, the first step
+    and the limits of the steps: equal tolerances lead to about equal steps.
 
     Parameters
     ----------
     fun : callable, int or LowLevelCallable
         The right-hand side: a function of Python ``fun(t, y, *args)`` that returns n numbers, or a compiled function
-        ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of numba
-        or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A compiled function runs without the GIL, and
-        must be what it says: a wrong signature or address ends the process.
+        ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of
+        numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A compiled function runs without the
+        GIL, and must be what it says: a wrong signature or address ends the process.
     t_span : (t0, tf)
         Where to start and to end. The end may be smaller, or infinite if an event ends the run.
     y0 : (n,) array_like
         The state at t0, real numbers.
     method : str, optional
-        ``"RK45"`` (= ``"dormand_prince54"``), ``"RK23"`` (= ``"bogacki_shampine32"``), ``"DOP853"`` (= ``"dop853"``), or
-        the name of any explicit Runge-Kutta method of `visviva.methods`.
+        ``"RK45"`` (= ``"dormand_prince54"``), ``"RK23"`` (= ``"bogacki_shampine32"``), ``"DOP853"`` (= ``"dop853"``),
+        or the name of any explicit Runge-Kutta method of `visviva.methods`.
     t_eval : (T,) array_like, optional
         Times of the output, in the order of `t_span`. They do not steer: values between steps are interpolated.
     dense_output : bool, optional
         Whether the result gets ``sol``, the solution as a function of time.
     events : callable or sequence of callables, optional
-        Functions ``event(t, y, *args)`` whose zeros are looked for where the sign changes from step to step, and located
-        to round-off on the interpolant. ``event.terminal`` = True ends the run at the first zero, a number at that one;
-        ``event.direction`` > 0 takes zeros on the way up only, < 0 on the way down only.
+        Functions ``event(t, y, *args)`` whose zeros are looked for where the sign changes from step to step, and
+        located to round-off on the interpolant. ``event.terminal`` = True ends the run at the first zero, a number at
+        that one; ``event.direction`` > 0 takes zeros on the way up only, < 0 on the way down only.
     vectorized : bool, optional
         Whether `fun` takes and returns states as columns (n, 1).
     args : tuple or array, optional
@@ -302,10 +304,10 @@ def _method(method: object) -> str:
 
 
 def _span(t_span: object) -> tuple[float, float]:
-    try:
-        t0, end = t_span  # type: ignore[misc]
-    except (TypeError, ValueError):
-        raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}") from None
+    times = list(t_span) if isinstance(t_span, Iterable) else []
+    if len(times) != 2:
+        raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}")
+    t0, end = times
     endless = isinstance(end, float | np.floating) and math.isinf(end)
     return number("t_span", t0), float(end) if endless else number("t_span", end)
 

@@ -61,8 +61,8 @@ def test_equal_tolerances_cost_what_they_cost_in_scipy(method: str, rtol: float)
         solve(pendulum, (0, 30), [1.0, 0.0], method=method, rtol=rtol, atol=1e-3 * rtol)
         for solve in (vv.solve_ivp, integrate.solve_ivp)
     )
-    # The same formulas and choices, but for the power in the choice of the step, which is rounded to 1.2e-4: on the brink
-    # of rejection a step may tip.
+    # The same formulas and choices, but for the power in the choice of the step, which is rounded to 1.2e-4: on the
+    # brink of rejection a step may tip.
     assert ours.nfev == pytest.approx(theirs.nfev, rel=0.03, abs=2 * 12)
     if rtol <= 1e-6:
         assert np.allclose(ours.y[:, -1], theirs.y[:, -1], rtol=0, atol=20 * rtol)

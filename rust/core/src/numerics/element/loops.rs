@@ -68,6 +68,7 @@ macro_rules! for_weighted {
     (($n:expr, $terms:expr, $k:expr), |$i:ident, $sum:ident| $body:expr) => {{
         let mut start = 0;
         for_weighted!(@groups 6, ($n, $terms, $k), start, |$i, $sum| $body);
+        for_weighted!(@groups 4, ($n, $terms, $k), start, |$i, $sum| $body);
         for_weighted!(@groups 3, ($n, $terms, $k), start, |$i, $sum| $body);
         for_weighted!(@groups 2, ($n, $terms, $k), start, |$i, $sum| $body);
         for_weighted!(@groups 1, ($n, $terms, $k), start, |$i, $sum| $body);
