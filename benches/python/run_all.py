@@ -18,6 +18,7 @@ SCRIPTS = (
     "figure_eight_ensemble",
     "rutherford",
     "same_bits",
+    "solve_ivp",
     "overhead",
 )
 

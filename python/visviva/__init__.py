@@ -37,6 +37,8 @@ _HOME = {
     "Invariants": "invariants",
     "LinearDrag": "forces",
     "Method": "integrators",
+    "OdeResult": "initial_value",
+    "OdeSolution": "initial_value",
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
@@ -50,6 +52,7 @@ _HOME = {
     "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
+    "solve_ivp": "initial_value",
 }
 _ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
@@ -72,6 +75,8 @@ __all__ = [
     "Invariants",
     "LinearDrag",
     "Method",
+    "OdeResult",
+    "OdeSolution",
     "PairPotential",
     "Particles",
     "Plan",
@@ -92,6 +97,7 @@ __all__ = [
     "potentials",
     "problems",
     "scattering",
+    "solve_ivp",
     "typing",
 ]
 
@@ -120,6 +126,7 @@ if TYPE_CHECKING:
         UniformField,
         UniformMagneticField,
     )
+    from visviva.initial_value import OdeResult, OdeSolution, solve_ivp
     from visviva.integrators import Method, methods
     from visviva.invariants import Invariants
     from visviva.io import load

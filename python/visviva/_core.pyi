@@ -28,6 +28,39 @@ class _Request(_Scene):
     max_steps: int | None
     record: list[str]
 
+class _Problem(TypedDict):
+    """An initial value problem; events with their direction and the number of the zero that ends the run."""
+
+    method: str
+    span: tuple[float, float]
+    y0: NDArray[np.float64]
+    rtol: NDArray[np.float64] | None
+    atol: NDArray[np.float64] | None
+    first_step: float | None
+    max_step: float | None
+    dt: float | None
+    t_eval: NDArray[np.float64] | None
+    dense_output: bool
+    events: list[tuple[Callable[..., Any], float, int | None]]
+    args: list[Any]
+    vectorized: bool
+    compiled: tuple[int, int | None] | None
+
+class _Solved(TypedDict):
+    """Its solution: states in rows."""
+
+    t: NDArray[np.float64]
+    y: NDArray[np.float64]
+    extension: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None
+    zeros: list[tuple[NDArray[np.float64], NDArray[np.float64]]]
+    nfev: int
+    status: int
+    message: str
+    interrupted: bool
+    cause: BaseException | None
+
+def solve_ivp(fun: object, asked: _Problem) -> _Solved: ...
+def interpolate(extension: tuple[NDArray[np.float64], ...], t: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def run(
     asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
 ) -> dict[str, Any]: ...

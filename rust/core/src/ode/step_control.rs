@@ -251,6 +251,33 @@ mod tests {
     }
 
     #[test]
+    fn the_step_goes_with_the_root_that_the_estimate_has() {
+        for exponent in 1..=20 {
+            let rule = Rule::new(exponent, f64::INFINITY);
+            for power in -12..=12 {
+                let error = 10f64.powi(power);
+                let exact = error.powf(1.0 / f64::from(exponent));
+                let found = root(error * error, &rule);
+                // The power is known to 1.2e-4: (1e12²)^0.00012 = 1.0067.
+                assert!((found / exact - 1.0).abs() < 7e-3, "{exponent}: {found} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_step_is_longer_than_the_longest() {
+        for sign in [1.0, -1.0] {
+            let rule = Rule { max_step: 1.5, ..*RULE };
+            let mut clock = Clock::new(100.0 * sign);
+            clock.h = sign;
+            for _ in 0..5 {
+                assert!(clock.settle(true, 1e-20, &rule).accepted);
+                assert_eq!(clock.h, 1.5 * sign);
+            }
+        }
+    }
+
+    #[test]
     fn a_step_that_time_no_longer_feels_is_stuck() {
         let mut clock = under_way();
         let mut tries = 0;
