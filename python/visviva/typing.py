@@ -11,7 +11,16 @@ __all__ = ["ColumnName", "MethodName", "Progress", "Report"]
 
 # written by tools/write_names.py: begin
 MethodName: TypeAlias = Literal[
-    "auto", "bogacki_shampine32", "dop853", "dormand_prince54", "kahan_li8", "leapfrog", "rk4", "stormer13", "yoshida4"
+    "auto",
+    "bogacki_shampine32",
+    "boris",
+    "dop853",
+    "dormand_prince54",
+    "kahan_li8",
+    "leapfrog",
+    "rk4",
+    "stormer13",
+    "yoshida4",
 ]
 ColumnName: TypeAlias = Literal[
     "angular_momentum",
