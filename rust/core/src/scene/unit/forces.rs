@@ -23,9 +23,8 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         t0: plan.t0,
         threads,
     };
-    if let (true, Some((constant, softening))) =
-        (plan.relative, plan.forces.first().and_then(|force| force.as_newtonian()))
-    {
+    let newtonian = plan.forces.first().and_then(|force| force.as_newtonian());
+    if let (true, Some((constant, softening))) = (plan.relative, newtonian) {
         return Dynamics::closed(few_bodies(&context, constant, softening));
     }
     Dynamics::new(shape, plan.forces.iter().map(|force| force.kernel(&context)).collect())
