@@ -57,6 +57,6 @@ def methods() -> list[Method]:
     --------
     >>> import visviva as vv
     >>> [method.name for method in vv.methods() if method.adaptive]
-    ['dop853']
+    ['bogacki_shampine32', 'dormand_prince54', 'dop853']
     """
     return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods()]

@@ -1,5 +1,9 @@
 //! The loops over `f64`, compiled for every tier: there a fused multiply-add is an instruction, and several numbers of a
 //! state go through it at a time.
+#![expect(
+    clippy::extra_unused_type_parameters,
+    reason = "`tiered!` names the tier's vectors; these loops need none"
+)]
 
 use super::{PairTerm, Tolerances, Weighted, loops};
 use crate::numerics::lanes::Vector8;
