@@ -34,8 +34,8 @@ class _Problem(TypedDict):
     method: str
     span: tuple[float, float]
     y0: NDArray[np.float64]
-    rtol: NDArray[np.float64] | None
-    atol: NDArray[np.float64] | None
+    rtol: list[float] | None
+    atol: list[float] | None
     first_step: float | None
     max_step: float | None
     dt: float | None

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
 
-_SMALLEST_RTOL = 100 * np.finfo(np.float64).eps
+_SMALLEST_RTOL = 100 * 2.0**-52
 
 
 @known_keywords
@@ -321,25 +321,28 @@ def _state(y0: object) -> NDArray[np.float64]:
             "expected real numbers, got complex ones; give real and imaginary parts as 2n numbers, "
             "y0 = [*y.real, *y.imag], or use scipy.integrate.solve_ivp",
         )
-    if array.dtype.kind in "fiu" and not np.isfinite(array).all():
-        raise InvalidInput("y0", "All components of the initial state `y0` must be finite.")
-    return float_array("y0", y0 if array.size else np.empty(array.shape), (None,))
+    if array.dtype == np.float64 and array.ndim == 1 and isinstance(y0, np.ndarray | list | tuple):
+        return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])  # the core judges whether they are finite
+    return float_array("y0", y0, (None,))
 
 
-def _tolerance(name: str, value: object) -> NDArray[np.float64]:
-    return np.atleast_1d(float_array(name, value, None))
+def _tolerance(name: str, value: object) -> list[float]:
+    if type(value) is float and math.isfinite(value):
+        return [value]
+    values: list[float] = np.atleast_1d(float_array(name, value, None)).tolist()
+    return values
 
 
-def _relative(rtol: object) -> NDArray[np.float64] | None:
+def _relative(rtol: object) -> list[float] | None:
     if rtol is None:
         return None
     values = _tolerance("rtol", rtol)
-    if np.any(values < _SMALLEST_RTOL):
+    if any(value < _SMALLEST_RTOL for value in values):
         warnings.warn(
             f"At least one element of `rtol` is too small. Setting `rtol = np.maximum(rtol, {_SMALLEST_RTOL})`.",
             stacklevel=4,
         )
-        values = np.maximum(values, _SMALLEST_RTOL)
+        values = [max(value, _SMALLEST_RTOL) for value in values]
     return values
 
 

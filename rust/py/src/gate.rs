@@ -79,6 +79,11 @@ pub(crate) fn compute_attached<T>(
     finished(py, &control, None, result, pending)
 }
 
+/// Calls Python in the middle of work, which may hold the GIL or not.
+pub(crate) fn attached<T>(call: impl FnOnce(Python<'_>) -> T) -> T {
+    Python::attach(call)
+}
+
 /// Does the work, with a look at Python now and then; the first exception of a look stops it.
 fn worked<T>(
     control: &Control,

@@ -5,7 +5,7 @@
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
-use crate::gate::{compute, compute_attached, is_ctrl_c};
+use crate::gate::{attached, compute, compute_attached, is_ctrl_c};
 use core::ffi::c_void;
 use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
@@ -119,7 +119,7 @@ struct PythonEvents<'a> {
 impl Events for PythonEvents<'_> {
     fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64> {
         let function = &self.functions[which];
-        self.raised.kept(Python::attach(|py| single(&function.call(py, t, y)?)))
+        self.raised.kept(attached(|py| single(&function.call(py, t, y)?)))
     }
 }
 
@@ -161,8 +161,8 @@ pub(crate) struct Asked<'py> {
     method: String,
     span: (f64, f64),
     y0: Array<'py>,
-    rtol: Option<Array<'py>>,
-    atol: Option<Array<'py>>,
+    rtol: Option<Vec<f64>>,
+    atol: Option<Vec<f64>>,
     first_step: Option<f64>,
     max_step: Option<f64>,
     dt: Option<f64>,
@@ -178,19 +178,17 @@ pub(crate) struct Asked<'py> {
 
 impl Asked<'_> {
     fn request(&self, py: Python<'_>) -> PyResult<Request> {
-        let several = |name, array: &Option<Array<'_>>| -> PyResult<Option<Vec<f64>>> {
-            array.as_ref().map(|array| Ok(copied(name, array, [None])?.0)).transpose()
-        };
+        let outputs = self.t_eval.as_ref().map(|t| PyResult::Ok(copied("t_eval", t, [None])?.0));
         Ok(Request {
             method: solver(&self.method).map_err(|error| raised(py, error))?,
             span: self.span,
             y0: copied("y0", &self.y0, [None])?.0,
-            rtol: several("rtol", &self.rtol)?,
-            atol: several("atol", &self.atol)?,
+            rtol: self.rtol.clone(),
+            atol: self.atol.clone(),
             first_step: self.first_step,
             max_step: self.max_step,
             dt: self.dt,
-            outputs: several("t_eval", &self.t_eval)?,
+            outputs: outputs.transpose()?,
             dense: self.dense_output,
             conditions: self
                 .events
@@ -237,7 +235,7 @@ pub(crate) fn solve_ivp<'py>(
         None => {
             let function = Callable { function: fun, further: further(true), columns: asked.vectorized };
             let mut rate = |t: f64, y: &[f64], rate: &mut [f64]| {
-                exception.kept(Python::attach(|py| function.rate(py, t, y, rate)))
+                exception.kept(attached(|py| function.rate(py, t, y, rate)))
             };
             compute_attached(py, |ticker| solved(&mut rate, ticker))?
         }
@@ -311,6 +309,6 @@ pub(crate) fn interpolate<'py>(
         terms: terms.as_slice()?,
     };
     let (times, [count]) = copied("t", &t, [None])?;
-    let states = compute_attached(py, |_| view.at(&times))?.whole(py)?;
+    let states = compute(py, 0, None, |_| view.at(&times))?.whole(py)?;
     moved(py, states, &[count, numbers])
 }

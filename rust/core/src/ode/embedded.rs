@@ -11,7 +11,7 @@ use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::PairTerm;
 use super::passes::stages::Term;
 use super::passes::updates::Replace;
-use super::runge_kutta::Stages;
+use super::runge_kutta::{Stages, coupling};
 use super::state::State;
 use super::step_control::{Clock, Controlled, Outcome, Rule, root};
 use super::system::{Form, System};
@@ -56,7 +56,8 @@ impl<S: Controlled> EmbeddedStep<S> {
         let rows = tableau.a.iter().chain([&tableau.b]).chain(method.dense_a);
         let a: Vec<Vec<DoubleDouble>> = rows.map(|row| row.to_vec()).collect();
         let errors = [method.error, method.second_error.unwrap_or_default()];
-        let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, &a));
+        let of_coordinates = coupling(system.form(), &a);
+        let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, of_coordinates));
         let dense_rows = method.dense_a.iter().zip(method.dense_c);
         let every_stage = || (0..a.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
         let stages = Stages::new(tableau, 1 + method.dense_a.len(), system);
@@ -69,8 +70,8 @@ impl<S: Controlled> EmbeddedStep<S> {
             stages,
             two_estimates: method.second_error.is_some(),
             end_in_estimate: errors.iter().any(|row| row.len() > tableau.b.len()),
-            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, &a)).collect(),
-            dense: dense(method, &a),
+            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
+            dense: dense(method, a.len(), of_coordinates),
             between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
             rule,
             next: state.clone(),
@@ -299,8 +300,9 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     }
 }
 
-/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages.
-fn dense<S: Element>(method: &Embedded, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
+/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages, if
+/// there are coordinates.
+fn dense<S: Element>(method: &Embedded, stages: usize, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
     let powers = method.dense.iter().map(|row| row.len()).max().unwrap_or(0);
     let zero = DoubleDouble::zero();
     let power = |index| -> Vec<DoubleDouble> {
@@ -310,6 +312,6 @@ fn dense<S: Element>(method: &Embedded, a: &[Vec<DoubleDouble>]) -> Weights<Vec<
     let of_q: Vec<Vec<DoubleDouble>> = of_v.iter().map(|row| nystrom_weights(row, a)).collect();
     [of_q, of_v].map(|rows| {
         let of_stage = |stage| rows.iter().map(|row| S::from_double_double(row[stage])).collect();
-        (0..a.len()).map(of_stage).collect()
+        (0..stages).map(of_stage).collect()
     })
 }
