@@ -14,6 +14,7 @@ SCRIPTS = (
     "dop853_outer_solar_system",
     "round_off_floor",
     "energy_growth",
+    "massless",
     "outputs",
     "figure_eight_ensemble",
     "rutherford",

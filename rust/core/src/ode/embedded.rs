@@ -9,7 +9,7 @@ use super::Embedded;
 use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::PairTerm;
-use super::passes::stages::Term;
+use super::passes::stages::{Positions, Term, Weighted};
 use super::passes::updates::Replace;
 use super::runge_kutta::{Stages, coupling};
 use super::state::State;
@@ -37,6 +37,8 @@ pub struct EmbeddedStep<S: Element> {
     dense_rows: Vec<Row<S>>,
     /// For every stage, its weights in the continuous extension in the nested basis of [`Embedded::dense`].
     dense: Weights<Vec<S>>,
+    /// The weights of every stage in the coordinates, term after term of that basis.
+    of_terms: Vec<Vec<Term<S>>>,
     /// Room for those weights at one fraction of the step.
     between: Row<S>,
     rule: Rule<S>,
@@ -62,6 +64,12 @@ impl<S: Controlled> EmbeddedStep<S> {
         let every_stage = || (0..a.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
         let stages = Stages::new(tableau, 1 + method.dense_a.len(), system);
         let of_rates = pair_terms(errors);
+        let dense = dense(method, a.len(), of_coordinates);
+        let of_term = |term: usize| {
+            dense[0].iter().enumerate().map(move |(stage, row)| Term { stage, weight: row[term] })
+        };
+        let of_terms =
+            (0..dense[0].first().map_or(0, Vec::len)).map(|term| of_term(term).collect()).collect();
         Self {
             errors: match stages.form() {
                 Form::FirstOrder(_) => [of_rates, Vec::new()],
@@ -71,7 +79,8 @@ impl<S: Controlled> EmbeddedStep<S> {
             two_estimates: method.second_error.is_some(),
             end_in_estimate: errors.iter().any(|row| row.len() > tableau.b.len()),
             dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
-            dense: dense(method, a.len(), of_coordinates),
+            of_terms,
+            dense,
             between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
             rule,
             next: state.clone(),
@@ -270,6 +279,21 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
 
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
         let len = self.stages.len();
+        if matches!(self.stages.form(), Form::SecondOrder(_)) {
+            let zeros = vec![S::zero(); len];
+            for (index, terms) in self.of_terms.iter().enumerate() {
+                let from = into.len();
+                into.resize(from + len, S::zero());
+                let fraction = if index == 0 { S::one() } else { S::zero() };
+                S::pass(Positions {
+                    out: &mut into[from..],
+                    q: (&zeros, &zeros),
+                    slope: (state.v(), &fraction),
+                    stages: Weighted { h: &h, terms, k: &self.stages.k },
+                });
+            }
+            return;
+        }
         for term in 0..self.terms() {
             for number in 0..len.min(state.all().0.len()) {
                 let mut sum = S::zero();

@@ -88,6 +88,13 @@ impl<S: Real> Clock<S> {
         self.rejected = self.rejected.and(lanes.not());
     }
 
+    /// Counts time anew in the lanes of the mask, up to `end`; the next step stays what it is.
+    pub fn recount(&mut self, lanes: S::Mask, end: S) {
+        self.elapsed = S::select(lanes, S::zero(), self.elapsed);
+        self.error = S::select(lanes, S::zero(), self.error);
+        self.end = S::select(lanes, end, self.end);
+    }
+
     /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
     #[inline(always)]
     fn next_step(&self, running: S::Mask) -> (S, S::Mask) {

@@ -30,8 +30,12 @@ const PAIRS_FOR_THREADS: u64 = 60_000;
 const WORK_FOR_THREADS: u64 = 64;
 /// From this many states of bodies on, closed forms are shared out over threads.
 const STATES_FOR_THREADS: usize = 4_096;
-/// Massless bodies that share the steps of one adaptive unit.
+/// Massless bodies in one unit with the massive ones, where they cannot follow them.
 const PASSIVE_PER_UNIT: usize = 64;
+/// So many massless bodies take long enough for the massive ones to be integrated again for them, on another thread.
+const FOLLOWERS_WORTH_A_GUIDE: usize = 128;
+/// The most massless bodies that follow at a time: their steps stay in a cache.
+const FOLLOWERS_MAX: usize = 1024;
 
 /// What will be done.
 #[derive(Clone, Debug)]
@@ -66,6 +70,8 @@ pub struct Plan {
     pub relative: bool,
     /// How units lie in lanes.
     pub layout: Layout,
+    /// Whether massless bodies follow the steps of the massive ones, each with steps of its own.
+    pub guided: bool,
     /// Threads over units, and inside one force evaluation.
     pub threads: (usize, usize),
     /// Output times between the start and the end.
@@ -134,6 +140,7 @@ impl Plan {
             origins,
             relative,
             layout,
+            guided: false,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
             record: request.record.clone(),
@@ -141,6 +148,7 @@ impl Plan {
             copies: scene.copies,
             particles: scene.particles,
         };
+        plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
         Ok(plan)
     }
@@ -154,7 +162,9 @@ impl Plan {
             return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
         }
         let units = self.unit_list().len();
-        let groups = units.div_ceil(self.layout.units());
+        let together =
+            if self.guided { self.copies * self.pieces(self.passive.len(), threads) } else { units };
+        let groups = together.div_ceil(self.layout.units());
         let pairs = self.pairs_per_evaluation();
         if groups == 1 && pairs >= PAIRS_FOR_THREADS {
             (1, threads)
@@ -171,6 +181,28 @@ impl Plan {
             && (self.method.adaptive() || self.relative)
             && !self.active.is_empty()
             && !self.passive.is_empty()
+    }
+
+    /// How a unit lies in lanes: massless bodies that follow others have a lane each.
+    pub fn layout_of(&self, unit: &Unit) -> Layout {
+        if self.guided && unit.active == 0 { Layout::Batched } else { self.layout }
+    }
+
+    /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
+    /// massive ones are integrated again.
+    pub fn pieces(&self, massless: usize, threads: usize) -> usize {
+        if self.layout == Layout::Batched {
+            return 1;
+        }
+        let useful = (massless / FOLLOWERS_WORTH_A_GUIDE).min((2 * threads).div_ceil(self.copies));
+        massless.div_ceil(FOLLOWERS_MAX).max(if threads > 1 { useful } else { 1 }).max(1)
+    }
+
+    /// The massive bodies of a copy, for massless ones to follow; `recorded` or not.
+    pub fn guide(&self, copy: usize, recorded: bool) -> Unit {
+        let active = self.active.len();
+        let recorded = if recorded { 0..active } else { active..active };
+        Unit { copy, bodies: Arc::from(&self.active[..]), active, recorded, make_up: 0 }
     }
 
     /// The units of the integration, in the order in which they are begun.
@@ -201,6 +233,10 @@ impl Plan {
                     kind(Arc::clone(bodies), bodies.len(), 0..bodies.len(), 1 + index)
                 };
                 groups.iter().enumerate().map(group).chain(self.passive.iter().map(alone)).collect()
+            }
+            Groups::All if self.guided => {
+                let alone = |&body: &usize| kind(Arc::from([body]), 0, 0..1, 1);
+                core::iter::once(self.guide(0, true)).chain(self.passive.iter().map(alone)).collect()
             }
             Groups::All if self.passive_apart() => {
                 let with_active = |run: &[usize]| {
@@ -248,6 +284,12 @@ fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
             others.collect::<Vec<_>>().join(", ")
         ),
     ))
+}
+
+/// Whether massless bodies feel the force along a path of the massive ones, or without them.
+fn guides(force: &Arc<dyn ForceTerm>) -> bool {
+    force.coupling() == Coupling::None
+        || (force.coupling() == Coupling::AllPairs && force.as_newtonian().is_some())
 }
 
 /// The forces that do anything in this scene.

@@ -9,7 +9,7 @@ mod lanes;
 mod record;
 mod size;
 
-pub use forces::dynamics;
+pub use forces::{dynamics, uncoupled};
 
 use super::Scene;
 use super::frame::{Origin, Units};
@@ -92,6 +92,7 @@ impl Prepared {
     pub fn new(plan: &Plan, scene: &Scene, unit: Unit) -> Self {
         let units = plan.units;
         let origin = plan.origins[unit.copy];
+        let layout = plan.layout_of(&unit);
         let (masses, positions, velocities) =
             (scene.masses(unit.copy), scene.positions(unit.copy), scene.velocities(unit.copy));
         let relative = |x: [f64; 3], origin: [f64; 3], exponent: i32| {
@@ -112,7 +113,7 @@ impl Prepared {
         let strength = mass[..unit.active].iter().map(|mass| constant * mass).collect();
         let mut prepared = Self {
             shape: lanes::shape(&unit, plan),
-            reading: Reading::new(&unit, plan.layout, &origin, units),
+            reading: Reading::new(&unit, layout, &origin, units),
             unit,
             position,
             velocity,
@@ -122,7 +123,7 @@ impl Prepared {
             origin,
             reference: Origin::default(),
             size: (1.0, 1.0),
-            layout: plan.layout,
+            layout,
             units,
             scratch: RefCell::default(),
         };

@@ -26,6 +26,9 @@ impl Run<'_> {
     /// # Errors
     /// When the caller asks to stop.
     pub(super) fn record_start(&self, slot: &mut Slot, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
+        if slot.unit.unit.recorded.is_empty() {
+            slot.next_output = self.outputs.len();
+        }
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
             let _: bool =
                 slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0, ticker)?;
@@ -34,22 +37,27 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Records the outputs that the step has passed, before it is committed.
+    /// Records the outputs that the step has passed, before it is committed; the continuous extension may be `ready`
+    /// and charged.
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record(&mut self, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
-        let mut ready = false;
-        let mut charged = Bits(0);
+    pub(super) fn record(
+        &mut self,
+        outcome: &Outcome<Lanes>,
+        mut ready: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let mut charged = if ready { outcome.accepted } else { Bits(0) };
         loop {
             let round = self.round(outcome);
             if !round.due.any() {
                 return Ok(());
             }
             if round.inside.any() {
-                let Self { trial, state, between, dynamics, .. } = self;
+                let Self { trial, state, between, forces, .. } = self;
                 if !ready {
-                    trial.dense(outcome, dynamics, state, ticker)?;
+                    trial.dense(outcome, forces.system(), state, ticker)?;
                     ready = true;
                 }
                 trial.at(state, outcome.h, round.theta, between);
@@ -70,14 +78,16 @@ impl Run<'_> {
                 continue;
             }
             let output = self.outputs[slot.next_output];
-            let to = self.clock.elapsed.0[lane];
-            if (output - to) * direction > 0.0 && !outcome.finished.lane(lane) {
+            let to = self.elapsed(lane);
+            let at_the_end = outcome.finished.lane(lane) && self.part.last.lane(lane);
+            if (output - to) * direction > 0.0 && !at_the_end {
                 continue;
             }
             round.due = round.due.or(Bits(1 << lane));
             if (to - output) * direction > 0.0 {
-                let lanes = self.job.plan.layout.mask(lane);
-                let fraction = (output - outcome.from.0[lane]) / outcome.h.0[lane];
+                let lanes = self.layout.mask(lane);
+                let since = (output - self.part.from.0[lane]) - outcome.from.0[lane];
+                let fraction = since / outcome.h.0[lane];
                 round.inside = round.inside.or(lanes);
                 round.theta = Lanes::select(lanes, Lanes::splat(fraction), round.theta);
             }
@@ -102,7 +112,7 @@ impl Run<'_> {
     }
 
     /// Counts the evaluations of the continuous extension for the units that read it.
-    fn charge(&mut self, lanes: Bits) {
+    pub(super) fn charge(&mut self, lanes: Bits) {
         let evaluations = self.cost.dense;
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {
