@@ -252,6 +252,8 @@ def test_straight_lines_and_parabolas_at_the_ends_of_the_range() -> None:
     tall = run(0.0, 1e302, vv.UniformField([2e-300, 0.0, 0.0]))
     assert tall.velocity[-1, 0, 0] == 2e-300 * 1e302
     assert tall.position[-1, 0, 0] == pytest.approx(1e304, rel=4e-16)
+    with pytest.raises(vv.InvalidInput, match=r"^t: expected times within the range"):
+        vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]]), t0=-1.5e308).run(t=1.5e308)
     for forces in ((), (vv.LinearDrag(1e308),), (vv.UniformMagneticField([1e-308, 0.0, 0.0]),)):
         with pytest.raises(vv.ConvergenceError, match="infinite"):
             run(1e300, 1e10, *forces)

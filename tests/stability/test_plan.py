@@ -41,6 +41,12 @@ CLOSED = {
         join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)
     ),
     "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
+    "linear drag": vv.Scene(some(4, masses=1.0), vv.LinearDrag(2.0)),
+    "linear drag and a uniform field": vv.Scene(some(4), vv.LinearDrag(2.0), vv.UniformField([0.0, 0.0, -9.81])),
+    "magnetic field": vv.Scene(some(4, masses=1.0), vv.UniformMagneticField([0.0, 1.0, 2.0])),
+    "crossed fields": vv.Scene(
+        some(4, masses=1.0), vv.UniformField([3.0, 0.0, -1.0]), vv.UniformMagneticField([0.0, 1.0, 2.0])
+    ),
 }
 
 
@@ -62,6 +68,8 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     assert not vv.Scene(pair, vv.Gravity(1.0, softening=0.1)).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.Gravity(1.0), vv.UniformField([0, 0, 1.0])).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.UniformMagneticField([1.0, 0.0, 0.0])).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.Gravity(1.0)).plan(t=1.0).closed_form
 
 
 METHODS: list[tuple[vv.Method, dict[str, Any]]] = [

@@ -13,7 +13,8 @@ pub(super) struct Parabola {
     position: [f64; 3],
     velocity: [f64; 3],
     acceleration: [Scaled; 3],
-    moderate: bool,
+    /// The acceleration as it is, if all sizes are moderate.
+    moderate: Option<[DoubleDouble; 3]>,
 }
 
 impl Parabola {
@@ -21,6 +22,7 @@ impl Parabola {
         let numbers = position.iter().chain(&velocity).copied().chain(acceleration.map(Scaled::to_f64));
         let moderate = numbers.map(exponent).all(|size| size.abs() < MODERATE)
             && acceleration.iter().all(|a| a.to_f64().is_finite());
+        let moderate = moderate.then(|| acceleration.map(Scaled::to_double_double));
         Self { position, velocity, acceleration, moderate }
     }
 
@@ -31,17 +33,23 @@ impl Parabola {
 
 impl Path for Parabola {
     fn state(&self, elapsed: DoubleDouble) -> ExactState {
-        let at = |c: usize| {
-            let (x, v, a) = (self.position[c], self.velocity[c], self.acceleration[c]);
-            if self.moderate && exponent(elapsed.to_f64()).abs() < MODERATE {
-                let (x, v, a) = (DoubleDouble::from(x), DoubleDouble::from(v), a.to_double_double());
-                return (x + elapsed * (v + a * elapsed.scale(0.5)), v + a * elapsed);
-            }
-            let (x, v, t) = (Scaled::from(x), Scaled::from(v), Scaled::new(elapsed, 0));
-            let mean = v.plus(a.by(t).times(0.5));
-            (unrounded(x.plus(mean.by(t))), unrounded(v.plus(a.by(t))))
+        let near = self.moderate.filter(|_| exponent(elapsed.to_f64()).abs() < MODERATE);
+        let states: [_; 3] = if let Some(acceleration) = near {
+            let half = elapsed.scale(0.5);
+            core::array::from_fn(|c| {
+                let (x, v) = (DoubleDouble::from(self.position[c]), DoubleDouble::from(self.velocity[c]));
+                let a = acceleration[c];
+                (x + elapsed * (v + a * half), v + a * elapsed)
+            })
+        } else {
+            let t = Scaled::new(elapsed, 0);
+            core::array::from_fn(|c| {
+                let (x, v) = (Scaled::from(self.position[c]), Scaled::from(self.velocity[c]));
+                let a = self.acceleration[c];
+                let mean = v.plus(a.by(t).times(0.5));
+                (unrounded(x.plus(mean.by(t))), unrounded(v.plus(a.by(t))))
+            })
         };
-        let states: [_; 3] = core::array::from_fn(at);
         (states.map(|state| state.0), states.map(|state| state.1))
     }
 }

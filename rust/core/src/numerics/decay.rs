@@ -59,3 +59,33 @@ fn exponential(x: Scaled) -> Scaled {
     let rest = x.to_double_double() - LN2 * DoubleDouble::from(n);
     Scaled::new(Exponential::exp(rest), n as i32)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Across the border between series and exponential: relative differences.
+    fn apart(a: Scaled, b: Scaled) -> f64 {
+        a.plus(b.times(-1.0)).over(b).to_f64().abs()
+    }
+
+    #[test]
+    fn series_and_exponential_meet() {
+        for u in [1.0, -1.0, 0.75, -0.5] {
+            let near = Decay::near(DoubleDouble::from(u));
+            let factor = exponential(Scaled::from(-u));
+            let first = Scaled::from(1.0).plus(factor.times(-1.0)).over(Scaled::from(u));
+            // A few units in the 104th bit, times what the subtractions cancel: 2/|u|.
+            assert!(apart(near.factor, factor) < 1e-29 && apart(near.first, first) < 1e-29, "{u}");
+        }
+    }
+
+    #[test]
+    fn the_ends_are_numbers() {
+        let far = Decay::new(Scaled::from(1e300).times(1e300));
+        assert_eq!((far.factor.to_f64(), far.first.times(1e300).times(1e300).to_f64()), (0.0, 1.0));
+        let none = Decay::new(Scaled::from(1e-300).times(1e-300));
+        assert_eq!([none.factor, none.first, none.second].map(Scaled::to_f64), [1.0, 1.0, 0.5]);
+        assert_eq!(Decay::new(Scaled::from(-1e9)).factor.to_f64(), f64::INFINITY);
+    }
+}
