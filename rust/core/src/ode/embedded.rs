@@ -198,6 +198,8 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let still = slope2.less_equal(S::zero());
         // The time in which the state changes by its own size; a hundredth of it for the trial step.
         let time = S::select(still, longest, S::one() / (norm.rtol * slope2.sqrt()));
+        // Where any error is allowed that time is without measure, and its square would be infinite.
+        let time = time.min(longest * S::splat(1e100));
         let trial = (S::splat(0.01) * time).min(longest);
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         let euler =

@@ -107,7 +107,7 @@ fn run_guided(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> R
     units.sort_by_key(|unit| (unit.copy, unit.make_up));
     let (mut guides, mut followers): (Vec<Unit>, Vec<&[Unit]>) = (Vec::new(), Vec::new());
     for of_copy in units.chunk_by(|a, b| a.copy == b.copy) {
-        let recorded = of_copy[0].active > 0;
+        let recorded = !of_copy[0].follows;
         let (copy, massless) = (of_copy[0].copy, &of_copy[usize::from(recorded)..]);
         let pieces = job.plan.pieces(massless.len(), over);
         guides.push(job.plan.guide(copy, recorded));

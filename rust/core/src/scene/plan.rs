@@ -185,7 +185,7 @@ impl Plan {
 
     /// How a unit lies in lanes: massless bodies that follow others have a lane each.
     pub fn layout_of(&self, unit: &Unit) -> Layout {
-        if self.guided && unit.active == 0 { Layout::Batched } else { self.layout }
+        if unit.follows { Layout::Batched } else { self.layout }
     }
 
     /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
@@ -202,7 +202,7 @@ impl Plan {
     pub fn guide(&self, copy: usize, recorded: bool) -> Unit {
         let active = self.active.len();
         let recorded = if recorded { 0..active } else { active..active };
-        Unit { copy, bodies: Arc::from(&self.active[..]), active, recorded, make_up: 0 }
+        Unit { copy, bodies: Arc::from(&self.active[..]), active, recorded, follows: false, make_up: 0 }
     }
 
     /// The units of the integration, in the order in which they are begun.
@@ -221,6 +221,7 @@ impl Plan {
             bodies,
             active,
             recorded,
+            follows: false,
             make_up,
         };
         let active = self.active.len();
@@ -235,8 +236,9 @@ impl Plan {
                 groups.iter().enumerate().map(group).chain(self.passive.iter().map(alone)).collect()
             }
             Groups::All if self.guided => {
-                let alone = |&body: &usize| kind(Arc::from([body]), 0, 0..1, 1);
-                core::iter::once(self.guide(0, true)).chain(self.passive.iter().map(alone)).collect()
+                let following = |body| Unit { follows: true, ..kind(Arc::from([body]), 0, 0..1, 1) };
+                let massless = self.passive.iter().copied().map(following);
+                core::iter::once(self.guide(0, true)).chain(massless).collect()
             }
             Groups::All if self.passive_apart() => {
                 let with_active = |run: &[usize]| {
