@@ -230,7 +230,7 @@ def solve_ivp(
     >>> def lorenz(t, y, sigma, rho, beta):
     ...     return [sigma * (y[1] - y[0]), y[0] * (rho - y[2]) - y[1], y[0] * y[1] - beta * y[2]]
     >>> out = vv.solve_ivp(
-    ...     lorenz, (0, 1), [1, 1, 1], "DOP853", t_eval=np.linspace(0, 1, 5), args=(10, 28, 8 / 3), rtol=1e-10, atol=1e-10
+    ...     lorenz, (0, 1), [1, 1, 1], "DOP853", t_eval=np.linspace(0, 1, 5), args=(10, 28, 8 / 3), rtol=1e-9, atol=1e-9
     ... )
     >>> out.y.shape, bool(abs(out.y[0, -1] + 9.378) < 1e-3)
     ((3, 5), True)
