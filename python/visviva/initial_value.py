@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -17,13 +17,11 @@ from visviva._keywords import known_keywords
 from visviva.errors import Interrupted, InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
-    Function = Callable[..., Any]
-
 __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
+
+Function: TypeAlias = Callable[..., Any]
 
 _SMALLEST_RTOL = 100 * 2.0**-52
 
@@ -357,10 +355,13 @@ def _unpacked(args: object) -> list[Any]:
     return list(args)
 
 
-def _events(events: Function | Iterable[Function] | None) -> list[tuple[Function, float, int | None]]:
+def _events(events: Any) -> list[tuple[Function, float, int | None]]:
     if events is None:
         return []
-    several = list(events) if isinstance(events, Iterable) and not callable(events) else [events]
+    if callable(events):
+        several = [events]
+    else:
+        several = list(events) if isinstance(events, Iterable) else [events]
     return [(event, _direction(event), _last(event)) for event in several]
 
 
