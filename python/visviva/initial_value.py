@@ -358,10 +358,7 @@ def _unpacked(args: object) -> list[Any]:
 def _events(events: Any) -> list[tuple[Function, float, int | None]]:
     if events is None:
         return []
-    if callable(events):
-        several = [events]
-    else:
-        several = list(events) if isinstance(events, Iterable) else [events]
+    several = list(events) if not callable(events) and isinstance(events, Iterable) else [events]
     return [(event, _direction(event), _last(event)) for event in several]
 
 
