@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -17,13 +17,11 @@ from visviva._keywords import known_keywords
 from visviva.errors import Interrupted, InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from numpy.typing import ArrayLike, NDArray
 
-    Function = Callable[..., Any]
-
 __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
+
+Function: TypeAlias = Callable[..., Any]
 
 _SMALLEST_RTOL = 100 * 2.0**-52
 
@@ -230,8 +228,7 @@ def solve_ivp(
     >>> def lorenz(t, y, sigma, rho, beta):
     ...     return [sigma * (y[1] - y[0]), y[0] * (rho - y[2]) - y[1], y[0] * y[1] - beta * y[2]]
     >>> out = vv.solve_ivp(
-    ...     lorenz, (0, 1), [1, 1, 1], "DOP853", t_eval=np.linspace(0, 1, 5), args=(10, 28, 8 / 3), rtol=1e-10,
-    ...     atol=1e-10,
+    ...     lorenz, (0, 1), [1, 1, 1], "DOP853", t_eval=np.linspace(0, 1, 5), args=(10, 28, 8 / 3), rtol=1e-9, atol=1e-9
     ... )
     >>> out.y.shape, bool(abs(out.y[0, -1] + 9.378) < 1e-3)
     ((3, 5), True)
@@ -358,10 +355,10 @@ def _unpacked(args: object) -> list[Any]:
     return list(args)
 
 
-def _events(events: Function | Iterable[Function] | None) -> list[tuple[Function, float, int | None]]:
+def _events(events: Any) -> list[tuple[Function, float, int | None]]:
     if events is None:
         return []
-    several = list(events) if isinstance(events, Iterable) and not callable(events) else [events]
+    several = list(events) if not callable(events) and isinstance(events, Iterable) else [events]
     return [(event, _direction(event), _last(event)) for event in several]
 
 
