@@ -272,7 +272,7 @@ def test_a_compiled_function_runs_without_the_gil() -> None:
         ({"method": "leapfrog"}, r"method: leapfrog takes equations q'' = a\(q\) alone"),
         ({"method": 45}, "method: expected a name, got int"),
         ({"y0": [1j]}, r"y0: expected real numbers, got complex ones; give real and imaginary"),
-        ({"y0": [[1.0]]}, "y0: expected shape"),
+        ({"y0": [[1.0]]}, "y0: expected an array with one axis"),
         ({"t_span": (0, np.nan)}, "t_span"),
         ({"t_span": 3.0}, r"t_span: expected two times \(t0, tf\), got 3.0"),
         ({"t_eval": [0.2, 0.1]}, "t_eval: expected times in the order of t_span, got 0.2 before 0.1"),

@@ -74,7 +74,8 @@ mod tests {
         assert_eq!(one(0.0, 1e300, 0.0, -1e300), (f64::NEG_INFINITY, 1e300));
         assert_eq!(one(1.0, 1e300, -1e300, 1e300), (f64::NEG_INFINITY, f64::NEG_INFINITY));
         // v t and a t²/2 are beyond the range, and their sum is zero.
-        assert_eq!(one(3.0, 1e200, -2e100, 1e100), (3.0, -1e200));
+        let [t, v, a] = [400, 800, 401].map(|exponent| 2.0_f64.powi(exponent));
+        assert_eq!(one(3.0, v, -a, t), (3.0, -v));
         // The least numbers there are.
         assert_eq!(one(5e-324, 5e-324, 0.0, 3.0), (2e-323, 5e-324));
         assert_eq!(one(0.0, 5e-324, 0.0, 1e308), (5e-324 * 1e308, 5e-324));
