@@ -58,7 +58,7 @@ impl TwoBody {
         let mu = scale(strength.to_f64(), unit + strong);
         if !mu.is_finite() {
             return Err(Error::invalid(
-                "G",
+                "mass",
                 format!(
                     "expected units in which G times the masses is within the range of float64, got G = {} and a mass \
                      of {}",

@@ -138,20 +138,21 @@ impl Guided {
     /// For the massless bodies `units`, all following massive ones like `guide`.
     pub(super) fn new(plan: &Plan, guide: &Prepared, units: &[&Prepared]) -> Self {
         let numbers = guide.unit.active * guide.shape.components;
-        let term =
-            |(force, kernel): (&Arc<dyn crate::forces::ForceTerm>, Option<Box<dyn Force<Lanes>>>)| match (
-                force.as_newtonian(),
-                kernel,
-            ) {
-                (Some((constant, softening)), _) => Some(Term::Pull {
-                    constant: plan.units.take(constant, [3, -1, -2]),
-                    strength: vec![Lanes::zero(); guide.unit.active],
-                    softening2: plan.units.take(softening, [1, 0, 0]) * plan.units.take(softening, [1, 0, 0]),
-                }),
-                (None, other) => other.map(Term::Other),
-            };
-        let terms: Vec<Term> = plan.forces.iter().zip(uncoupled(plan, units)).filter_map(term).collect();
-        let needs = terms.iter().fold(Needs { time: true, ..Needs::default() }, |needs, term| match term {
+        let mut terms = Vec::with_capacity(plan.forces.len());
+        for (force, kernel) in plan.forces.iter().zip(uncoupled(plan, units)) {
+            match (force.as_newtonian(), kernel) {
+                (Some((constant, softening)), _) => {
+                    let softening = plan.units.take(softening, [1, 0, 0]);
+                    terms.push(Term::Pull {
+                        constant: plan.units.take(constant, [3, -1, -2]),
+                        strength: vec![Lanes::zero(); guide.unit.active],
+                        softening2: softening * softening,
+                    });
+                }
+                (None, other) => terms.extend(other.map(Term::Other)),
+            }
+        }
+        let needs = terms.iter().fold(Needs { time: true, velocity: false }, |needs, term| match term {
             Term::Pull { .. } => needs,
             Term::Other(force) => needs.and(force.needs()),
         });
