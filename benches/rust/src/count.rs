@@ -5,6 +5,9 @@ use crate::cases::{
     Bodies, around_a_center, cluster, figure_eights, free, methods, request, scatter, soft_cluster, steps,
 };
 
+/// What makes a scene.
+type Make = fn() -> Bodies;
+
 /// A case: its name, the smaller and the larger size, and what runs it and tells the units of work done.
 pub struct Case {
     name: String,
@@ -54,7 +57,7 @@ fn all() -> Vec<Case> {
             steps(&soft_cluster(6, 6), &request("leapfrog", Some(STEP), times, 1))
         }));
     }
-    let closed: [(&str, fn() -> Bodies); 3] =
+    let closed: [(&str, Make); 3] =
         [("free/8", || free(8, false)), ("uniform/8", || free(8, true)), ("kepler/2", || cluster(2, true))];
     for (name, scene) in closed {
         cases.push(case(format!("closed/{name}"), (1000, 5000), move |size| {

@@ -152,7 +152,7 @@ impl Guided {
                 (None, other) => terms.extend(other.map(Term::Other)),
             }
         }
-        let needs = terms.iter().fold(Needs { time: true, velocity: false }, |needs, term| match term {
+        let needs = terms.iter().fold(Needs { time: true, ..Needs::default() }, |needs, term| match term {
             Term::Pull { .. } => needs,
             Term::Other(force) => needs.and(force.needs()),
         });
