@@ -255,3 +255,23 @@ def test_what_does_not_fit_is_refused_by_name(limit: int, what: str) -> None:
             print(error.argument, "bytes" in error.message, "available" in error.message)
     """
     assert child(code, VISVIVA_THREADS="1") == "t True True\n"
+
+
+@pytest.mark.parametrize("massive", [0, 1, 130])
+@pytest.mark.parametrize("threads", [1, 3])
+def test_columns_of_bodies_that_do_not_interact_count_the_mass_where_it_is(massive: int, threads: int) -> None:
+    """Each body is integrated by itself; only one of them has mass."""
+    rng = np.random.default_rng(5)
+    mass = np.zeros(131)
+    mass[massive] = 2.0
+    bodies = vv.Particles(mass, rng.normal(size=(131, 3)), rng.normal(size=(131, 3)))
+    out = vv.Scene(bodies).run(
+        t=[0.0, 0.5, 1.0],
+        method="rk4",
+        dt=1 / 64,
+        record=("position", "velocity", "center_of_mass", "momentum", "energy"),
+        threads=threads,
+    )
+    assert np.array_equal(out.center_of_mass, out.position[:, massive])
+    assert np.array_equal(out.momentum, 2.0 * out.velocity[:, massive])
+    assert np.allclose(out.energy, (out.velocity[:, massive] ** 2).sum(axis=-1), rtol=4e-16, atol=0.0)

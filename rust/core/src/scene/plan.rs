@@ -201,8 +201,17 @@ impl Plan {
     /// The massive bodies of a copy, for massless ones to follow; `recorded` or not.
     pub fn guide(&self, copy: usize, recorded: bool) -> Unit {
         let active = self.active.len();
+        let leads = recorded;
         let recorded = if recorded { 0..active } else { active..active };
-        Unit { copy, bodies: Arc::from(&self.active[..]), active, recorded, follows: false, make_up: 0 }
+        Unit {
+            copy,
+            bodies: Arc::from(&self.active[..]),
+            active,
+            recorded,
+            leads,
+            follows: false,
+            make_up: 0,
+        }
     }
 
     /// The units of the integration, in the order in which they are begun.
@@ -210,7 +219,8 @@ impl Plan {
         let kinds = self.kinds();
         let kinds = &kinds;
         (0..self.copies)
-            .flat_map(|copy| kinds.iter().map(move |kind| Unit { copy, ..kind.clone() }))
+            .flat_map(|copy| kinds.iter().enumerate().map(move |(index, kind)| (copy, index, kind)))
+            .map(|(copy, index, kind)| Unit { copy, leads: index == 0, ..kind.clone() })
             .collect()
     }
 
@@ -221,6 +231,7 @@ impl Plan {
             bodies,
             active,
             recorded,
+            leads: false,
             follows: false,
             make_up,
         };

@@ -35,6 +35,8 @@ pub struct Unit {
     pub active: usize,
     /// Which of them, by their place in `bodies`, are recorded from this unit.
     pub recorded: core::ops::Range<usize>,
+    /// Whether it is the first unit of its copy, from which columns are derived where one unit can tell them.
+    pub leads: bool,
     /// Whether it is a massless body that follows the massive ones of its copy.
     pub follows: bool,
     /// Units of the same make-up may share lanes: forces see no difference but in numbers.
@@ -42,11 +44,6 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Whether the columns of its copy are derived from it, where one unit can tell them.
-    pub fn derives(&self) -> bool {
-        self.recorded.start == 0 && !self.follows
-    }
-
     /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
     /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {

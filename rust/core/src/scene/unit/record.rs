@@ -73,7 +73,7 @@ impl Prepared {
         // SAFETY: a particle is recorded from one unit (`run` looked), and one thread has the unit.
         let output = unsafe { writer.output(self.unit.copy, time) };
         let finite = self.record_states(writer, &output, state, unit_lane, elapsed);
-        if writer.derives() && self.unit.derives() && finite {
+        if writer.derives() && self.unit.leads && finite {
             self.derive(writer, &output, state, unit_lane, elapsed, ticker)?;
         }
         Ok(finite)
