@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import METHODS
 from law_book import law
 from recipe import COLUMNS, Case, Recipe, Refused
 from running import TIERS, Bits, differences, execute, outcome, worker
@@ -183,27 +182,6 @@ def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
     if not np.isfinite(on).all():
         return
     _same(outcome(result.final, on, case.how), outcome(loaded.final, on, case.how), "run on after loading")
-
-
-@law
-def run_on_from_a_node_changes_no_bit(recipe: Recipe) -> None:
-    """Fixed steps that end on a node go on as if they had never stopped, also by way of a file."""
-    method = METHODS.get(recipe.method)
-    if method is None or method.adaptive or recipe.steps < 2:
-        raise Refused("no fixed steps")
-    case = replace(recipe, ragged=False, outputs=0).case()
-    _ran(case)
-    scene = case.members()[0]
-    step = (case.t[-1] - scene.t0) / recipe.steps
-    node = scene.t0 + recipe.steps // 2 * step
-    if scene.t0 + step == scene.t0 or node in (scene.t0, case.t[-1]):
-        raise Refused("no node between")
-    whole = outcome(case.start, case.t[-1:], case.how)
-    half, ended = execute(case.start, (node,), case.how)
-    if ended or (not case.alone and half.status.any()):
-        raise Refused(ended)
-    of = tuple(name for name in whole if name in ("position", "velocity", "status", "final position", "final velocity"))
-    _same(whole, outcome(half.final, case.t[-1:], case.how), "run on from a node", of=of)
 
 
 @law

@@ -40,8 +40,6 @@ KEPT: list[tuple[str, Recipe]] = [
         ),
     ),
     # `final` forgot what the state leaves out.
-    ("run_on_from_a_node_changes_no_bit", Recipe(method="yoshida4", forces=(), steps=2)),
-    ("run_on_from_a_node_changes_no_bit", Recipe(method="stormer13", bodies=3, steps=40)),
     # Bodies at rest had the plan's unit for a velocity scale.
     (
         "a_member_is_as_if_alone",

@@ -3,7 +3,6 @@
 Every test is named after the promise and stands alone; `test_laws.py` states the same promises for scenes at random.
 """
 
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -226,19 +225,6 @@ def test_free_motion_is_a_number_wherever_it_is_one() -> None:
 
 
 # Stopping and going on.
-
-
-@pytest.mark.parametrize("method", [method.name for method in METHODS if not method.adaptive])
-@pytest.mark.parametrize("count", [2, 3, 12])
-def test_a_run_that_stops_at_a_node_goes_on_as_if_it_had_not(method: str, count: int, tmp_path: Path) -> None:
-    scene = vv.Scene(scattered(count), SOFT, FIELD)
-    whole = scene.run(t=1.0, method=method, dt=1 / 64)
-    half = scene.run(t=0.5, method=method, dt=1 / 64)
-    half.save(tmp_path / "half.npz")
-    for start in (half.final, vv.load(tmp_path / "half.npz").final):
-        rest = start.run(t=1.0, method=method, dt=1 / 64)
-        assert np.array_equal(rest.position[-1], whole.position[-1])
-        assert np.array_equal(rest.velocity[-1], whole.velocity[-1])
 
 
 # What went wrong is said as it is.

@@ -7,9 +7,11 @@ use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::lanes::Lanes;
+use crate::numerics::points::distance;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::units::Units;
 use std::sync::Arc;
 
 /// The exponents of length, mass and time in an acceleration.
@@ -67,6 +69,9 @@ impl ForceTerm for Uniform {
     }
     fn keeps_plane(&self) -> bool {
         self.g[2] == 0.0
+    }
+    fn strongest(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        distance(units.take_vector(self.g, ACCELERATION), [0.0; 3])
     }
     fn as_uniform(&self) -> Option<[f64; 3]> {
         Some(self.g)

@@ -27,9 +27,11 @@ impl Prepared {
         let total: f64 = self.strength.iter().map(|x| x.abs()).sum();
         let orbital = (total / extent.max(length)).sqrt();
         let velocity = speed.max(orbital);
-        // A body at rest in a field gets its scale from the fall over that length.
+        // A body at rest in a field gets its scale from the fall over that length; one that nothing moves, from the run.
         let velocity = if velocity > 0.0 { velocity } else { (length * field).sqrt() };
-        self.size = (length, if velocity > 0.0 { velocity } else { 1.0 });
+        let span = self.units.take(plan.span, [0, 0, 1]);
+        let slow = if span > 0.0 { length / span } else { 1.0 };
+        self.size = (length, if velocity > 0.0 { velocity } else { slow });
     }
 
     /// A length for a body that is where distances are measured from: the radius of its path, or what it passes or falls in
