@@ -46,7 +46,7 @@ _HOME = {
     "load": "io",
     "methods": "integrators",
 }
-_ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering", "typing")
+_ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
 __all__ = [
     "AccuracyWarning",
@@ -75,6 +75,7 @@ __all__ = [
     "UnknownKeyword",
     "datasets",
     "errors",
+    "events",
     "forces",
     "load",
     "methods",
@@ -86,7 +87,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, forces, orbits, potentials, problems, scattering, typing
+    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, typing
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

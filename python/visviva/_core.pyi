@@ -27,6 +27,7 @@ class _Request(_Scene):
     max_step: float | None
     max_steps: int | None
     record: list[str]
+    events: list[dict[str, Any]]
 
 def run(
     asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool

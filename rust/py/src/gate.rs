@@ -98,7 +98,7 @@ fn reported(py: Python<'_>, progress: Option<&Py<PyAny>>, done: u64, total: u64)
 }
 
 /// Whether this is what Python's own handler of SIGINT raises; a subclass is somebody else's.
-fn is_ctrl_c(py: Python<'_>, exception: &PyErr) -> bool {
+pub(crate) fn is_ctrl_c(py: Python<'_>, exception: &PyErr) -> bool {
     exception.get_type(py).is(py.get_type::<PyKeyboardInterrupt>())
 }
 

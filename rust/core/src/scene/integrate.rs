@@ -4,9 +4,11 @@
 //! units each at its own pace. What a unit gives depends on nothing but the unit.
 
 mod adaptive;
+mod events;
 mod fixed;
 mod report;
 
+pub use events::Found;
 pub use report::{Counts, Ending, Report};
 
 use super::Scene;
@@ -37,6 +39,8 @@ pub struct Job<'a> {
     pub max_step: f64,
     /// Most steps.
     pub max_steps: u64,
+    /// Whether the events of the plan are looked for.
+    pub watches: bool,
     /// Where the records go.
     pub writer: &'a Writer<'a>,
 }
@@ -45,6 +49,11 @@ impl Job<'_> {
     /// The last output time.
     fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
+    }
+
+    /// Whether anything is looked for on the way.
+    fn watched(&self) -> bool {
+        self.watches && !self.plan.events.is_empty()
     }
 
     fn prepare(&self, unit: &Unit) -> Prepared {

@@ -1,12 +1,14 @@
 //! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
 
 mod coupling;
+mod events;
 mod explain;
 
 pub use coupling::Groups;
 pub use explain::Row;
 
 use super::Scene;
+use super::events::Event;
 use super::frame::{Origin, Units, closed};
 use super::layout::Layout;
 use super::request::{Checked, Request};
@@ -85,6 +87,8 @@ pub struct Plan {
     pub threads: (usize, usize),
     /// Output times between the start and the end.
     pub outputs_between: usize,
+    /// What is looked for on the way.
+    pub events: Arc<[Event]>,
     /// Columns to be computed.
     pub record: Vec<String>,
     copies: usize,
@@ -110,7 +114,7 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solution = if automatic { closed_form(scene, &forces, &active) } else { Solution::Integration };
+        let solution = if automatic && request.events.is_empty() { closed_form(scene, &forces, &active) } else { Solution::Integration };
         let planar = planar(scene, &forces);
         let closed = solution == Solution::Integration && closed(&forces);
         let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
@@ -148,6 +152,7 @@ impl Plan {
             layout,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
+            events: request.events.clone().into(),
             record: request.record.clone(),
             copies: scene.copies,
             particles: scene.particles,
@@ -157,7 +162,8 @@ impl Plan {
     }
 
     fn share_threads(&self, threads: usize) -> (usize, usize) {
-        if self.solution != Solution::Integration {
+        let calls = self.events.iter().any(Event::calls);
+        if calls || self.solution != Solution::Integration {
             return (1, 1);
         }
         let units = self.unit_list().len();
@@ -182,7 +188,8 @@ impl Plan {
 
     /// The units of the integration, in the order in which they are begun.
     pub fn unit_list(&self) -> Vec<Unit> {
-        let kinds = self.kinds();
+        let mut kinds = self.kinds();
+        self.watch(&mut kinds);
         let kinds = &kinds;
         (0..self.copies)
             .flat_map(|copy| kinds.iter().map(move |kind| Unit { copy, ..kind.clone() }))
@@ -191,12 +198,14 @@ impl Plan {
 
     /// What each copy is made of: a unit for each group of bodies.
     fn kinds(&self) -> Vec<Unit> {
+        let none: Arc<[usize]> = Arc::from([]);
         let kind = |bodies: Arc<[usize]>, active, recorded, make_up| Unit {
             copy: 0,
             bodies,
             active,
             recorded,
             make_up,
+            events: Arc::clone(&none),
         };
         let active = self.active.len();
         // Bodies by themselves are all of one make-up, whichever they are.

@@ -36,6 +36,8 @@ pub struct Unit {
     pub recorded: core::ops::Range<usize>,
     /// Units of the same make-up may share lanes: forces see no difference but in numbers.
     pub make_up: usize,
+    /// The events that are looked for in it.
+    pub events: Arc<[usize]>,
 }
 
 impl Unit {

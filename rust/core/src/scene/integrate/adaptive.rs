@@ -3,12 +3,14 @@
 //! The one idea: when a unit ends, the next that waits takes its lane, so lanes seldom run dry. Packed,
 //! there is one unit at a time, in all lanes.
 
+mod events;
 mod measure;
 mod outputs;
 mod stuck;
 
 use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
+use super::events::Watch;
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
@@ -58,7 +60,7 @@ pub(super) fn run(
 }
 
 /// A unit in its lane (in all lanes, if packed).
-struct Slot {
+struct Slot<'a> {
     unit: Prepared,
     /// Its place among the units of the run.
     index: usize,
@@ -66,6 +68,8 @@ struct Slot {
     counts: Counts,
     /// How much of it was counted as progress.
     progress: u64,
+    /// Its events, if it has any.
+    watch: Option<Box<Watch<'a>>>,
 }
 
 /// Units on their way through the lanes.
@@ -74,7 +78,7 @@ struct Run<'a> {
     units: &'a [Unit],
     threads: usize,
     waiting: Enumerate<slice::Iter<'a, Unit>>,
-    slots: [Option<Slot>; WIDTH],
+    slots: [Option<Slot<'a>>; WIDTH],
     reports: Vec<Option<Report>>,
     /// Output times as elapsed time in the plan's units.
     outputs: Vec<f64>,
@@ -146,6 +150,7 @@ impl<'a> Run<'a> {
     /// When the caller asks to stop.
     fn take_up(&mut self, ticker: &mut Ticker<'_>) -> Result<Bits> {
         let mut fresh = Bits(0);
+        let watched = self.job.watched();
         for lane in 0..self.job.plan.layout.units() {
             while self.slots[lane].is_none() {
                 let Some((index, unit)) = self.waiting.next() else { break };
@@ -159,13 +164,17 @@ impl<'a> Run<'a> {
                     next_output: 0,
                     counts: Counts { evaluations: self.cost.start, ..Counts::default() },
                     progress: 0,
+                    watch: None,
                 };
+                if watched {
+                    slot.watch = Watch::begin(self.job, &slot.unit, (&self.state, lane), ticker)?;
+                }
                 self.record_start(&mut slot, lane, ticker)?;
                 if slot.next_output < self.outputs.len() {
                     self.slots[lane] = Some(slot);
                     fresh = fresh.or(mask);
                 } else {
-                    self.finish(&slot, lane, self.job.scene.t0, Ending::Finished);
+                    self.finish(slot, lane, self.job.scene.t0, Ending::Finished);
                 }
             }
         }
@@ -200,7 +209,10 @@ impl<'a> Run<'a> {
     fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Outcome<Lanes>> {
         let Self { trial, state, clock, dynamics, norm, .. } = self;
         let outcome = trial.attempt(running, dynamics, state, clock, norm, ticker)?;
-        self.record(&outcome, ticker)?;
+        let dense = self.record(&outcome, ticker)?;
+        if self.job.watched() {
+            self.watch(&outcome, dense, ticker)?;
+        }
         Ok(outcome)
     }
 
@@ -232,18 +244,22 @@ impl<'a> Run<'a> {
         } else {
             slot.counts.rejected += 1;
         }
+        let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
         let ending = if outcome.finished.lane(lane) {
             Ending::Finished
         } else if outcome.stuck.lane(lane) {
             stuck::why(self.job, &slot.unit, &self.state, lane, elapsed)
         } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
             Ending::TooManySteps
+        } else if stopped {
+            // The events know better where.
+            Ending::Stopped
         } else {
             return;
         };
         let time = if ending == Ending::Finished { self.job.end() } else { self.time(lane) };
         if let Some(slot) = self.slots[lane].take() {
-            self.finish(&slot, lane, time, ending);
+            self.finish(slot, lane, time, ending);
         }
     }
 
@@ -252,9 +268,12 @@ impl<'a> Run<'a> {
         self.job.scene.t0 + scale(self.clock.elapsed.0[lane], self.job.plan.units.time)
     }
 
-    fn finish(&mut self, slot: &Slot, lane: usize, time: f64, ending: Ending) {
+    fn finish(&mut self, slot: Slot<'a>, lane: usize, time: f64, ending: Ending) {
         let (rows, counts) = (slot.next_output, slot.counts);
-        let report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
+        let mut report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
+        if let Some(watch) = slot.watch {
+            watch.tell(&mut report);
+        }
         self.reports[slot.index] = Some(report);
     }
 
@@ -262,7 +281,7 @@ impl<'a> Run<'a> {
     fn into_reports(mut self) -> Vec<Report> {
         for lane in 0..WIDTH {
             if let Some(slot) = self.slots[lane].take() {
-                self.finish(&slot, lane, self.time(lane), Ending::Interrupted);
+                self.finish(slot, lane, self.time(lane), Ending::Interrupted);
             }
         }
         let not_begun = |unit| {

@@ -25,7 +25,7 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record_start(&self, slot: &mut Slot, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
+    pub(super) fn record_start(&self, slot: &mut Slot<'_>, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
             let _: bool =
                 slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0, ticker)?;
@@ -34,17 +34,18 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Records the outputs that the step has passed, before it is committed.
+    /// Records the outputs that the step has passed, before it is committed; the lanes that have paid for its continuous
+    /// extension, which is then ready.
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record(&mut self, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
+    pub(super) fn record(&mut self, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) -> Result<Bits> {
         let mut ready = false;
         let mut charged = Bits(0);
         loop {
             let round = self.round(outcome);
             if !round.due.any() {
-                return Ok(());
+                return Ok(charged);
             }
             if round.inside.any() {
                 let Self { trial, state, between, dynamics, .. } = self;
@@ -102,7 +103,7 @@ impl Run<'_> {
     }
 
     /// Counts the evaluations of the continuous extension for the units that read it.
-    fn charge(&mut self, lanes: Bits) {
+    pub(super) fn charge(&mut self, lanes: Bits) {
         let evaluations = self.cost.dense;
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {

@@ -1,0 +1,95 @@
+//! Events of an adaptive run: looked for on each step that is about to be kept, on its continuous extension.
+
+use super::super::events::{Interpolant, SAMPLES, Span};
+use super::{Result, Run};
+use crate::forces::Dynamics;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::state::State;
+use crate::ode::step_control::Outcome;
+use crate::ode::trial::Trial;
+use crate::parallel::Ticker;
+
+/// A step of all lanes; what one lane samples is there for the others.
+struct Inside<'r> {
+    trial: &'r mut dyn Trial<Lanes>,
+    dynamics: &'r mut Dynamics<Lanes>,
+    state: &'r State<Lanes>,
+    between: &'r mut State<Lanes>,
+    samples: [Option<State<Lanes>>; SAMPLES.len()],
+    outcome: &'r Outcome<Lanes>,
+    ready: bool,
+    /// Whether the lane at hand has looked inside.
+    used: bool,
+}
+
+impl Inside<'_> {
+    fn ready(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
+        self.used = true;
+        if !self.ready {
+            self.trial.dense(self.outcome, self.dynamics, self.state, ticker)?;
+            self.ready = true;
+        }
+        Ok(())
+    }
+}
+
+impl Interpolant for Inside<'_> {
+    fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        self.ready(ticker)?;
+        self.trial.at(self.state, self.outcome.h, Lanes::splat(theta), self.between);
+        Ok(self.between)
+    }
+
+    fn sample(&mut self, index: usize, ticker: &mut Ticker<'_>) -> Result<Option<&State<Lanes>>> {
+        self.ready(ticker)?;
+        let Self { trial, state, outcome, between, samples, .. } = self;
+        let sample = &mut samples[index];
+        if sample.is_none() {
+            trial.at(state, outcome.h, Lanes::splat(SAMPLES[index]), between);
+            *sample = Some(between.clone());
+        }
+        Ok(sample.as_ref())
+    }
+}
+
+impl Run<'_> {
+    /// Looks for the events of the units that are about to move. The continuous extension is ready if `dense` has lanes,
+    /// which have paid for it.
+    ///
+    /// # Errors
+    /// Those of the functions and of an evaluation.
+    pub(super) fn watch(
+        &mut self,
+        outcome: &Outcome<Lanes>,
+        dense: Bits,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let Self { trial, dynamics, state, between, slots, clock, .. } = self;
+        // The end of the step is read while its inside is asked for.
+        let after = trial.next().clone();
+        let mut inside = Inside {
+            trial: &mut **trial,
+            dynamics,
+            state,
+            between,
+            samples: [const { None }; SAMPLES.len()],
+            outcome,
+            ready: dense.any(),
+            used: false,
+        };
+        let mut charged = Bits(0);
+        for (lane, slot) in slots.iter_mut().enumerate().take(WIDTH) {
+            let Some(slot) = slot else { continue };
+            let Some(watch) = slot.watch.as_mut().filter(|_| outcome.accepted.lane(lane)) else { continue };
+            inside.used = false;
+            let span = Span { from: outcome.from.0[lane], to: clock.elapsed.0[lane] };
+            watch.look(&slot.unit, span, (&after, lane), &mut inside, ticker)?;
+            if inside.used && !dense.lane(lane) {
+                charged = charged.or(Bits(1 << lane));
+            }
+        }
+        self.charge(charged);
+        Ok(())
+    }
+}
