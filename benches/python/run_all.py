@@ -15,6 +15,7 @@ SCRIPTS = (
     "round_off_floor",
     "energy_growth",
     "outputs",
+    "events",
     "figure_eight_ensemble",
     "rutherford",
     "same_bits",

@@ -14,14 +14,13 @@ from visviva import events
 if TYPE_CHECKING:
     from pathlib import Path
 
-STEPS = {"dop853": {"rtol": 1e-13}}
 FIXED = {"dt": 2.0 * np.pi / 2000}
-METHODS = [method.name for method in vv.methods.values()]
-ADAPTIVE = [method.name for method in vv.methods.values() if method.adaptive]
+BY_NAME = {method.name: method for method in vv.methods()}
+METHODS = list(BY_NAME)
 
 
 def options(method: str) -> dict[str, Any]:
-    return {"rtol": 1e-11} if vv.methods[method].adaptive else FIXED
+    return {"rtol": 1e-11} if BY_NAME[method].adaptive else FIXED
 
 
 def kepler(e: float = 0.3) -> vv.Scene:
@@ -39,16 +38,16 @@ PERIOD = 2.0 * np.pi / np.sqrt(1.5)
 
 @pytest.mark.parametrize("method", METHODS)
 def test_apsides_are_half_periods_apart(method: str) -> None:
-    step = {} if vv.methods[method].adaptive else {"dt": PERIOD / 2000}
-    if vv.methods[method].adaptive:
-        step = {"rtol": 1e-13 if vv.methods[method].order >= 5 else 1e-9}
+    step = {} if BY_NAME[method].adaptive else {"dt": PERIOD / 2000}
+    if BY_NAME[method].adaptive:
+        step = {"rtol": 1e-13 if BY_NAME[method].order >= 5 else 1e-9}
     out = kepler().run(t=5.2 * PERIOD, method=method, events=[events.apsis(1, 0)], **step)
     table = out.events
     expected = 0.5 * PERIOD * np.arange(1, 11)
     assert len(table) == 10
     # What the method itself is off after so many periods: of second order the phase, (ωh)²/24 of the time for steps of a
     # 2000th of the period, times what the eccentricity makes of it.
-    order = vv.methods[method].order
+    order = BY_NAME[method].order
     bar = {1: 1.0, 2: 2e-4, 3: 1e-4}.get(order, 1e-8 if order == 4 else 1e-10)
     np.testing.assert_allclose(table.t, expected, rtol=0.0, atol=bar)
     relative = table.position[:, 1] - table.position[:, 0]
@@ -62,8 +61,10 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
 
 def test_apsides_of_an_accurate_run_are_at_their_times_to_round_off() -> None:
     out = kepler().run(t=10.2 * PERIOD, method="dop853", rtol=2.3e-14, events=[events.apsis(1, 0)])
-    # The phase that rtol leaves after ten periods.
-    np.testing.assert_allclose(out.events.t, 0.5 * PERIOD * np.arange(1, 21), rtol=0.0, atol=2e-12)
+    # The phase that the round-off of some thousand steps leaves, which grows as the square of the time: a relative error of
+    # 1e-14 in the energy is one of 1.5e-14 in the period, 1e-12 after ten.
+    np.testing.assert_allclose(out.events.t[:4], 0.5 * PERIOD * np.arange(1, 5), rtol=0.0, atol=2e-13)
+    np.testing.assert_allclose(out.events.t, 0.5 * PERIOD * np.arange(1, 21), rtol=0.0, atol=1e-11)
 
 
 @pytest.mark.parametrize("direction", [1, -1])
@@ -79,7 +80,7 @@ def test_directions_are_those_of_time(direction: int, end: float) -> None:
 @pytest.mark.parametrize("depth", [1e-2, 1e-5, 1e-8])
 def test_two_zeros_in_one_step_are_found(method: str, depth: float) -> None:
     """The distance goes below its bound for a time far shorter than a step."""
-    step = {"rtol": 1e-10} if vv.methods[method].adaptive else {"dt": PERIOD / 1000}
+    step = {"rtol": 1e-10} if BY_NAME[method].adaptive else {"dt": PERIOD / 1000}
     scene = kepler()
     apart = scene.run(t=1.5 * PERIOD, method=method, events=[events.apsis(1, 0, direction=1)], **step).events
     least = np.linalg.norm(apart.position[0, 1] - apart.position[0, 0])
@@ -159,7 +160,7 @@ def test_members_have_the_events_they_have_alone(method: str) -> None:
         alone = scene.with_state(copies.position[index], copies.velocity[index], 0.0)
         table = alone.run(t=6.0, method=method, events=asked, **options(method)).events
         of_copy = runs[0][index].events
-        assert len(table) > 5
+        assert len(table) >= 3
         assert not of_copy.member.any()
         for name in ("which", "t", "position", "velocity"):
             np.testing.assert_array_equal(getattr(table, name), getattr(of_copy, name))
@@ -216,22 +217,22 @@ def test_bodies_that_are_integrated_apart_are_brought_to_the_event() -> None:
     asked = [
         events.plane([0, 0, 0], [0, 1.0, 0], body=1),
         events.apsis(5, 0),
-        events.distance(3, 68, below=2.0, direction=0),
+        events.distance(3, 66, below=2.0, direction=0),
         lambda t, x, v: x[10, 0] - x[69, 0],
     ]
     plain = scene.run(t=[0.0, 10.0, 20.0], rtol=1e-11)
     out = scene.run(t=[0.0, 10.0, 20.0], rtol=1e-11, events=asked)
     np.testing.assert_array_equal(out.position, plain.position)
-    separation = out.events.of(2).position[:, 3] - out.events.of(2).position[:, 68]
+    separation = out.events.of(2).position[:, 3] - out.events.of(2).position[:, 66]
     np.testing.assert_allclose(np.linalg.norm(separation, axis=1), 2.0, rtol=1e-14)
     assert len(separation) > 0
     assert len(out.events.of(3)) > 0
     assert np.isfinite(out.events.of(3).position).all()
     assert np.isnan(out.events.of(0).position[:, 5:]).all()
-    stop = scene.run(t=np.linspace(0, 20, 201), rtol=1e-11, events=[events.distance(3, 68, below=2.0, terminal=True)])
+    stop = scene.run(t=np.linspace(0, 20, 201), rtol=1e-11, events=[events.distance(3, 66, below=2.0, terminal=True)])
     assert stop.status is vv.Status.STOPPED
     assert stop.final.t0 == stop.events.t[-1]
-    separation = stop.final.particles.position[3] - stop.final.particles.position[68]
+    separation = stop.final.particles.position[3] - stop.final.particles.position[66]
     # Each comes there by its own steps: what rtol leaves.
     assert abs(np.linalg.norm(separation) - 2.0) < 1e-8
     assert stop.t[-1] <= stop.final.t0 < stop.t[-1] + 0.1

@@ -22,7 +22,8 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         units: plan.units,
         threads,
     };
-    if let (true, Some((constant, softening))) = (plan.relative, plan.forces[0].as_newtonian()) {
+    let only = plan.forces.first().filter(|_| plan.relative);
+    if let Some((constant, softening)) = only.and_then(|force| force.as_newtonian()) {
         return Dynamics::closed(few_bodies(&context, constant, softening));
     }
     Dynamics::new(shape, plan.forces.iter().map(|force| force.kernel(&context)).collect())
