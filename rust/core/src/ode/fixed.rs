@@ -157,7 +157,8 @@ pub fn run<S: Element>(
                 }
                 if watches.is_some() {
                     stepper.settle(state);
-                    let step = Taken { node: taken, present: state, past: None, stepper: &mut *stepper, system };
+                    let step =
+                        Taken { node: taken, present: state, past: None, stepper: &mut *stepper, system };
                     if !recorder.look(step, ticker)? {
                         return Ok(());
                     }

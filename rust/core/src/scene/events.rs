@@ -225,9 +225,7 @@ impl Event {
         8.0 * f64::EPSILON
             * match &self.what {
                 What::Distance { .. } => 1.0,
-                What::Plane { point, .. } => {
-                    size(*point) + size(view.from_point(places[0], *point).0)
-                }
+                What::Plane { point, .. } => size(*point) + size(view.from_point(places[0], *point).0),
                 What::Apsis { about, .. } => {
                     let (distance, velocity) = Self::orbit(about, view, places);
                     size(distance) * size(velocity)
@@ -287,7 +285,9 @@ impl Event {
             What::Distance { length, .. } if !(*length > 0.0 && length.is_finite()) => {
                 refused(format!("expected a distance above 0, got {}", number(*length)))
             }
-            What::Plane { point, normal, .. } if !(finite(point) && finite(normal) && dot(*normal, *normal) > 0.0) => {
+            What::Plane { point, normal, .. }
+                if !(finite(point) && finite(normal) && dot(*normal, *normal) > 0.0) =>
+            {
                 refused(format!(
                     "expected a finite point and a finite normal other than 0, got {} and {}",
                     numbers(point),

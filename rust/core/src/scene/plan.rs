@@ -114,7 +114,11 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solution = if automatic && request.events.is_empty() { closed_form(scene, &forces, &active) } else { Solution::Integration };
+        let solution = if automatic && request.events.is_empty() {
+            closed_form(scene, &forces, &active)
+        } else {
+            Solution::Integration
+        };
         let planar = planar(scene, &forces);
         let closed = solution == Solution::Integration && closed(&forces);
         let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };

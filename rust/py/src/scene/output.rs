@@ -83,7 +83,8 @@ pub(super) fn output_dict<'py>(
         };
         events.set_item("member", whole(|line| line.0)?)?;
         events.set_item("which", whole(|line| line.1)?)?;
-        events.set_item("t", moved(py, found.lines().map(|line| line.2).collect::<Vec<f64>>(), &shape[..1])?)?;
+        events
+            .set_item("t", moved(py, found.lines().map(|line| line.2).collect::<Vec<f64>>(), &shape[..1])?)?;
         events.set_item("position", moved(py, found.states(0, particles), &shape)?)?;
         events.set_item("velocity", moved(py, found.states(1, particles), &shape)?)?;
         dict.set_item("events", events)?;

@@ -9,6 +9,7 @@ use super::super::events::{Event, Moving, Surroundings, View};
 use super::super::unit::Prepared;
 use super::{Ending, Job, Report};
 use crate::error::Result;
+use crate::numerics::double_double::two_sum;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::ode::events::zero;
@@ -16,7 +17,7 @@ use crate::ode::state::State;
 use crate::parallel::Ticker;
 
 /// Where a step is sampled, as fractions of it: close to its ends to see which way the function leaves and comes.
-pub(super) const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984375];
+const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984375];
 
 /// How far the cubic must keep clear of zero, as a part of its range: that much the function may differ from it.
 const CLEARANCE: f64 = 0.5;
@@ -44,11 +45,18 @@ pub(super) trait Interpolant {
     /// Those of an evaluation.
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>>;
 
-    /// The state at one of the [`SAMPLES`]; `None` if that costs more than the cubic through both ends is worth.
+    /// How one coordinate moves in a lane: the terms of [`polynomial`](crate::ode::trial::Trial::polynomial). None are
+    /// added by who has no polynomial.
     ///
     /// # Errors
     /// Those of an evaluation.
-    fn sample(&mut self, index: usize, ticker: &mut Ticker<'_>) -> Result<Option<&State<Lanes>>>;
+    fn polynomial(
+        &mut self,
+        coordinate: usize,
+        lane: usize,
+        into: &mut Vec<[f64; 2]>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
 }
 
 /// From where to where a step leads, as elapsed time in the plan's units.
@@ -77,8 +85,12 @@ pub(super) struct Watch<'a> {
     /// The same by their indices in the scene.
     bodies: Vec<usize>,
     massive: bool,
-    /// Bodies and values at the last node.
+    /// Bodies and values at the last node, and room for the bodies at the next one and inside a step.
     before: Vec<Moving>,
+    after: Vec<Moving>,
+    inside: Vec<Moving>,
+    /// The terms of each coordinate of each body on the step at hand.
+    terms: Vec<[f64; 2]>,
     values: Vec<f64>,
     /// Zeros of each event so far.
     counts: Vec<u64>,
@@ -120,6 +132,9 @@ impl<'a> Watch<'a> {
             bodies: slots.iter().map(|&slot| unit.unit.bodies[slot]).collect(),
             massive: unit.unit.bodies.len() < scene.particles,
             before: Vec::new(),
+            after: Vec::new(),
+            inside: Vec::new(),
+            terms: Vec::new(),
             values: Vec::new(),
             counts: vec![0; events.len()],
             found: Vec::new(),
@@ -127,14 +142,17 @@ impl<'a> Watch<'a> {
             slots,
             events,
         };
-        watch.before = watch.read(unit, state, lane);
+        watch.read(unit, state, lane);
+        core::mem::swap(&mut watch.before, &mut watch.after);
+        let view = watch.view(unit, &watch.before, 0.0);
+        let mut values = Vec::with_capacity(watch.events.len());
         for event in 0..watch.events.len() {
-            let value = watch.value(unit, event, &watch.before, 0.0, ticker)?;
+            let value = watch.value(unit, event, &view, ticker)?;
             // What starts at zero has not come there.
             let (what, places) = watch.event(event);
-            let rounding = what.rounding(&watch.view(unit, &watch.before, 0.0), places);
-            watch.values.push(if value.abs() <= rounding { 0.0 } else { value });
+            values.push(if value.abs() <= what.rounding(&view, places) { 0.0 } else { value });
         }
+        watch.values = values;
         Ok(Some(Box::new(watch)))
     }
 
@@ -143,24 +161,25 @@ impl<'a> Watch<'a> {
         (&self.job.plan.events[*index], places)
     }
 
-    /// The bodies that are looked at.
-    fn read(&self, unit: &Prepared, state: &State<Lanes>, lane: usize) -> Vec<Moving> {
+    /// Reads the bodies that are looked at into `after`.
+    fn read(&mut self, unit: &Prepared, state: &State<Lanes>, lane: usize) {
         let components = unit.shape.components;
         let rows = state.q().len() / components;
         let units = self.job.plan.units;
-        let read = |&slot: &usize| {
+        let (length, speed) = (units.length, -units.velocity());
+        self.after.clear();
+        for &slot in &self.slots {
             let (row, lane) = unit.locate(slot, lane);
             let mut moving = Moving::default();
             for c in 0..components {
-                let take = |values: &[Lanes], exponent| scale(values[c * rows + row].0[lane], exponent);
-                moving.position[c] = take(state.q(), units.length);
-                moving.position_rest[c] = take(state.q_compensation(), units.length);
-                moving.velocity[c] = take(state.v(), -units.velocity());
-                moving.velocity_rest[c] = take(state.v_compensation(), -units.velocity());
+                let at = c * rows + row;
+                moving.position[c] = scale(state.q()[at].0[lane], length);
+                moving.position_rest[c] = scale(state.q_compensation()[at].0[lane], length);
+                moving.velocity[c] = scale(state.v()[at].0[lane], speed);
+                moving.velocity_rest[c] = scale(state.v_compensation()[at].0[lane], speed);
             }
-            moving
-        };
-        self.slots.iter().map(read).collect()
+            self.after.push(moving);
+        }
     }
 
     fn view<'v>(&self, unit: &Prepared, bodies: &'v [Moving], elapsed: f64) -> View<'v> {
@@ -168,14 +187,7 @@ impl<'a> Watch<'a> {
         View { bodies, origin: unit.origin.at(elapsed), elapsed }
     }
 
-    fn value(
-        &self,
-        unit: &Prepared,
-        event: usize,
-        bodies: &[Moving],
-        elapsed: f64,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<f64> {
+    fn value(&self, unit: &Prepared, event: usize, view: &View<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {
         let around = Surroundings {
             scene: self.job.scene,
             copy: unit.unit.copy,
@@ -183,7 +195,7 @@ impl<'a> Watch<'a> {
             massive: self.massive,
         };
         let (event, places) = self.event(event);
-        event.value(&self.view(unit, bodies, elapsed), places, &around, ticker)
+        event.value(view, places, &around, ticker)
     }
 
     /// Looks into a step that leads to the state in a lane.
@@ -198,16 +210,23 @@ impl<'a> Watch<'a> {
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let bodies = self.read(unit, after, lane);
+        self.read(unit, after, lane);
         let mut zeros: Vec<(f64, usize)> = Vec::new();
+        let mut asked = false;
         for event in 0..self.events.len() {
-            let value = self.value(unit, event, &bodies, span.to, ticker)?;
+            let views = [self.view(unit, &self.before, span.from), self.view(unit, &self.after, span.to)];
+            let value = self.value(unit, event, &views[1], ticker)?;
             let ends = [self.values[event], value];
+            let clear = self.keeps_clear(event, &views, ends);
             self.values[event] = value;
-            if self.keeps_clear(unit, event, span, &bodies, ends) {
+            if clear {
                 continue;
             }
-            let search = Search { watch: self, unit, event, span, lane, after: &bodies, ends };
+            if !asked {
+                self.ask(unit, after, lane, step, ticker)?;
+                asked = true;
+            }
+            let mut search = Search { watch: self, unit, event, span, lane, ends };
             zeros.extend(search.zeros(step, ticker)?.into_iter().map(|theta| (theta, event)));
         }
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -226,24 +245,39 @@ impl<'a> Watch<'a> {
                 break;
             }
         }
-        self.before = bodies;
+        core::mem::swap(&mut self.before, &mut self.after);
+        Ok(())
+    }
+
+    /// Asks for the polynomials of the bodies that are looked at.
+    fn ask(
+        &mut self,
+        unit: &Prepared,
+        state: &State<Lanes>,
+        lane: usize,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let components = unit.shape.components;
+        let rows = state.q().len() / components;
+        self.terms.clear();
+        for &slot in &self.slots {
+            let (row, lane) = unit.locate(slot, lane);
+            for c in 0..components {
+                step.polynomial(c * rows + row, lane, &mut self.terms, ticker)?;
+            }
+        }
+        let exponent = -self.job.plan.units.acceleration();
+        self.terms.iter_mut().flatten().for_each(|term| *term = scale(*term, exponent));
         Ok(())
     }
 
     /// Whether the cubic through the values and the rates at both ends keeps clear of zero: its coefficients in
     /// Bernstein's basis have one sign, and are no nearer to zero than the clearance.
-    fn keeps_clear(
-        &self,
-        unit: &Prepared,
-        event: usize,
-        span: Span,
-        after: &[Moving],
-        [start, end]: [f64; 2],
-    ) -> bool {
+    fn keeps_clear(&self, event: usize, [before, after]: &[View<'_>; 2], [start, end]: [f64; 2]) -> bool {
         let (event, places) = self.event(event);
-        let views = [self.view(unit, &self.before, span.from), self.view(unit, after, span.to)];
-        let h = views[1].elapsed - views[0].elapsed;
-        let Some(rates) = event.rates([&views[0], &views[1]], h, places) else { return false };
+        let h = after.elapsed - before.elapsed;
+        let Some(rates) = event.rates([before, after], h, places) else { return false };
         let hull = [start, start + h * rates[0] / 3.0, end - h * rates[1] / 3.0, end];
         let least = hull.into_iter().fold(f64::INFINITY, f64::min);
         let most = hull.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -267,12 +301,11 @@ impl<'a> Watch<'a> {
 
 /// The search for the zeros of one event in one step.
 struct Search<'s, 'a> {
-    watch: &'s Watch<'a>,
+    watch: &'s mut Watch<'a>,
     unit: &'s Prepared,
     event: usize,
     span: Span,
     lane: usize,
-    after: &'s [Moving],
     ends: [f64; 2],
 }
 
@@ -283,14 +316,11 @@ fn crosses(start: f64, end: f64) -> bool {
 
 impl Search<'_, '_> {
     /// The zeros, as fractions of the step.
-    fn zeros(&self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+    fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
         let mut points = vec![(0.0, self.ends[0])];
-        for (index, theta) in SAMPLES.into_iter().enumerate() {
-            let value = match step.sample(index, ticker)? {
-                Some(state) => self.value_of(state, theta, ticker)?,
-                None => self.value_on_cubic(theta, ticker)?,
-            };
-            points.push((theta, value));
+        for theta in SAMPLES {
+            self.watch.place(self.unit.shape.components, self.span, theta);
+            points.push((theta, self.value_inside(theta, ticker)?));
         }
         points.push((1.0, self.ends[1]));
         let mut brackets: Vec<Bracket> = Vec::new();
@@ -324,7 +354,7 @@ impl Search<'_, '_> {
 
     /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
     fn turn(
-        &self,
+        &mut self,
         left: (f64, f64),
         middle: (f64, f64),
         right: (f64, f64),
@@ -341,7 +371,11 @@ impl Search<'_, '_> {
                 return Ok(vec![[left, point], [point, right]]);
             }
             let (inner, outer) = if point.1 * sign < best.1 * sign { (point, best) } else { (best, point) };
-            if outer.0 < inner.0 { left = outer } else { right = outer }
+            if outer.0 < inner.0 {
+                left = outer
+            } else {
+                right = outer
+            }
             best = inner;
         }
         Ok(Vec::new())
@@ -350,7 +384,7 @@ impl Search<'_, '_> {
     /// A bracket with the values of the solution itself, where those of the cubic have led there; none if it has no
     /// zero after all.
     fn settled(
-        &self,
+        &mut self,
         bracket: Bracket,
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
@@ -370,40 +404,61 @@ impl Search<'_, '_> {
         Ok(crosses(self.ends[0], self.ends[1]).then_some(whole))
     }
 
-    fn value_at(&self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let state = step.at(theta, ticker)?;
-        self.value_of(state, theta, ticker)
+    /// On the polynomial, or on the solution where there is none.
+    fn value_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
+        if self.watch.terms.is_empty() {
+            self.watch.read_inside(self.unit, step.at(theta, ticker)?, self.lane);
+        } else {
+            self.watch.place(self.unit.shape.components, self.span, theta);
+        }
+        self.value_inside(theta, ticker)
     }
 
-    fn value_of(&self, state: &State<Lanes>, theta: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let bodies = self.watch.read(self.unit, state, self.lane);
-        self.watch.value(self.unit, self.event, &bodies, self.span.at(theta), ticker)
+    fn value_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let view = self.watch.view(self.unit, &self.watch.inside, self.span.at(theta));
+        self.watch.value(self.unit, self.event, &view, ticker)
+    }
+}
+
+impl Watch<'_> {
+    /// Reads a state inside the step.
+    fn read_inside(&mut self, unit: &Prepared, state: &State<Lanes>, lane: usize) {
+        core::mem::swap(&mut self.after, &mut self.inside);
+        self.read(unit, state, lane);
+        core::mem::swap(&mut self.after, &mut self.inside);
     }
 
-    /// On the cubics through positions and velocities at both ends.
-    fn value_on_cubic(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let h = scale(self.span.to - self.span.from, self.watch.job.plan.units.time);
-        let bodies: Vec<Moving> = self
-            .watch
-            .before
-            .iter()
-            .zip(self.after)
-            .map(|(before, after)| {
-                let mut moving = Moving::default();
-                let rest = 1.0 - theta;
-                for c in 0..3 {
+    /// Places the bodies inside the step: on the polynomial, or on the cubics through both ends if there is none.
+    fn place(&mut self, components: usize, span: Span, theta: f64) {
+        let h = scale(span.to - span.from, self.job.plan.units.time);
+        let rest = 1.0 - theta;
+        let count = self.terms.len() / (self.slots.len() * components).max(1);
+        self.inside.clear();
+        for (body, (before, after)) in self.before.iter().zip(&self.after).enumerate() {
+            let mut moving = *before;
+            for c in 0..components {
+                let (start, end) = (before.velocity[c], after.velocity[c]);
+                let (moved, faster) = if count == 0 {
                     let way = after.position[c] - before.position[c];
-                    let (start, end) = (before.velocity[c], after.velocity[c]);
                     let bend = rest * (h * start - way) - theta * (h * end - way);
-                    moving.position[c] = before.position[c] + theta * (way + rest * bend);
-                    let slope = 6.0 * theta * rest * way / h;
-                    moving.velocity[c] =
-                        slope + rest * (1.0 - 3.0 * theta) * start + theta * (3.0 * theta - 2.0) * end;
-                }
-                moving
-            })
-            .collect();
-        self.watch.value(self.unit, self.event, &bodies, self.span.at(theta), ticker)
+                    let slope = 6.0 * theta * rest * (way / h - start);
+                    (theta * (way + rest * bend), slope + theta * (3.0 * theta - 2.0) * (end - start))
+                } else {
+                    let terms = &self.terms[(body * components + c) * count..][..count];
+                    let mut sums = [0.0; 2];
+                    for (index, term) in terms.iter().enumerate().rev() {
+                        let factor = if index % 2 == 0 { theta } else { rest };
+                        sums = [factor * (term[0] + sums[0]), factor * (term[1] + sums[1])];
+                    }
+                    (h * (theta * (start + before.velocity_rest[c]) + h * sums[0]), h * sums[1])
+                };
+                let (x, left) = two_sum(before.position[c], moved);
+                (moving.position[c], moving.position_rest[c]) = (x, left + before.position_rest[c]);
+                let (v, left) = two_sum(start, faster);
+                (moving.velocity[c], moving.velocity_rest[c]) = (v, left + before.velocity_rest[c]);
+            }
+            self.inside.push(moving);
+        }
     }
 }
 

@@ -157,7 +157,8 @@ impl Recorder<Lanes> for Records<'_> {
             Some((past, state)) => (Span { from: here, to: here + past }, state, 0.0),
         };
         let between = self.between.get_or_insert_with(|| present.clone());
-        let mut inside = Shadow { stepper, system, node, present, between, back, length: span.to - span.from };
+        let mut inside =
+            Shadow { stepper, system, node, present, between, back, length: span.to - span.from };
         let mut going = false;
         for (lane, unit) in self.units.iter().enumerate() {
             let watch = self.watches.get_mut(lane).and_then(Option::as_mut);
@@ -232,8 +233,14 @@ impl Interpolant for Shadow<'_> {
         Ok(self.between)
     }
 
-    fn sample(&mut self, _: usize, _: &mut Ticker<'_>) -> Result<Option<&State<Lanes>>> {
-        // Each would cost a step.
-        Ok(None)
+    /// Has none: what a method of fixed steps says between nodes is a shadow step.
+    fn polynomial(
+        &mut self,
+        _: usize,
+        _: usize,
+        _: &mut Vec<[f64; 2]>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        Ok(())
     }
 }

@@ -69,7 +69,10 @@ impl Events {
     /// The positions (0) or velocities (1) of all particles at each.
     pub fn states(&self, of: usize, particles: usize) -> Vec<f64> {
         let lines = self.lines.iter();
-        lines.flat_map(|line| &self.states[line.states..line.states + particles]).flat_map(|state| state[of]).collect()
+        lines
+            .flat_map(|line| &self.states[line.states..line.states + particles])
+            .flat_map(|state| state[of])
+            .collect()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Events of an adaptive run: looked for on each step that is about to be kept, on its continuous extension.
 
-use super::super::events::{Interpolant, SAMPLES, Span};
+use super::super::events::{Interpolant, Span};
 use super::{Result, Run};
 use crate::forces::Dynamics;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -10,13 +10,14 @@ use crate::ode::step_control::Outcome;
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
 
-/// A step of all lanes; what one lane samples is there for the others.
+/// A step of all lanes; what one lane asks for is there for the others.
 struct Inside<'r> {
     trial: &'r mut dyn Trial<Lanes>,
     dynamics: &'r mut Dynamics<Lanes>,
     state: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
-    samples: [Option<State<Lanes>>; SAMPLES.len()],
+    /// The polynomials of coordinates that were asked for.
+    terms: Vec<(usize, Vec<[Lanes; 2]>)>,
     outcome: &'r Outcome<Lanes>,
     ready: bool,
     /// Whether the lane at hand has looked inside.
@@ -41,15 +42,23 @@ impl Interpolant for Inside<'_> {
         Ok(self.between)
     }
 
-    fn sample(&mut self, index: usize, ticker: &mut Ticker<'_>) -> Result<Option<&State<Lanes>>> {
+    fn polynomial(
+        &mut self,
+        coordinate: usize,
+        lane: usize,
+        into: &mut Vec<[f64; 2]>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
         self.ready(ticker)?;
-        let Self { trial, state, outcome, between, samples, .. } = self;
-        let sample = &mut samples[index];
-        if sample.is_none() {
-            trial.at(state, outcome.h, Lanes::splat(SAMPLES[index]), between);
-            *sample = Some(between.clone());
-        }
-        Ok(sample.as_ref())
+        let known = self.terms.iter().position(|(other, _)| *other == coordinate);
+        let index = known.unwrap_or_else(|| {
+            let mut terms = Vec::new();
+            self.trial.polynomial(coordinate, &mut terms);
+            self.terms.push((coordinate, terms));
+            self.terms.len() - 1
+        });
+        into.extend(self.terms[index].1.iter().map(|term| term.map(|sum| sum.0[lane])));
+        Ok(())
     }
 }
 
@@ -73,7 +82,7 @@ impl Run<'_> {
             dynamics,
             state,
             between,
-            samples: [const { None }; SAMPLES.len()],
+            terms: Vec::new(),
             outcome,
             ready: dense.any(),
             used: false,

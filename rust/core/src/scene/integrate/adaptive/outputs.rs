@@ -25,7 +25,12 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record_start(&self, slot: &mut Slot<'_>, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
+    pub(super) fn record_start(
+        &self,
+        slot: &mut Slot<'_>,
+        lane: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
             let _: bool =
                 slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0, ticker)?;
