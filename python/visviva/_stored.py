@@ -183,8 +183,8 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool) -> None:
             if name not in arrays:
                 raise Damaged(f"the file lacks the array {name!r}")
             _check_array(name, arrays[name], dtype, axes, lengths)
-        member = arrays["events/member"]
-        if ((member < 0) | (member >= lengths["B"])).any():
+        copies = arrays["events/member"]
+        if ((copies < 0) | (copies >= lengths["B"])).any():
             raise Damaged("the file has an event of a copy that there is not")
     for name, array in arrays.items():
         group, _, member = name.partition("/")

@@ -246,7 +246,9 @@ class EnsembleTrajectory(Recorded):
         """
         if self.status.any():
             failed = np.flatnonzero(self.status)[:8].tolist()
-            raise InvalidInput("final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final")
+            raise InvalidInput(
+                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
+            )
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)

@@ -1,8 +1,8 @@
 """Events: what is looked for on the way of a run, and the table of what was found.
 
-`distance`, `plane`, `apsis` and `energy` are compiled; any other function of time, positions and velocities may be given
-as it is, or by `function` with a direction and an end. Events are located on the solution between the steps and change no
-bit of a run; one that is ``terminal`` ends it.
+`distance`, `plane`, `apsis` and `energy` are compiled; any other function of time, positions and velocities may be
+given as it is, or by `function` with a direction and an end. Events are located on the solution between the steps and
+change no bit of a run; one that is ``terminal`` ends it.
 
 A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
 step and turns, it is followed down, so that two zeros in one step are found.
@@ -253,17 +253,16 @@ def to_core(given: object) -> list[dict[str, Any]]:
         raise InvalidInput("events", f"expected a list of events, got {type(given).__name__}")
     told = []
     for index, event in enumerate(given):
-        if not isinstance(event, Event):
-            if not callable(event):
-                raise InvalidInput(
-                    "events",
-                    f"expected one of visviva.events or a function f(t, position, velocity), got events[{index}] = "
-                    f"{event!r}",
-                )
-            event = function(
-                event, direction=getattr(event, "direction", 0), terminal=getattr(event, "terminal", False)
+        if isinstance(event, Event):
+            told.append(event._to_core())
+        elif callable(event):
+            way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
+            told.append(function(event, direction=way, terminal=last)._to_core())
+        else:
+            raise InvalidInput(
+                "events",
+                f"expected one of visviva.events or a function f(t, position, velocity), got events[{index}] = {event!r}",
             )
-        told.append(event._to_core())
     return told
 
 
@@ -313,7 +312,7 @@ class EventTable:
         return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
 
     def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
-        if np.ndim(chosen) == 0 and not isinstance(chosen, slice):
+        if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
             raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
         return EventTable._from_core({name: getattr(self, name)[chosen] for name in self.__slots__})
 

@@ -2,7 +2,8 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, and ``events/<name>`` of a run with events. Every later version of visviva must load it: `tests/reference` keeps one.
+``per_trajectory/<name>``, and ``events/<name>`` of a run with events. Every
+later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 

@@ -45,8 +45,8 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
     table = out.events
     expected = 0.5 * PERIOD * np.arange(1, 11)
     assert len(table) == 10
-    # What the method itself is off after so many periods: of second order the phase, (ωh)²/24 of the time for steps of a
-    # 2000th of the period, times what the eccentricity makes of it.
+    # What the method itself is off after so many periods: of second order the phase, (ωh)²/24 of the time for steps of
+    # a 2000th of the period, times what the eccentricity makes of it.
     order = BY_NAME[method].order
     bar = {1: 1.0, 2: 2e-4, 3: 1e-4}.get(order, 1e-8 if order == 4 else 1e-10)
     np.testing.assert_allclose(table.t, expected, rtol=0.0, atol=bar)
@@ -61,8 +61,8 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
 
 def test_apsides_of_an_accurate_run_are_at_their_times_to_round_off() -> None:
     out = kepler().run(t=3.2 * PERIOD, method="kahan_li8", dt=PERIOD / 400, events=[events.apsis(1, 0)])
-    # 25 units in the last place of the last time: round-off of 1200 steps, and r·v that changes by about one in a unit of
-    # time is known to 1e-15.
+    # 25 units in the last place of the last time: round-off of 1200 steps, and r·v that changes by about one in a unit
+    # of time is known to 1e-15.
     np.testing.assert_allclose(out.events.t, 0.5 * PERIOD * np.arange(1, 7), rtol=0.0, atol=5e-14)
 
 
@@ -149,9 +149,7 @@ def test_members_have_the_events_they_have_alone(method: str) -> None:
     factors = 1.0 + 0.005 * np.arange(21)
     copies = scene.ensemble(velocity=scene.particles.velocity * factors[:, None, None])
     asked = [events.apsis(1, 0), events.distance(0, 2, below=1.1, direction=0), events.plane([0, 0, 0], [1, 0, 0])]
-    runs = [
-        copies.run(t=6.0, method=method, events=asked, threads=threads, **options(method)) for threads in (1, 2, 3)
-    ]
+    runs = [copies.run(t=6.0, method=method, events=asked, threads=threads, **options(method)) for threads in (1, 2, 3)]
     for run in runs[1:]:
         for name in ("which", "t", "position", "velocity", "member"):
             np.testing.assert_array_equal(getattr(run.events, name), getattr(runs[0].events, name))
@@ -190,7 +188,9 @@ def test_members_stop_each_at_its_own_event(method: str) -> None:
     scene = kepler()
     copies = scene.ensemble(velocity=scene.particles.velocity * np.linspace(0.9, 1.1, 11)[:, None, None])
     times = np.linspace(0.0, 0.7 * PERIOD, 50)
-    out = copies.run(t=times, method=method, events=[events.apsis(1, 0, direction=-1, terminal=True)], **options(method))
+    out = copies.run(
+        t=times, method=method, events=[events.apsis(1, 0, direction=-1, terminal=True)], **options(method)
+    )
     stopped = out.status == vv.Status.STOPPED
     assert stopped.any()
     assert not stopped.all()

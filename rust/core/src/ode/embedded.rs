@@ -286,7 +286,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
             let mut sums = [S::zero(); 2];
             for (sum, weights) in sums.iter_mut().zip(&self.dense) {
                 for (stage, weights) in weights.iter().enumerate() {
-                    *sum = *sum + weights[term] * self.stages.k[stage * len + coordinate];
+                    *sum += weights[term] * self.stages.k[stage * len + coordinate];
                 }
             }
             into.push(sums);

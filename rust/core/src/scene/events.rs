@@ -6,7 +6,7 @@
 //! Directions are those of increasing time, also in a run backwards: a pericenter stays one.
 
 use super::Scene;
-use super::frame::{Moved, restored};
+use super::frame::{Moved, Origin, restored};
 use super::plan::Groups;
 use crate::conservation::columns::{State, column};
 use crate::error::{Error, Result};
@@ -102,7 +102,7 @@ pub struct View<'a> {
     /// Those that are looked at.
     pub bodies: &'a [Moving],
     /// The origin that they move about.
-    pub origin: Moved,
+    pub origin: Origin,
     /// Time since the start.
     pub elapsed: f64,
 }
@@ -123,7 +123,7 @@ impl View<'_> {
 
     /// Distance vector from a point at rest, and velocity.
     fn from_point(&self, i: usize, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        let state = self.state(i);
+        let state = self.state(i, &self.origin.at(self.elapsed));
         (
             core::array::from_fn(|c| (state[0][c].0 - point[c]) + state[0][c].1),
             core::array::from_fn(|c| state[1][c].0 + state[1][c].1),
@@ -131,8 +131,8 @@ impl View<'_> {
     }
 
     /// Position and velocity about the origin of the scene, each with what it leaves out.
-    fn state(&self, i: usize) -> [[(f64, f64); 3]; 2] {
-        let (body, Moved { position, velocity }) = (&self.bodies[i], &self.origin);
+    fn state(&self, i: usize, Moved { position, velocity }: &Moved) -> [[(f64, f64); 3]; 2] {
+        let body = &self.bodies[i];
         [
             core::array::from_fn(|c| restored(position[c], (body.position[c], body.position_rest[c]))),
             core::array::from_fn(|c| restored(velocity[c], (body.velocity[c], body.velocity_rest[c]))),
@@ -208,8 +208,9 @@ impl Event {
             What::Function(function) => {
                 let particles = around.scene.particles;
                 let (mut position, mut velocity) = (vec![0.0; 3 * particles], vec![0.0; 3 * particles]);
+                let origin = view.origin.at(view.elapsed);
                 for (place, &body) in around.bodies.iter().enumerate() {
-                    let [x, v] = view.state(place);
+                    let [x, v] = view.state(place, &origin);
                     for c in 0..3 {
                         (position[3 * body + c], velocity[3 * body + c]) = (x[c].0, v[c].0);
                     }
@@ -318,8 +319,9 @@ fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -
     let mut bodies = PreciseBodies::default();
     bodies.clear(if around.massive { view.bodies.len() } else { around.scene.particles });
     let masses = around.scene.masses(around.copy);
+    let origin = view.origin.at(view.elapsed);
     for (place, &body) in around.bodies.iter().enumerate() {
-        let [position, velocity] = view.state(place).map(|x| [x.map(|x| x.0), x.map(|x| x.1)]);
+        let [position, velocity] = view.state(place, &origin).map(|x| [x.map(|x| x.0), x.map(|x| x.1)]);
         bodies.set(if around.massive { place } else { body }, masses[body], position, velocity);
     }
     bodies.settle();

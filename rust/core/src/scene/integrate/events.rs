@@ -184,7 +184,7 @@ impl<'a> Watch<'a> {
 
     fn view<'v>(&self, unit: &Prepared, bodies: &'v [Moving], elapsed: f64) -> View<'v> {
         let elapsed = scale(elapsed, self.job.plan.units.time);
-        View { bodies, origin: unit.origin.at(elapsed), elapsed }
+        View { bodies, origin: unit.origin, elapsed }
     }
 
     fn value(&self, unit: &Prepared, event: usize, view: &View<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {

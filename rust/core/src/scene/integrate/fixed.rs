@@ -234,13 +234,7 @@ impl Interpolant for Shadow<'_> {
     }
 
     /// Has none: what a method of fixed steps says between nodes is a shadow step.
-    fn polynomial(
-        &mut self,
-        _: usize,
-        _: usize,
-        _: &mut Vec<[f64; 2]>,
-        _: &mut Ticker<'_>,
-    ) -> Result<()> {
+    fn polynomial(&mut self, _: usize, _: usize, _: &mut Vec<[f64; 2]>, _: &mut Ticker<'_>) -> Result<()> {
         Ok(())
     }
 }
