@@ -261,7 +261,8 @@ def to_core(given: object) -> list[dict[str, Any]]:
         else:
             raise InvalidInput(
                 "events",
-                f"expected one of visviva.events or a function f(t, position, velocity), got events[{index}] = {event!r}",
+                "expected one of visviva.events or a function f(t, position, velocity), "
+                f"got events[{index}] = {event!r}",
             )
     return told
 
@@ -330,3 +331,7 @@ class EventTable:
         3
         """
         return self[self.which == whole_number("which", which)]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
