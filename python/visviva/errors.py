@@ -149,7 +149,10 @@ class CloseEncounter(Error, RuntimeError):
             if i == j
             else f"bodies {i} and {j} are {self.distance:g} apart"
         )
-        return f"the step size fell to zero at t = {self.time}: {who}; soften the force, or end the run before it"
+        return (
+            f"the step size fell to zero at t = {self.time}: {who}; "
+            "soften the force, or end the run before it"
+        )
 
 
 class Interrupted(KeyboardInterrupt):
