@@ -53,6 +53,12 @@ def leapfrog() -> Table:
     return composition([mpf(1)])
 
 
+def boris() -> Table:
+    """Drift-kick-drift."""
+    half = mpf(1) / 2
+    return {"KICKS": [mpf(0), mpf(1), mpf(0)], "DRIFTS": [half, half]}
+
+
 def yoshida4() -> Table:
     outer = 1 / (2 - cbrt(mpf(2)))
     return composition([outer, 1 - 2 * outer, outer])
@@ -75,6 +81,7 @@ METHODS = {
     "dormand_prince54": dormand_prince54,
     "dop853": dop853,
     "leapfrog": leapfrog,
+    "boris": boris,
     "yoshida4": yoshida4,
     "kahan_li8": kahan_li8,
     "stormer13": lambda: stormer(13),

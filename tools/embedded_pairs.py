@@ -8,9 +8,12 @@ Differential Equations I, 2nd ed. (Springer 1993), II.6.
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 from mpmath import mpf
 
-from polish import Row
+if TYPE_CHECKING:
+    from polish import Row
 
 
 def fractions(*printed: str) -> Row:

@@ -43,6 +43,7 @@ class Force(Declared):
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
+    def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
 {classes}
 def force_from_core(description: dict[str, Any]) -> Force: ...
@@ -94,7 +95,10 @@ def stub(template: str, entries: list[dict[str, Any]], base: str, others: list[s
     """The stub of a module of declared classes."""
     names = sorted([base, *others, *(entry["class_name"] for entry in entries)])
     classes = "".join(class_stub(entry, base) for entry in entries)
-    text = template.format(names=", ".join(f'"{name}"' for name in names), classes=classes)
+    listed = ", ".join(f'"{name}"' for name in names)
+    if len(listed) > 120 - len("__all__ = []"):
+        listed = "\n" + "".join(f'    "{name}",\n' for name in names)
+    text = template.format(names=listed, classes=classes)
     imports, _, rest = text.partition("\n__all__")
     for used, line in (
         ("Sequence", "from collections.abc import Sequence\n"),

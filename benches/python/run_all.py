@@ -14,11 +14,13 @@ SCRIPTS = (
     "dop853_outer_solar_system",
     "round_off_floor",
     "energy_growth",
+    "massless",
     "outputs",
     "events",
     "figure_eight_ensemble",
     "rutherford",
     "same_bits",
+    "solve_ivp",
     "overhead",
 )
 

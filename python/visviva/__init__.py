@@ -25,6 +25,7 @@ _HOME = {
     "Conservation": "conservation",
     "ConvergenceError": "errors",
     "Drift": "conservation",
+    "DrivenForce": "forces",
     "EnsembleScene": "ensemble",
     "EnsembleTrajectory": "ensemble",
     "Error": "errors",
@@ -34,17 +35,24 @@ _HOME = {
     "Interrupted": "errors",
     "InvalidInput": "errors",
     "Invariants": "invariants",
+    "LinearDrag": "forces",
     "Method": "integrators",
+    "OdeResult": "initial_value",
+    "OdeSolution": "initial_value",
+    "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
     "Scene": "scene",
+    "Spring": "forces",
     "Stats": "recorded",
     "Status": "status",
     "Trajectory": "trajectory",
     "UniformField": "forces",
+    "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
     "load": "io",
     "methods": "integrators",
+    "solve_ivp": "initial_value",
 }
 _ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
@@ -55,6 +63,7 @@ __all__ = [
     "Conservation",
     "ConvergenceError",
     "Drift",
+    "DrivenForce",
     "EnsembleScene",
     "EnsembleTrajectory",
     "Error",
@@ -64,14 +73,20 @@ __all__ = [
     "Interrupted",
     "InvalidInput",
     "Invariants",
+    "LinearDrag",
     "Method",
+    "OdeResult",
+    "OdeSolution",
+    "PairPotential",
     "Particles",
     "Plan",
     "Scene",
+    "Spring",
     "Stats",
     "Status",
     "Trajectory",
     "UniformField",
+    "UniformMagneticField",
     "UnknownKeyword",
     "datasets",
     "errors",
@@ -83,6 +98,7 @@ __all__ = [
     "potentials",
     "problems",
     "scattering",
+    "solve_ivp",
     "typing",
 ]
 
@@ -101,7 +117,17 @@ if TYPE_CHECKING:
         InvalidInput,
         UnknownKeyword,
     )
-    from visviva.forces import CentralField, Gravity, UniformField
+    from visviva.forces import (
+        CentralField,
+        DrivenForce,
+        Gravity,
+        LinearDrag,
+        PairPotential,
+        Spring,
+        UniformField,
+        UniformMagneticField,
+    )
+    from visviva.initial_value import OdeResult, OdeSolution, solve_ivp
     from visviva.integrators import Method, methods
     from visviva.invariants import Invariants
     from visviva.io import load

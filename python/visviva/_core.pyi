@@ -29,6 +29,39 @@ class _Request(_Scene):
     record: list[str]
     events: list[dict[str, Any]]
 
+class _Problem(TypedDict):
+    """An initial value problem; events with their direction and the number of the zero that ends the run."""
+
+    method: str
+    span: tuple[float, float]
+    y0: NDArray[np.float64]
+    rtol: list[float] | None
+    atol: list[float] | None
+    first_step: float | None
+    max_step: float | None
+    dt: float | None
+    t_eval: NDArray[np.float64] | None
+    dense_output: bool
+    events: list[tuple[Callable[..., Any], float, int | None]]
+    args: list[Any]
+    vectorized: bool
+    compiled: tuple[int, int | None] | None
+
+class _Solved(TypedDict):
+    """Its solution: states in rows."""
+
+    t: NDArray[np.float64]
+    y: NDArray[np.float64]
+    extension: tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]] | None
+    zeros: list[tuple[NDArray[np.float64], NDArray[np.float64]]]
+    nfev: int
+    status: int
+    message: str
+    interrupted: bool
+    cause: BaseException | None
+
+def solve_ivp(fun: object, asked: _Problem) -> _Solved: ...
+def interpolate(extension: tuple[NDArray[np.float64], ...], t: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def run(
     asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
 ) -> dict[str, Any]: ...
@@ -94,13 +127,14 @@ def orbit_elements(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64]
 ) -> dict[str, NDArray[np.float64]]: ...
 def orbit_state(
+    name: str,
     mu: NDArray[np.float64],
-    pericentre: NDArray[np.float64],
+    pericenter: NDArray[np.float64],
     eccentricity: NDArray[np.float64],
     inclination: NDArray[np.float64],
     node: NDArray[np.float64],
-    argument_of_pericentre: NDArray[np.float64],
-    true_anomaly: NDArray[np.float64],
+    argument_of_pericenter: NDArray[np.float64],
+    anomaly: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def orbit_propagate(
     mu: NDArray[np.float64], position: NDArray[np.float64], velocity: NDArray[np.float64], t: NDArray[np.float64]

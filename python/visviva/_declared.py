@@ -143,6 +143,8 @@ class Declared:
 
     kind: ClassVar[str]
     _parameters: ClassVar[tuple[Parameter, ...]]
+    _at_rest: ClassVar[str]
+    _one_way: ClassVar[str]
 
     def __post_init__(self) -> None:
         for parameter in self._parameters:
@@ -208,7 +210,13 @@ def make(entry: dict[str, Any], base: type[Any], module: str, law: str, namespac
             for p in parameters
         ],
         bases=(base,),
-        namespace={"kind": entry["name"], "_parameters": parameters, "__doc__": _document(entry, parameters, law)}
+        namespace={
+            "kind": entry["name"],
+            "_at_rest": entry["at_rest"],
+            "_one_way": entry["one_way"],
+            "_parameters": parameters,
+            "__doc__": _document(entry, parameters, law),
+        }
         | namespace,
         frozen=True,
         slots=True,

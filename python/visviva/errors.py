@@ -1,8 +1,8 @@
 """The exceptions of visviva: what was asked, what came, and what to do.
 
 Every class carries its facts as attributes, pickles with them, and derives from the built-in exception that a program
-would catch anyway. All but `Interrupted` derive from `Error` too: Ctrl-C is no error, and ``except Exception`` must not
-swallow it. The core raises these same classes.
+would catch anyway. All but `Interrupted` and the one warning derive from `Error` too: Ctrl-C is no error, and
+``except Exception`` must not swallow it. The core raises these same classes.
 """
 
 from dataclasses import FrozenInstanceError
@@ -149,10 +149,7 @@ class CloseEncounter(Error, RuntimeError):
             if i == j
             else f"bodies {i} and {j} are {self.distance:g} apart"
         )
-        return (
-            f"the step size fell to zero at t = {self.time}: {who}; "
-            "soften the force, or end the run before it"
-        )
+        return f"the step size fell to zero at t = {self.time}: {who}; soften the force, or end the run before it"
 
 
 class Interrupted(KeyboardInterrupt):

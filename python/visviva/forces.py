@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._declared import Declared, make
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -32,11 +32,7 @@ class Force(Declared):
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         if "_parameters" not in vars(cls):
-            raise InvalidInput(
-                "Force",
-                f"expected one of visviva.forces, got the subclass {cls.__name__}; forces are described in the "
-                "core, one file each: docs/how-to/add-a-force.md",
-            )
+            refuse_subclass(cls, "forces are described in it, one file each: docs/how-to/add-a-force.md")
 
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
@@ -47,11 +43,12 @@ class Force(Declared):
             For a boost, if the force has a place or a medium at rest, which would move.
         """
         points = [p.name for p in self._parameters if p.kind == "point"]
-        if velocity.any() and points:
+        if velocity.any() and self._at_rest:
+            advice = ", or let a heavy body be the center" if points else ""
             raise InvalidInput(
                 "velocity",
-                f"{type(self).__name__} has a fixed {points[0]}, which would move in the boosted frame; "
-                f"shift the position only, or let a heavy body be the {points[0]}",
+                f"{type(self).__name__} has a fixed {self._at_rest}, which would move in the boosted frame; "
+                f"shift the position only{advice}",
             )
         moved = {name: np.add(getattr(self, name), position) for name in points}
         return type(self)(**(self._values() | moved)) if moved else self
@@ -68,6 +65,19 @@ class Force(Declared):
             p.name: axial @ np.array(getattr(self, p.name)) for p in self._parameters if p.kind == "axial_vector"
         }
         return type(self)(**(self._values() | turned)) if turned else self
+
+    def reversed(self) -> Self:
+        """The force under which bodies with their velocities turned round retrace their path.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is none: for drag, or a force that goes on with time.
+        """
+        if self._one_way:
+            raise InvalidInput("forces", f"{type(self).__name__} cannot be reversed: {self._one_way}")
+        axial = {p.name: np.negative(getattr(self, p.name)) for p in self._parameters if p.kind == "axial_vector"}
+        return type(self)(**(self._values() | axial)) if axial else self
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit.

@@ -8,13 +8,24 @@ from numpy.typing import ArrayLike, NDArray
 from visviva._declared import Declared
 from visviva.potentials import Potential
 
-__all__ = ["CentralField", "Force", "Gravity", "UniformField"]
+__all__ = [
+    "CentralField",
+    "DrivenForce",
+    "Force",
+    "Gravity",
+    "LinearDrag",
+    "PairPotential",
+    "Spring",
+    "UniformField",
+    "UniformMagneticField",
+]
 
 class Force(Declared):
     kind: ClassVar[str]
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
+    def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
@@ -33,5 +44,36 @@ class CentralField(Force):
     potential: Potential
     center: tuple[float, float, float]
     def __init__(self, potential: Potential, center: ArrayLike = (0.0, 0.0, 0.0)) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class LinearDrag(Force):
+    tau: float
+    def __init__(self, tau: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class UniformMagneticField(Force):
+    B: tuple[float, float, float]
+    charge: float | NDArray[np.float64]
+    def __init__(self, B: ArrayLike, charge: ArrayLike = 1.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class DrivenForce(Force):
+    amplitude: tuple[float, float, float]
+    frequency: float
+    phase: float
+    def __init__(self, amplitude: ArrayLike, frequency: float, phase: float = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Spring(Force):
+    i: int | NDArray[np.int64]
+    j: int | NDArray[np.int64]
+    k: float | NDArray[np.float64]
+    length: float | NDArray[np.float64]
+    def __init__(self, i: ArrayLike, j: ArrayLike, k: ArrayLike, length: ArrayLike = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PairPotential(Force):
+    potential: Potential
+    def __init__(self, potential: Potential) -> None: ...
 
 def force_from_core(description: dict[str, Any]) -> Force: ...

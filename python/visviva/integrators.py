@@ -60,7 +60,7 @@ def methods() -> list[Method]:
     Examples
     --------
     >>> import visviva as vv
-    >>> [method.name for method in vv.methods() if method.adaptive]
+    >>> [method.name for method in vv.methods() if method.adaptive and method.order == 8]
     ['dop853']
     """
     return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods()]

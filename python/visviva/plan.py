@@ -22,7 +22,7 @@ class Plan:
     method : str
         The method that runs; ``"closed form"`` needs none.
     solution : str
-        ``"closed form: ..."`` or ``"integration"``.
+        ``"closed form: ..."`` or ``"integration"``; where ensemble members differ, each with the number of members.
     particles, active, passive : int
         All bodies; those with mass; test particles.
     rows : tuple of (str, str, str)

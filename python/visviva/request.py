@@ -13,7 +13,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, fields
 from functools import wraps
 from inspect import Parameter, Signature, signature
-from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar
+from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
 import numpy as np
 
@@ -97,7 +97,7 @@ class PlanRequest:
     record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
     events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
 
-    def to_core(self, prepared: _core._Scene) -> dict[str, Any]:
+    def to_core(self, prepared: _core._Scene) -> _core._Request:
         """What ``_core.run`` and ``_core.plan`` both take."""
         t = self.t
         # An array or a sequence is output times; anything else must be one number, and `number` says so.
@@ -110,7 +110,7 @@ class PlanRequest:
         for name, default, ready, check in _OPTIONS:
             value = getattr(self, name)
             asked[name] = ready if value is default else check(name, value)
-        return asked
+        return cast("_core._Request", asked)
 
 
 @dataclass(frozen=True, kw_only=True)

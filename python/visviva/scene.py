@@ -286,6 +286,11 @@ class Scene(Runnable[Trajectory]):
     def reversed(self) -> Scene:
         """The scene with every velocity turned round: run on, it retraces its path.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            If a force has no reverse: drag, or a force that goes on with time.
+
         Examples
         --------
         >>> import visviva as vv
@@ -293,7 +298,9 @@ class Scene(Runnable[Trajectory]):
         array([[-1., -2., -3.]])
         """
         p = self.particles
-        return Scene(Particles(p.mass, p.position, -p.velocity), *self.forces, t0=self.t0)
+        return Scene(
+            Particles(p.mass, p.position, -p.velocity), *(force.reversed() for force in self.forces), t0=self.t0
+        )
 
     def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Scene:
         """The scene with other positions and velocities, and another time if given.

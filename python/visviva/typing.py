@@ -17,8 +17,29 @@ EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.floa
 """A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
 
 # written by tools/write_names.py: begin
-MethodName: TypeAlias = Literal["auto", "dop853", "kahan_li8", "leapfrog", "rk4", "stormer13", "yoshida4"]
-ColumnName: TypeAlias = Literal["angular_momentum", "center_of_mass", "energy", "momentum", "position", "velocity"]
+MethodName: TypeAlias = Literal[
+    "auto",
+    "bogacki_shampine32",
+    "boris",
+    "dop853",
+    "dormand_prince54",
+    "kahan_li8",
+    "leapfrog",
+    "rk4",
+    "stormer13",
+    "yoshida4",
+]
+ColumnName: TypeAlias = Literal[
+    "angular_momentum",
+    "center_of_mass",
+    "energy",
+    "kinetic_energy",
+    "momentum",
+    "position",
+    "potential_energy",
+    "velocity",
+    "virial",
+]
 # written by tools/write_names.py: end
 
 

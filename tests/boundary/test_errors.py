@@ -20,6 +20,7 @@ EXAMPLES = [
     ),
     (errors.Interrupted(), KeyboardInterrupt, {"message": "interrupted", "trajectory": None}),
     (errors.InternalError("broken"), RuntimeError, {"message": "broken"}),
+    (errors.AccuracyWarning("nothing was resolved"), UserWarning, {}),
 ]
 
 
@@ -29,9 +30,10 @@ def test_every_class_has_an_example() -> None:
 
 @pytest.mark.parametrize(("error", "base", "fields"), EXAMPLES, ids=lambda value: type(value).__name__)
 def test_bases_fields_and_message(error: errors.Error, base: type, fields: dict[str, object]) -> None:
-    # Ctrl-C is no error: `except Exception` must not swallow it.
-    ctrl_c = isinstance(error, errors.Interrupted)
-    assert isinstance(error, errors.Error) is isinstance(error, Exception) is not ctrl_c
+    # Ctrl-C is no error: `except Exception` must not swallow it. Nor is a warning, unless a filter makes it one.
+    ctrl_c, warning = isinstance(error, errors.Interrupted), isinstance(error, Warning)
+    assert isinstance(error, Exception) is not ctrl_c
+    assert isinstance(error, errors.Error) is not (ctrl_c or warning)
     assert isinstance(error, base)
     assert {name: getattr(error, name) for name in fields} == fields
     assert str(error)

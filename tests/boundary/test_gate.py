@@ -11,8 +11,18 @@ from visviva import _core
 BINDING = Path(__file__).parents[2] / "rust" / "py" / "src"
 STUB = Path(__file__).parents[2] / "python" / "visviva" / "_core.pyi"
 
-# These hand out declarations, a copy or a word and compute nothing that takes time.
-PLAIN = {"info", "methods", "nearest", "potentials", "_echo"}
+# These hand out declarations, a copy, a word or one quotient and compute nothing that takes time.
+PLAIN = {
+    "columns",
+    "dimensions",
+    "forces",
+    "info",
+    "methods",
+    "nearest",
+    "potentials",
+    "rutherford_half_distance",
+    "_echo",
+}
 
 
 def pyfunctions() -> dict[str, str]:

@@ -1,5 +1,6 @@
 """Input that is odd but has a meaning: no bodies, no span of time, steps longer than it, scales of every size."""
 
+import contextlib
 import errno
 import pickle
 from pathlib import Path
@@ -89,7 +90,10 @@ def test_the_sign_of_a_step_agrees_with_the_direction_or_is_plus() -> None:
     ids=repr,
 )
 def test_times_of_every_kind(t: Any, how: dict[str, Any]) -> None:
-    out = FIGURE_EIGHT.run(t, **how)
+    # All of a run that is shorter than its step is part of one step, and that is said.
+    short = 0.0 < t[-1] < how.get("dt", 0.0)
+    with pytest.warns(vv.AccuracyWarning, match="longer than the run") if short else contextlib.nullcontext():
+        out = FIGURE_EIGHT.run(t, **how)
     assert (out.t == np.asarray(t)).all()
     assert np.isfinite(out.position).all()
     assert all((out.position[i] == out.position[0]).all() for i in range(len(t)) if t[i] == t[0])

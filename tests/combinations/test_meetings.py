@@ -74,6 +74,7 @@ def test_bodies_at_rest_in_a_uniform_field_have_the_bits_they_have_alone() -> No
     assert_members_as_alone(start.ensemble(position=position), t=5.0, method="dop853")
 
 
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # of the wild one
 @pytest.mark.parametrize("method", METHODS, ids=lambda method: method.name)
 @pytest.mark.parametrize("wild", [1e100, 1e120])
 def test_one_wild_member_spoils_no_other(method: vv.Method, wild: float) -> None:

@@ -237,6 +237,44 @@ def test_bodies_that_are_integrated_apart_are_brought_to_the_event() -> None:
     assert stop.t[-1] <= stop.final.t0 < stop.t[-1] + 0.1
 
 
+@pytest.mark.parametrize("massive", [2, 20])
+def test_an_event_of_massive_bodies_stops_those_that_follow_them(massive: int) -> None:
+    """Few massive bodies are one system in a lane; many are in all lanes, and are integrated again on other threads."""
+    rng = np.random.default_rng(3)
+    massless = 300
+    radius = np.concatenate([[0.0], 1.0 + 0.2 * np.arange(massive - 1), rng.uniform(8.0, 12.0, massless)])
+    angle = rng.uniform(0.0, 2.0 * np.pi, len(radius))
+    angle[1] = -0.5
+    position = radius[:, None] * np.stack([np.cos(angle), np.sin(angle), 0.1 * np.cos(angle)], axis=1)
+    speed = np.divide(1.0, np.sqrt(radius), where=radius > 0, out=np.zeros(len(radius)))
+    velocity = speed[:, None] * np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle], axis=1)
+    mass = np.where(np.arange(len(radius)) < massive, 1e-6, 0.0)
+    mass[0] = 1.0
+    scene = vv.Scene(vv.Particles(mass, position, velocity), vv.Gravity(G=1.0))
+    # The second body rises through the plane y = 0 after about 0.5.
+    asked = [events.plane([0, 0, 0], [0, 1.0, 0], body=1, direction=1)]
+    ending = [events.plane([0, 0, 0], [0, 1.0, 0], body=1, direction=1, terminal=True)]
+    times = np.linspace(0.0, 2.0, 21)
+    plain = scene.run(t=times, rtol=1e-10, method="dop853")
+    watched = scene.run(t=times, rtol=1e-10, method="dop853", events=asked)
+    np.testing.assert_array_equal(watched.position, plain.position)
+    assert watched.final == plain.final
+    assert len(watched.events) == 1
+    runs = [scene.run(t=times, rtol=1e-10, method="dop853", events=ending, threads=n) for n in (1, 2, 3)]
+    for run in runs:
+        assert run.status is vv.Status.STOPPED
+        assert run.final.t0 == watched.events.t[0]
+        rows = int((times <= run.final.t0).sum())
+        np.testing.assert_array_equal(run.position, plain.position[:rows])
+        assert run.final == runs[0].final
+        assert run.stats.evaluations == runs[0].stats.evaluations
+        assert run.stats.steps == runs[0].stats.steps
+        assert run.stats.steps < plain.stats.steps
+    # A run to the time of the event ends its last steps there: what rtol leaves.
+    to_there = scene.run(t=[0.0, float(runs[0].final.t0)], rtol=1e-10, method="dop853").final.particles
+    np.testing.assert_allclose(runs[0].final.particles.position, to_there.position, rtol=0.0, atol=1e-7)
+
+
 def test_the_energy_passes_a_value() -> None:
     scene = kepler()
     level = scene.run(t=1.0).energy[0]

@@ -70,3 +70,239 @@ def test_two_centers_keep_no_angular_momentum() -> None:
     table = vv.Scene(body, *forces).run(t=[0.0, 0.5, 1.0]).conservation(about=[1.0, 0.0, 0.0])
     assert not table.angular_momentum.conserved
     assert table.energy.conserved
+
+
+ONE = vv.Particles([2.0], [[1.0, -0.5, 0.25]], [[0.5, 1.0, -2.0]])
+
+
+def test_drag_decays() -> None:
+    tau, t = 0.7, np.linspace(0.0, 2.0, 5)
+    out = vv.Scene(ONE, vv.LinearDrag(tau)).run(t=t, rtol=1e-12)
+    decay = np.exp(-t / tau)[:, None]
+    # rtol of what the motion covers, 2 or less.
+    assert np.allclose(out.velocity[:, 0], ONE.velocity[0] * decay, rtol=0, atol=1e-11)
+    assert np.allclose(out.position[:, 0], ONE.position[0] + ONE.velocity[0] * tau * (1 - decay), rtol=0, atol=1e-11)
+    assert not any(row.conserved for row in out.conservation().rows)
+
+
+def test_a_charge_circles_and_keeps_its_energy() -> None:
+    """Angular frequency −q B / m about B; the kinetic energy is kept, and the table says so."""
+    charge, field, t = 1.5, 2.0, np.linspace(0.0, 10.0, 6)
+    out = vv.Scene(ONE, vv.UniformMagneticField([0.0, 0.0, field], charge)).run(t=t, rtol=1e-12)
+    angle = -charge * field / 2.0 * t
+    v = ONE.velocity[0]
+    # 15 rad at rtol 1e-12 of velocities of 2, some hundred steps.
+    assert np.allclose(out.velocity[:, 0, 0], v[0] * np.cos(angle) - v[1] * np.sin(angle), rtol=0, atol=1e-10)
+    assert np.allclose(out.velocity[:, 0, 1], v[0] * np.sin(angle) + v[1] * np.cos(angle), rtol=0, atol=1e-10)
+    assert np.allclose(out.velocity[:, 0, 2], v[2], rtol=0, atol=1e-12)
+    table = out.conservation()
+    assert [row.conserved for row in table.rows] == [True, False, False, False]
+    assert table.energy.max < 1e-10
+
+
+def test_every_body_has_its_own_charge() -> None:
+    bodies = vv.Particles([1.0, 2.0, 0.0], np.eye(3), [[1.0, 0.0, 0.0]] * 3)
+    a = vv.Scene(bodies, vv.UniformMagneticField([0.0, 0.0, 3.0], [1.0, -4.0, 0.0])).acceleration()
+    assert a.tolist() == [[0.0, -3.0, 0.0], [0.0, 6.0, 0.0], [0.0, 0.0, 0.0]]
+
+
+@pytest.mark.parametrize("t0", [0.0, 2.5, 1e15, -1e12])
+def test_a_drive_starts_at_its_phase(t0: float) -> None:
+    """x(t) = x0 + v0 s + A/(m w²) (cos φ0 − cos(w s + φ0) − w s sin φ0), φ0 = w t0 + phase to thirty digits."""
+    import mpmath
+
+    frequency, phase, amplitude, s = 0.75, 0.3, 3.0, 4.0
+    body = vv.Particles([2.0], [[0.0, 0.0, 0.0]])
+    out = vv.Scene(body, vv.DrivenForce([amplitude, 0.0, 0.0], frequency, phase), t0=t0).run(
+        t=t0 + s, rtol=1e-12, method="dop853"
+    )
+    with mpmath.workdps(40):
+        start = mpmath.mpf(frequency) * mpmath.mpf(t0) + mpmath.mpf(phase)
+        end = start + frequency * s
+        expected = float(
+            amplitude / 2.0 / frequency**2 * (mpmath.cos(start) - mpmath.cos(end) - frequency * s * mpmath.sin(start))
+        )
+    assert out.position[-1, 0, 0] == pytest.approx(expected, abs=1e-10)
+    assert not any(row.conserved for row in out.conservation().rows)
+
+
+@pytest.mark.parametrize("copies", [1, 5])
+def test_springs_swing(copies: int) -> None:
+    """Two masses on a spring: ω² = k (1/m + 1/M); all is conserved, and others are integrated by themselves."""
+    mass, k, length, t = np.array([1.0, 3.0, 1.0]), 4.0, 1.0, np.linspace(0.0, 3.0, 7)
+    scene = vv.Scene(
+        vv.Particles(mass, [[0.0, 0, 0], [1.5, 0, 0], [9.0, 0, 0]], [[0, 0, 0], [0, 0, 0], [0, 1.0, 0]]),
+        vv.Spring(0, 1, k, length),
+    )
+    if copies == 1:
+        out = scene.run(t=t, rtol=1e-12)
+        position = out.position
+        table = out.conservation()
+        assert all(row.conserved for row in table.rows)
+        assert table.energy.max < 1e-11
+    else:
+        alone = scene.run(t=t, rtol=1e-12).position
+        position = scene.ensemble(mass=np.tile(mass, (copies, 1))).run(t=t, rtol=1e-12).position[-1]
+        assert np.array_equal(position, alone)
+    omega = np.sqrt(k * (1 + 1 / 3))
+    assert np.allclose(position[:, 1, 0] - position[:, 0, 0], length + 0.5 * np.cos(omega * t), rtol=0, atol=1e-10)
+    free = np.outer(t, [0, 1.0, 0]) + np.array([9.0, 0, 0])
+    assert np.allclose(position[:, 2], free, rtol=0, atol=1e-12)
+
+
+@pytest.mark.parametrize("n", [3, 8, 20])
+def test_a_chain_has_its_own_bits_in_an_ensemble(n: int) -> None:
+    rng = np.random.default_rng(n)
+    bodies = vv.Particles(
+        rng.uniform(1, 2, n), rng.normal(size=(n, 3)) + np.arange(n)[:, None], rng.normal(size=(n, 3))
+    )
+    links = np.arange(n - 1)
+    scene = vv.Scene(bodies, vv.Spring(links, links + 1, k=rng.uniform(1, 2, n - 1), length=1.0), vv.LinearDrag(3.0))
+    starts = bodies.position + 0.01 * rng.normal(size=(11, n, 3))
+    together = scene.ensemble(position=starts).run(t=2.0, rtol=1e-10)
+    for copy in (0, 7, 10):
+        alone = scene.with_state(starts[copy], bodies.velocity).run(t=2.0, rtol=1e-10)
+        assert np.array_equal(alone.position, together.position[copy])
+    gravity = vv.Scene(bodies, vv.Gravity(1.0, 0.1), *scene.forces)
+    assert np.array_equal(
+        gravity.ensemble(position=starts).run(t=0.5).position[4],
+        gravity.with_state(starts[4], bodies.velocity).run(t=0.5).position,
+    )
+
+
+def test_a_spring_and_gravity_add() -> None:
+    bodies = cluster(12)
+    forces = vv.Gravity(1.0), vv.Spring([0, 3], [11, 4], k=2.0, length=0.5)
+    apart = [vv.Scene(bodies, force).acceleration() for force in forces]
+    assert np.allclose(vv.Scene(bodies, *forces).acceleration(), apart[0] + apart[1], rtol=1e-15, atol=1e-15)
+
+
+@pytest.mark.parametrize("method", ["leapfrog", "yoshida4", "kahan_li8", "stormer13"])
+@pytest.mark.parametrize("force", [vv.LinearDrag(1.0), vv.UniformMagneticField([0.0, 0.0, 1.0])], ids=repr)
+def test_a_method_without_velocities_refuses_a_force_that_looks_at_them(method: str, force: vv.forces.Force) -> None:
+    with pytest.raises(vv.InvalidInput, match=rf"{type(force).__name__}.*rk4, .*dop853") as caught:
+        vv.Scene(ONE, force).run(t=1.0, method=method, dt=0.1)
+    assert caught.value.argument == "method"
+
+
+@pytest.mark.parametrize(
+    ("force", "argument"),
+    [
+        (lambda: vv.LinearDrag(0.0), "tau"),
+        (lambda: vv.UniformMagneticField([0, 0, 1.0], [1.0, 0.0, 3.0]), "charge"),
+        (lambda: vv.UniformMagneticField([0, 0, 1.0], [0.0, 1.0]), "mass"),
+        (lambda: vv.DrivenForce([1.0, 0, 0], 1.0), "mass"),
+        (lambda: vv.Spring(0, 2, 1.0), "j"),
+        (lambda: vv.Spring(0, 0, 1.0), "j"),
+        (lambda: vv.Spring(-1, 0, 1.0), "i"),
+        (lambda: vv.Spring(0, 1, -1.0), "k"),
+        (lambda: vv.Spring([0, 1], [1, 0], [1.0, 1.0, 1.0]), "i"),
+        (lambda: vv.Spring(0, 1, 1.0), "mass"),
+    ],
+)
+def test_forces_refuse_by_name(force: object, argument: str) -> None:
+    bodies = vv.Particles([1.0, 0.0], [[0.0, 0, 0], [1.0, 0, 0]])
+    with pytest.raises(vv.InvalidInput) as caught:
+        vv.Scene(bodies, force()).plan(t=1.0)  # type: ignore[operator]
+    assert caught.value.argument == argument
+
+
+def test_coincident_ends_of_a_spring_with_a_length_are_refused() -> None:
+    bodies = vv.Particles([1.0, 1.0], np.zeros((2, 3)))
+    with pytest.raises(vv.InvalidInput, match="distinct ends"):
+        vv.Scene(bodies, vv.Spring(0, 1, 1.0, 0.5)).run(t=1.0)
+    assert vv.Scene(bodies, vv.Spring(0, 1, 1.0)).run(t=1.0).position[-1].tolist() == np.zeros((2, 3)).tolist()
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        vv.LinearDrag(0.7),
+        vv.UniformMagneticField([0.3, -0.4, 1.0], [1.0, -2.0, 0.5]),
+        vv.DrivenForce([1.0, -2.0, 0.5], 3.0, 0.2),
+        vv.Spring([0, 1], [1, 2], [1.0, 2.0], 0.3),
+    ],
+    ids=repr,
+)
+def test_a_force_turns_and_changes_units_with_the_scene(force: vv.forces.Force) -> None:
+    rng = np.random.default_rng(3)
+    scene = vv.Scene(vv.Particles([1.0, 2.0, 3.0], rng.normal(size=(3, 3)), rng.normal(size=(3, 3))), force, t0=0.4)
+    a = scene.acceleration()
+    turn, _ = np.linalg.qr(rng.normal(size=(3, 3)))
+    for matrix in (turn, -turn):  # one of them reflects
+        # A few roundings of numbers of size 10.
+        assert np.allclose(scene.rotated(matrix).acceleration(), a @ matrix.T, rtol=0, atol=1e-14)
+    new = scene.rescaled(length=1.7, mass=0.3, time=2.9).acceleration()
+    assert np.allclose(new, a * 1.7 / 2.9**2, rtol=1e-13, atol=1e-15)
+    back = scene.rescaled(length=2.0**7, mass=2.0**-3, time=2.0**5).rescaled(length=2.0**-7, mass=2.0**3, time=2.0**-5)
+    assert back == scene
+
+
+def test_a_charge_retraces_its_path_and_drag_does_not() -> None:
+    scene = vv.Scene(ONE, vv.UniformMagneticField([0.3, 0.0, 1.0]))
+    there = scene.run(t=3.0, rtol=1e-12).final.reversed()
+    back = there.run(t=there.t0 + 3.0, rtol=1e-12).final
+    assert np.allclose(back.particles.position, ONE.position, rtol=0, atol=1e-10)
+    for force in (vv.LinearDrag(1.0), vv.DrivenForce([1.0, 0, 0], 1.0)):
+        with pytest.raises(vv.InvalidInput, match="cannot be reversed"):
+            vv.Scene(ONE, force).reversed()
+    for force in (vv.LinearDrag(1.0), vv.UniformMagneticField([0.0, 0.0, 1.0])):
+        with pytest.raises(vv.InvalidInput, match="boosted"):
+            vv.Scene(ONE, force).in_frame(velocity=[1.0, 0.0, 0.0])
+
+
+POTENTIALS = [
+    vv.potentials.Coulomb(-1.5),
+    vv.potentials.Yukawa(k=2.0, length=0.8),
+    vv.potentials.LennardJones(epsilon=0.5, sigma=0.6),
+]
+
+
+def lattice(n: int) -> vv.Particles:
+    """PreciseBodies at least 0.8 apart."""
+    rng = np.random.default_rng(n)
+    side = int(np.ceil(n ** (1 / 3)))
+    places = np.array(list(np.ndindex(side, side, side)), dtype=float)[:n]
+    return vv.Particles(rng.uniform(1, 2, n), places + rng.uniform(-0.1, 0.1, (n, 3)), rng.normal(size=(n, 3)) * 0.1)
+
+
+@pytest.mark.parametrize("n", [2, 3, 8, 9, 16, 17, 23, 130, 300])
+@pytest.mark.parametrize("potential", POTENTIALS, ids=repr)
+def test_pairs_pull_as_the_potential_says(potential: vv.potentials.Potential, n: int) -> None:
+    bodies = lattice(n)
+    d = bodies.position[None] - bodies.position[:, None]
+    r = np.linalg.norm(d, axis=-1) + np.eye(n)
+    force = potential.force(r) * (1 - np.eye(n))
+    expected = -(force / r)[..., None] * d
+    a = vv.Scene(bodies, vv.PairPotential(potential)).acceleration()
+    # The roundings of each pair, magnified twelvefold by the power law, of sums in which they may cancel.
+    size = np.abs(expected).sum(axis=(1, 2)).max()
+    assert np.abs(a * bodies.mass[:, None] - expected.sum(axis=1)).max() <= 1e-14 * size
+    energy = vv.Scene(bodies, vv.PairPotential(potential)).invariants().potential_energy
+    assert energy == pytest.approx(potential.value(r[np.triu_indices(n, 1)]).sum(), rel=1e-13)
+
+
+@pytest.mark.parametrize("n", [2, 3, 8, 9, 20])
+def test_pair_potentials_have_their_own_bits_in_an_ensemble(n: int) -> None:
+    bodies = lattice(n)
+    scene = vv.Scene(bodies, vv.PairPotential(POTENTIALS[2]), vv.Gravity(0.1, 0.3))
+    starts = bodies.position + 0.01 * RNG.normal(size=(11, n, 3))
+    masses = bodies.mass * RNG.uniform(0.9, 1.1, size=(11, n))
+    for how in ({"method": "leapfrog", "dt": 0.01}, {"method": "dop853", "rtol": 1e-10}):
+        together = scene.ensemble(position=starts, mass=masses).run(t=0.5, **how)
+        for copy in (0, 7, 10):
+            one = vv.Scene(vv.Particles(masses[copy], starts[copy], bodies.velocity), *scene.forces)
+            assert np.array_equal(one.run(t=0.5, **how).position, together.position[copy])
+
+
+def test_pair_potentials_keep_everything_on_any_number_of_threads() -> None:
+    scene = vv.Scene(lattice(300), vv.PairPotential(POTENTIALS[2]))
+    runs = [scene.run(t=[0.0, 0.1, 0.2], method="rk4", dt=0.01, threads=threads) for threads in (1, 2, 3)]
+    assert np.array_equal(runs[0].position, runs[1].position)
+    assert np.array_equal(runs[0].position, runs[2].position)
+    table = runs[0].conservation()
+    assert all(row.conserved for row in table.rows)
+    assert table.energy.max < 1e-8  # rk4's fourth order at this step
+    assert table.momentum.max < 1e-14
+    with pytest.raises(vv.InvalidInput, match="distinct positions"):
+        vv.Scene(vv.Particles([1.0, 1.0], np.zeros((2, 3))), *scene.forces).plan(t=1.0)

@@ -71,6 +71,13 @@ FORCES = [
     vv.CentralField(vv.potentials.Coulomb(k=-1.0)),
     vv.CentralField(vv.potentials.Yukawa(k=2.0, length=0.5), center=[1.0, 2.0, 3.0]),
     vv.CentralField(vv.potentials.LennardJones(epsilon=1.0, sigma=1.5)),
+    vv.LinearDrag(tau=3.0),
+    vv.UniformMagneticField([0.0, 1.0, -2.0], charge=[1.0, -3.0]),
+    vv.UniformMagneticField([0.0, 1.0, 2.0]),
+    vv.DrivenForce([1.0, 0.0, -2.0], frequency=3.0, phase=0.5),
+    vv.Spring(0, 1, k=2.0, length=0.5),
+    vv.Spring([0, 1], [1, 0], k=[1.0, 2.0]),
+    vv.PairPotential(vv.potentials.Yukawa(k=2.0, length=0.5)),
 ]
 
 
@@ -100,6 +107,7 @@ def test_forces_are_those_of_the_registry() -> None:
 @pytest.mark.parametrize("force", FORCES, ids=repr)
 def test_a_force_is_documented_by_its_declaration(force: vv.forces.Force) -> None:
     document = type(force).__doc__ or ""
+    assert "centre" not in document
     for heading in ("Parameters", "Raises", "References", "Examples"):
         assert f"\n{heading}\n{'-' * len(heading)}\n" in document
     assert all(f"\n{name} : " in document for name in force._values())

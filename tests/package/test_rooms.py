@@ -16,7 +16,7 @@ FLOORS = (
     ("error",),
     ("words",),
     ("numerics",),
-    ("parallel",),
+    ("memory", "parallel", "units"),
     ("ode", "potentials"),
     ("forces",),
     ("nbody", "rigid", "scattering", "generalized"),
@@ -27,8 +27,6 @@ FLOORS = (
 FLOOR = {room: height for height, rooms in enumerate(FLOORS) for room in rooms}
 STANDING: dict[tuple[str, str], str] = {
     ("error", "words"): "the text of an error is written by words, which makes errors",
-    ("potentials", "forces"): "a potential makes its central force; to be the other way round",
-    ("conservation", "scene"): "energies match on `ForceSpec`; to be asked of each force",
 }
 
 

@@ -18,6 +18,7 @@ NAMES = [method.name for method in METHODS]
 def step(method: vv.Method, dt: float) -> dict[str, Any]:
     return {"rtol": 10.0 ** -min(10, 2 * method.order)} if method.adaptive else {"dt": dt}
 
+
 COPIES = 36
 
 # Random places, among them some next to the centre, where the step is far too long: bits are looked at here.

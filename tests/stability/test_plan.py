@@ -41,6 +41,12 @@ CLOSED = {
         join(vv.Particles([1.0], np.zeros((1, 3)), np.zeros((1, 3))), some(20)), vv.Gravity(1.0)
     ),
     "fixed centre": vv.Scene(some(4, masses=1.0), vv.CentralField(vv.potentials.Coulomb(k=1.0))),
+    "linear drag": vv.Scene(some(4, masses=1.0), vv.LinearDrag(2.0)),
+    "linear drag and a uniform field": vv.Scene(some(4), vv.LinearDrag(2.0), vv.UniformField([0.0, 0.0, -9.81])),
+    "magnetic field": vv.Scene(some(4, masses=1.0), vv.UniformMagneticField([0.0, 1.0, 2.0])),
+    "crossed fields": vv.Scene(
+        some(4, masses=1.0), vv.UniformField([3.0, 0.0, -1.0]), vv.UniformMagneticField([0.0, 1.0, 2.0])
+    ),
 }
 
 
@@ -62,6 +68,8 @@ def test_softening_and_other_forces_are_not_closed_forms() -> None:
     assert not vv.Scene(pair, vv.Gravity(1.0, softening=0.1)).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.Gravity(1.0), vv.UniformField([0, 0, 1.0])).plan(t=1.0).closed_form
     assert not vv.Scene(pair, vv.CentralField(vv.potentials.Yukawa(k=1.0, length=1.0))).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.UniformMagneticField([1.0, 0.0, 0.0])).plan(t=1.0).closed_form
+    assert not vv.Scene(pair, vv.LinearDrag(1.0), vv.Gravity(1.0)).plan(t=1.0).closed_form
 
 
 METHODS: list[tuple[vv.Method, dict[str, Any]]] = [
@@ -244,8 +252,11 @@ def test_of_few_bodies_a_multistep_method_skips_the_first(count: int) -> None:
     run: dict[str, Any] = {"t": [0.5, 1.0, 2.015], "method": "stormer13", "dt": 0.01}
     few = vv.Scene(stars, gravity).run(**run)
     assert "steps of the first massive body" in dict(few.plan.skipped)
-    # A field that does nothing to speak of: now nothing is closed.
-    whole = vv.Scene(stars, gravity, vv.UniformField([1e-300, 0.0, 0.0])).run(**run)
+    # What accelerates all alike moves the origin, and the bodies relative to it as before.
+    falling = vv.Scene(stars, gravity, vv.UniformField([1e-300, 0.0, 0.0]))
+    assert "steps of the first massive body" in dict(falling.plan(**run).skipped)
+    # A field that differs from place to place, and does nothing to speak of: now nothing is closed.
+    whole = vv.Scene(stars, gravity, vv.CentralField(vv.potentials.Coulomb(k=1e-300), [50.0, 0.0, 0.0])).run(**run)
     assert "steps of the first massive body" not in dict(whole.plan.skipped)
     np.testing.assert_allclose(few.position, whole.position, rtol=0, atol=1e-14)
     np.testing.assert_allclose(few.velocity, whole.velocity, rtol=0, atol=1e-14)

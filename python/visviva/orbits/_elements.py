@@ -254,8 +254,10 @@ def propagate(
 
     Notes
     -----
-    Measured against 150 digits: at most 6 half-ulps of |r| and |v| for every conic and up to 10⁹ periods, the given
-    numbers being taken as exact. Method: universal variables (Stiefel & Scheifele 1971) counted from an apsis.
+    Measured against 100 to 420 digits, the given numbers being taken as exact, up to 10⁹ periods: of 32 000 random
+    orbits of every kind all but 15 are within 6 half-ulps of |r| and |v| (median 1), and within 10 where the motion is
+    not radial or nearly so (25). Just after the epoch, where |v| passes through zero, its error is in half-ulps of the
+    velocity at the epoch instead. Method: universal variables (Stiefel & Scheifele 1971) counted from an apsis.
 
     Examples
     --------

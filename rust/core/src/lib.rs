@@ -1,8 +1,9 @@
 //! Classical mechanics: integrators, N-body, closed forms, scattering Monte Carlo. No Python anywhere.
 //!
 //! A room knows the rooms below it and never those above:
-//! numerics ← potentials ← forces ← nbody, scattering ← scene.
+//! numerics ← potentials ← forces ← nbody, scattering ← closed_forms ← scene.
 
+pub mod closed_forms;
 pub mod conservation;
 pub mod error;
 pub mod forces;

@@ -1,11 +1,15 @@
-//! What the package offers, one line each: methods, potentials and forces.
+//! What the package offers, one line each: methods, potentials, forces and closed forms.
 
+use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
-use crate::forces::{ForceDeclaration, central_field, uniform_field};
+use crate::forces::{
+    ForceDeclaration, central_field, driven_force, linear_drag, pair_potential, spring, uniform_field,
+    uniform_magnetic_field,
+};
 use crate::ode::Method;
 use crate::ode::methods::{
-    bogacki_shampine32, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+    bogacki_shampine32, boris, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
@@ -20,6 +24,7 @@ pub static METHODS: &[&Method] = &[
     &leapfrog::METHOD,
     &yoshida4::METHOD,
     &kahan_li8::METHOD,
+    &boris::METHOD,
     &stormer13::METHOD,
 ];
 
@@ -39,7 +44,9 @@ static IMPLICIT: [&str; 3] = ["Radau", "BDF", "LSODA"];
 /// # Errors
 /// A name that is none, or of a method that does not take such equations; the message lists those that do.
 pub fn solver(name: &str) -> Result<&'static Method> {
-    let serves = |method: &&Method| method.serves(Form::FirstOrder(1), Needs { time: true, velocity: true });
+    let serves = |method: &&Method| {
+        method.serves(Form::FirstOrder(1), Needs { time: true, velocity: true, rotation: false })
+    };
     let ours = METHODS.iter().copied().filter(serves).map(|method| method.name);
     let names = SCIPY.iter().map(|(scipy, _)| *scipy).chain(ours);
     let refused = |why: &str| {
@@ -69,10 +76,29 @@ pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
 }
 
 /// Every force, in the order of the documentation.
-pub static FORCES: &[&ForceDeclaration] =
-    &[&newton::DECLARATION, &uniform_field::DECLARATION, &central_field::DECLARATION];
+pub static FORCES: &[&ForceDeclaration] = &[
+    &newton::DECLARATION,
+    &uniform_field::DECLARATION,
+    &central_field::DECLARATION,
+    &linear_drag::DECLARATION,
+    &uniform_magnetic_field::DECLARATION,
+    &driven_force::DECLARATION,
+    &spring::DECLARATION,
+    &pair_potential::DECLARATION,
+];
 
 /// The force of a name.
 pub fn force(name: &str) -> Option<&'static ForceDeclaration> {
     FORCES.iter().copied().find(|declaration| declaration.name == name)
 }
+
+/// Every closed form; of those that apply to an ensemble member, the first is taken.
+pub static CLOSED_FORMS: &[&ClosedForm] = &[
+    &closed_forms::free::FORM,
+    &closed_forms::uniform::FORM,
+    &closed_forms::two_body::FORM,
+    &closed_forms::one_massive::FORM,
+    &closed_forms::fixed_center::FORM,
+    &closed_forms::linear_drag::FORM,
+    &closed_forms::crossed_fields::FORM,
+];

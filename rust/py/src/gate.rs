@@ -59,22 +59,61 @@ pub(crate) fn compute<T: Send>(
     work: impl FnOnce(&mut Ticker<'_>) -> Result<T> + Send,
 ) -> PyResult<Outcome<T>> {
     let control = Control::new(total);
-    let (result, mut pending) = py.detach(|| {
-        let mut pending = None;
-        let mut monitor = |done, total| match Python::try_attach(|py| watched(py, progress, done, total)) {
-            Some(Ok(())) => true,
-            Some(Err(exception)) => {
-                pending = pending.take().or(Some(exception));
-                false
-            }
-            // The interpreter is shutting down: nobody is left to take the result.
-            None => false,
-        };
-        let result = catch_unwind(AssertUnwindSafe(|| work(&mut Ticker::new(&control, &mut monitor))))
-            .unwrap_or_else(|payload| Err(panicked(payload.as_ref())));
-        (result, pending)
+    let (result, pending) = py.detach(|| {
+        let look = |done, total| Python::try_attach(|py| watched(py, progress, done, total));
+        worked(&control, look, work)
     });
-    match (result, pending.take()) {
+    finished(py, &control, progress, result, pending)
+}
+
+/// As [`compute`], with the GIL held: for work that is calls of Python for the most part.
+///
+/// # Errors
+/// As [`compute`].
+pub(crate) fn compute_attached<T>(
+    py: Python<'_>,
+    work: impl FnOnce(&mut Ticker<'_>) -> Result<T>,
+) -> PyResult<Outcome<T>> {
+    let control = Control::new(0);
+    let (result, pending) = worked(&control, |_, _| Some(py.check_signals()), work);
+    finished(py, &control, None, result, pending)
+}
+
+/// Calls Python in the middle of work, which may hold the GIL or not.
+pub(crate) fn attached<T>(call: impl FnOnce(Python<'_>) -> T) -> T {
+    Python::attach(call)
+}
+
+/// Does the work, with a look at Python now and then; the first exception of a look stops it.
+fn worked<T>(
+    control: &Control,
+    mut look: impl FnMut(u64, u64) -> Option<PyResult<()>>,
+    work: impl FnOnce(&mut Ticker<'_>) -> Result<T>,
+) -> (Result<T>, Option<PyErr>) {
+    let mut pending = None;
+    let mut monitor = |done, total| match look(done, total) {
+        Some(Ok(())) => true,
+        Some(Err(exception)) => {
+            pending = pending.take().or(Some(exception));
+            false
+        }
+        // The interpreter is shutting down: nobody is left to take the result.
+        None => false,
+    };
+    let result = catch_unwind(AssertUnwindSafe(|| work(&mut Ticker::new(control, &mut monitor))))
+        .unwrap_or_else(|payload| Err(panicked(payload.as_ref())));
+    (result, pending)
+}
+
+/// What the work gave, or what it raised.
+fn finished<T>(
+    py: Python<'_>,
+    control: &Control,
+    progress: Option<&Py<PyAny>>,
+    result: Result<T>,
+    pending: Option<PyErr>,
+) -> PyResult<Outcome<T>> {
+    match (result, pending) {
         (Ok(value), None) => {
             let (done, total) = control.progress();
             reported(py, progress, done, total)?;

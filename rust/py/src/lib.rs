@@ -12,6 +12,7 @@ mod orbits;
 mod registry;
 mod scattering;
 mod scene;
+mod solve_ivp;
 mod words;
 
 use pyo3::prelude::*;
@@ -37,6 +38,8 @@ mod _core {
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
     use crate::scene::{acceleration, columns, conserved, conserves, plan, run};
+    #[pymodule_export]
+    use crate::solve_ivp::{interpolate, solve_ivp};
     #[pymodule_export]
     use crate::words::nearest;
 

@@ -55,6 +55,8 @@ fn row<'py, T: ?Sized>(py: Python<'py>, declaration: &Declaration<T>) -> PyResul
         ("notes", declaration.notes),
         ("source", declaration.source),
         ("example", declaration.example),
+        ("at_rest", declaration.at_rest),
+        ("one_way", declaration.one_way),
     ] {
         dict.set_item(key, text)?;
     }

@@ -133,7 +133,7 @@ pub(crate) fn conserves<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = snapshot(&mass, &position, &velocity, &forces)?;
     let about = points(&copied("about", &about, [Some(3)])?.0)[0];
-    let conserves = conserved_by(&scene.forces, &scene.bodies());
+    let conserves = compute(py, 0, None, |_| Ok(conserved_by(&scene.forces, &scene.bodies())))?.whole(py)?;
     let dict = PyDict::new(py);
     dict.set_item("momentum", conserves.momentum)?;
     dict.set_item(

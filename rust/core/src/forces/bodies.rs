@@ -18,7 +18,7 @@ const LEAST: f64 = 1.0 / MOST;
 /// A vector of numbers that are unevaluated sums.
 pub type Vector = [DoubleDouble; 3];
 
-/// PreciseBodies of one state.
+/// Bodies of one state.
 #[derive(Clone, Debug, Default)]
 pub struct PreciseBodies {
     /// Array after array, each padded with zeros to whole rows and one row more.

@@ -29,6 +29,8 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.1",
     example: ">>> vv.CentralField(vv.potentials.Coulomb(k=-1.0))\n\
               CentralField(potential=Coulomb(k=-1.0), center=(0.0, 0.0, 0.0))",
+    at_rest: "center",
+    one_way: "",
     parameters: &[
         Parameter::new("potential", Kind::Potential, "The potential energy of one body at the distance r"),
         Parameter::new("center", Kind::Point, "The fixed point").of([1, 0, 0]).or(0.0),

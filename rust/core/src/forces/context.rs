@@ -36,6 +36,8 @@ pub struct Context<'a> {
     pub systems: &'a [System<'a>],
     /// The units of the integration.
     pub units: Units,
+    /// The time at the start of the run, in the scene's units.
+    pub t0: f64,
     /// Threads that one evaluation may use.
     pub threads: usize,
 }

@@ -10,14 +10,19 @@
 pub mod bodies;
 pub mod central_field;
 pub mod context;
+pub mod driven_force;
 pub mod gravity;
+pub mod linear_drag;
+pub mod pair_potential;
+pub mod spring;
 pub mod term;
 pub mod uniform_field;
+pub mod uniform_magnetic_field;
 
 pub use term::{ForceDeclaration, ForceTerm};
 
 use crate::error::Result;
-use crate::numerics::element::{Element, Shape};
+use crate::numerics::element::{Element, PairMut, Shape};
 use crate::ode::Method;
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
@@ -54,6 +59,11 @@ pub trait Force<S: Element>: Send {
     /// What it looks at besides coordinates. What no force looks at may not be there in the middle of a step.
     fn needs(&self) -> Needs {
         Needs::default()
+    }
+
+    /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
+    fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
+        let _ = (h, v);
     }
 
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever
@@ -124,6 +134,36 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
             force.apply(&phase, a, index == 0, ticker)?;
         }
         Ok(())
+    }
+
+    fn kick(&mut self, t: S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        self.evaluations += 1;
+        let phase = Phase { t, q, v: &[] };
+        let mut first = true;
+        for force in self.forces.iter_mut().filter(|force| !force.needs().rotation) {
+            force.apply(&phase, a, first, ticker)?;
+            first = false;
+        }
+        if first {
+            a.fill(S::zero());
+        }
+        Ok(())
+    }
+
+    /// Rotations about several axes do not commute: half of each in turn, then in the reverse order, which keeps the
+    /// symmetry of the step.
+    fn rotate(&mut self, h: f64, (v, rest): PairMut<'_, S>) {
+        let turns = |force: &&mut Box<dyn Force<S>>| force.needs().rotation;
+        let alone = self.forces.iter_mut().filter(turns).count() == 1;
+        let part = if alone { h } else { 0.5 * h };
+        for force in self.forces.iter_mut().filter(turns) {
+            force.rotate(part, (&mut *v, &mut *rest));
+        }
+        if !alone {
+            for force in self.forces.iter_mut().rev().filter(turns) {
+                force.rotate(part, (&mut *v, &mut *rest));
+            }
+        }
     }
 
     fn special(&self, method: &'static Method, h: f64, state: &State<S>) -> Option<Box<dyn Stepper<S>>> {

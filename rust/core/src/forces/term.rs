@@ -90,6 +90,25 @@ impl<'a> Bodies<'a> {
         let (copy, particle) = (index / self.particles, index % self.particles);
         if self.copies == 1 { format!("{what}[{particle}]") } else { format!("{what}[{copy}, {particle}]") }
     }
+    /// Two bodies of one copy in one place, by their places in the arrays, if that matters for their masses.
+    pub fn coincident(&self, matters: impl Fn(f64, f64) -> bool) -> Option<(usize, usize)> {
+        for copy in 0..self.copies {
+            let (mass, position) = self.copy(copy);
+            // Sorted along x, bodies that coincide are neighbours: O(N log N), not O(N²).
+            let mut order: Vec<usize> = (0..self.particles).collect();
+            order.sort_by(|&i, &j| {
+                let (a, b) = (position[i], position[j]);
+                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2])).then(i.cmp(&j))
+            });
+            for pair in order.windows(2) {
+                let (i, j) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
+                if position[i] == position[j] && matters(mass[i], mass[j]) {
+                    return Some((copy * self.particles + i, copy * self.particles + j));
+                }
+            }
+        }
+        None
+    }
     /// Refuses an array of a parameter that is neither one number nor one for each body.
     ///
     /// # Errors
@@ -186,6 +205,30 @@ pub trait ForceTerm: Debug + Send + Sync {
     /// `k` and the center, if it is that of a potential energy k/r about a fixed point.
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         None
+    }
+    /// The time τ of decay, if it is the acceleration −v/τ on every body.
+    fn as_linear_drag(&self) -> Option<f64> {
+        None
+    }
+    /// The field and the charges, if it is that of a uniform magnetic field.
+    fn as_magnetic(&self) -> Option<MagneticField<'_>> {
+        None
+    }
+}
+
+/// A uniform magnetic field, which acts by the force charge v × field.
+#[derive(Clone, Copy, Debug)]
+pub struct MagneticField<'a> {
+    /// The field.
+    pub field: [f64; 3],
+    /// One charge for all bodies, or one for each.
+    pub charge: &'a [f64],
+}
+
+impl MagneticField<'_> {
+    /// The charge of a body.
+    pub fn charge_of(&self, particle: usize) -> f64 {
+        if let [all] = self.charge { *all } else { self.charge.get(particle).copied().unwrap_or(0.0) }
     }
 }
 

@@ -25,6 +25,8 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.1",
     example: ">>> ball = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 2.0]]), \
               vv.UniformField([0, 0, -8]))\n>>> ball.run(t=0.5).position[-1, 0]\narray([0.5, 0. , 0. ])",
+    at_rest: "",
+    one_way: "",
     parameters: &[Parameter::new("g", Kind::Vector, "The acceleration").of(ACCELERATION)],
     make: |values| Ok(Arc::new(Uniform { g: values[0].vector() })),
 };

@@ -143,6 +143,10 @@ fn run<V: View<Lanes>, P: Pass<Lanes>>(pass: P) -> P::Output {
 
 /// One number has no lanes, but the tier's instructions serve it, too: a fused multiply-add is one, and several numbers of
 /// a state go through it at a time.
+#[expect(
+    clippy::extra_unused_type_parameters,
+    reason = "`tiered!` names a vector type to all that it compiles"
+)]
 #[inline(always)]
 fn run_scalar<V: Vector8, P: Pass<f64>>(pass: P) -> P::Output {
     pass.run::<f64>()

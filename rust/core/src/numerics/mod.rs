@@ -2,6 +2,8 @@
 
 pub mod angles;
 pub mod binary;
+pub mod cosine;
+pub mod decay;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
@@ -12,6 +14,7 @@ pub mod philox;
 pub mod points;
 pub mod power_of_two;
 pub mod real;
+pub mod rotation;
 pub mod scaled;
 pub mod simd;
 pub mod stumpff;

@@ -54,17 +54,35 @@ pub const fn philox(key: Key, counter: [u32; 4]) -> [u32; 4] {
 /// How many bits a draw has: the significand of an `f64`.
 pub const DRAW_BITS: u32 = 53;
 
+/// 53 random bits; there is no other way to make one, so whoever is given one may rely on it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[repr(transparent)]
+pub struct Draw(u64);
+
+impl Draw {
+    /// The upper 53 of 64 random bits.
+    #[inline(always)]
+    pub const fn of(bits: u64) -> Self {
+        Self(bits >> (64 - DRAW_BITS))
+    }
+    /// As a number below 2^53.
+    #[inline(always)]
+    pub const fn number(self) -> u64 {
+        self.0
+    }
+}
+
 /// Counter words 2 and 3 of the draws made here.
 const DRAW: u32 = 0;
 const STREAM: u32 = 0;
 
 /// Draw 0 of event `event` in stream 0: 53 random bits that depend on seed and event alone.
 #[inline]
-pub const fn draw(key: Key, event: u64) -> u64 {
+pub const fn draw(key: Key, event: u64) -> Draw {
     let block = event >> 1;
     let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, DRAW, STREAM]);
     let (low, high) = if event & 1 == 0 { (a, b) } else { (c, d) };
-    ((high as u64) << 32 | low as u64) >> (64 - DRAW_BITS)
+    Draw::of((high as u64) << 32 | low as u64)
 }
 
 /// Events whose draws one step of [`fill_draws`] makes.
@@ -72,14 +90,14 @@ pub const DRAWS: usize = 2 * WIDTH;
 
 crate::tiered! {
     /// The draws of the events from `2 * block` on, as [`draw`] gives them.
-    pub fn fill_draws[][](key: Key, block: u64, draws: &mut [[u64; DRAWS]]) = draws_body;
+    pub fn fill_draws[][](key: Key, block: u64, draws: &mut [[Draw; DRAWS]]) = draws_body;
 }
 
 /// Eight blocks at a time, written so that the compiler makes vectors of it: each 32-bit word stays in
 /// the low half of a 64-bit lane.
 #[expect(clippy::extra_unused_type_parameters, reason = "integers know no tier, but `tiered!` names one")]
 #[inline(always)]
-fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
+fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[Draw; DRAWS]]) {
     for sixteen in draws {
         let low = |x: u64| x & 0xffff_ffff;
         let mut x0 = [0_u64; WIDTH];
@@ -105,8 +123,8 @@ fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[u64; DRAWS]]) {
             }
         }
         for lane in 0..WIDTH {
-            sixteen[2 * lane] = (x1[lane] << 32 | low(x0[lane])) >> (64 - DRAW_BITS);
-            sixteen[2 * lane + 1] = (x3[lane] << 32 | low(x2[lane])) >> (64 - DRAW_BITS);
+            sixteen[2 * lane] = Draw::of(x1[lane] << 32 | low(x0[lane]));
+            sixteen[2 * lane + 1] = Draw::of(x3[lane] << 32 | low(x2[lane]));
         }
         block = block.wrapping_add(WIDTH as u64);
     }
@@ -133,8 +151,8 @@ mod tests {
 
     #[test]
     fn the_first_draws_are_the_known_answer_of_zero() {
-        assert_eq!(draw(key(0), 0), 0xe169_c58d_6627_e8d5 >> 11);
-        assert_eq!(draw(key(0), 1), 0x9b00_dbd8_bc57_ac4c >> 11);
+        assert_eq!(draw(key(0), 0).number(), 0xe169_c58d_6627_e8d5 >> 11);
+        assert_eq!(draw(key(0), 1).number(), 0x9b00_dbd8_bc57_ac4c >> 11);
     }
 
     /// The contract of the module's header, word by word: an event beyond 2^33, so that both words of event/2
@@ -146,8 +164,8 @@ mod tests {
         let block = |draw, stream| philox([0x89ab_cdef, 0x0123_4567], [0x8000_0007, 5, draw, stream]);
         let odd = |words: [u32; 4]| (u64::from(words[3]) << 32 | u64::from(words[2])) >> 11;
         let even = |words: [u32; 4]| (u64::from(words[1]) << 32 | u64::from(words[0])) >> 11;
-        assert_eq!(draw(key(seed), event), odd(block(0, 0)));
-        assert_eq!(draw(key(seed), event - 1), even(block(0, 0)));
+        assert_eq!(draw(key(seed), event).number(), odd(block(0, 0)));
+        assert_eq!(draw(key(seed), event - 1).number(), even(block(0, 0)));
         let others = [block(0, 0), block(1, 0), block(0, 1)].map(odd);
         assert_eq!(others, KNOWN_DRAWS);
     }
@@ -160,9 +178,9 @@ mod tests {
             seed: u64,
             block in prop_oneof![0..100_u64, (u64::from(u32::MAX) - 20)..(1_u64 << 33), 0..(1_u64 << 62)],
         ) {
-            let mut draws = [[0; DRAWS]; 3];
+            let mut draws = [[Draw::default(); DRAWS]; 3];
             fill_draws(key(seed), block, &mut draws);
-            let expected: Vec<u64> = (0..48).map(|event| draw(key(seed), 2 * block + event)).collect();
+            let expected: Vec<Draw> = (0..48).map(|event| draw(key(seed), 2 * block + event)).collect();
             prop_assert_eq!(draws.as_flattened(), expected);
         }
     }

@@ -11,7 +11,7 @@ use super::elementary::Exponential;
 use super::real::Real;
 
 /// 1/n! for n = 2 … 33.
-const INVERSE_FACTORIALS: [DoubleDouble; 32] = [
+pub(super) const INVERSE_FACTORIALS: [DoubleDouble; 32] = [
     DoubleDouble::new(0.5, 0.0),                                        // 1/2!
     DoubleDouble::new(0.16666666666666666, 9.25185853854297e-18),       // 1/3!
     DoubleDouble::new(0.041666666666666664, 2.3129646346357427e-18),    // 1/4!

@@ -9,9 +9,9 @@ use super::Embedded;
 use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::PairTerm;
-use super::passes::stages::Term;
+use super::passes::stages::{Positions, Term, Weighted};
 use super::passes::updates::Replace;
-use super::runge_kutta::Stages;
+use super::runge_kutta::{Stages, coupling};
 use super::state::State;
 use super::step_control::{Clock, Controlled, Outcome, Rule, root};
 use super::system::{Form, System};
@@ -37,6 +37,8 @@ pub struct EmbeddedStep<S: Element> {
     dense_rows: Vec<Row<S>>,
     /// For every stage, its weights in the continuous extension in the nested basis of [`Embedded::dense`].
     dense: Weights<Vec<S>>,
+    /// The weights of every stage in the coordinates, term after term of that basis.
+    of_terms: Vec<Vec<Term<S>>>,
     /// Room for those weights at one fraction of the step.
     between: Row<S>,
     rule: Rule<S>,
@@ -56,11 +58,18 @@ impl<S: Controlled> EmbeddedStep<S> {
         let rows = tableau.a.iter().chain([&tableau.b]).chain(method.dense_a);
         let a: Vec<Vec<DoubleDouble>> = rows.map(|row| row.to_vec()).collect();
         let errors = [method.error, method.second_error.unwrap_or_default()];
-        let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, &a));
+        let of_coordinates = coupling(system.form(), &a);
+        let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, of_coordinates));
         let dense_rows = method.dense_a.iter().zip(method.dense_c);
         let every_stage = || (0..a.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
         let stages = Stages::new(tableau, 1 + method.dense_a.len(), system);
         let of_rates = pair_terms(errors);
+        let dense = dense(method, a.len(), of_coordinates);
+        let of_term = |term: usize| {
+            dense[0].iter().enumerate().map(move |(stage, row)| Term { stage, weight: row[term] })
+        };
+        let of_terms =
+            (0..dense[0].first().map_or(0, Vec::len)).map(|term| of_term(term).collect()).collect();
         Self {
             errors: match stages.form() {
                 Form::FirstOrder(_) => [of_rates, Vec::new()],
@@ -69,8 +78,9 @@ impl<S: Controlled> EmbeddedStep<S> {
             stages,
             two_estimates: method.second_error.is_some(),
             end_in_estimate: errors.iter().any(|row| row.len() > tableau.b.len()),
-            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, &a)).collect(),
-            dense: dense(method, &a),
+            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
+            of_terms,
+            dense,
             between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
             rule,
             next: state.clone(),
@@ -188,6 +198,8 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let still = slope2.less_equal(S::zero());
         // The time in which the state changes by its own size; a hundredth of it for the trial step.
         let time = S::select(still, longest, S::one() / (norm.rtol * slope2.sqrt()));
+        // Where any error is allowed that time is without measure, and its square would be infinite.
+        let time = time.min(longest * S::splat(1e100));
         let trial = (S::splat(0.01) * time).min(longest);
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         let euler =
@@ -269,6 +281,21 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
 
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
         let len = self.stages.len();
+        if matches!(self.stages.form(), Form::SecondOrder(_)) {
+            let zeros = vec![S::zero(); len];
+            for (index, terms) in self.of_terms.iter().enumerate() {
+                let from = into.len();
+                into.resize(from + len, S::zero());
+                let fraction = if index == 0 { S::one() } else { S::zero() };
+                S::pass(Positions {
+                    out: &mut into[from..],
+                    q: (&zeros, &zeros),
+                    slope: (state.v(), &fraction),
+                    stages: Weighted { h: &h, terms, k: &self.stages.k },
+                });
+            }
+            return;
+        }
         for term in 0..self.terms() {
             for number in 0..len.min(state.all().0.len()) {
                 let mut sum = S::zero();
@@ -312,8 +339,9 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     }
 }
 
-/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages.
-fn dense<S: Element>(method: &Embedded, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
+/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages, if
+/// there are coordinates.
+fn dense<S: Element>(method: &Embedded, stages: usize, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
     let powers = method.dense.iter().map(|row| row.len()).max().unwrap_or(0);
     let zero = DoubleDouble::zero();
     let power = |index| -> Vec<DoubleDouble> {
@@ -323,6 +351,6 @@ fn dense<S: Element>(method: &Embedded, a: &[Vec<DoubleDouble>]) -> Weights<Vec<
     let of_q: Vec<Vec<DoubleDouble>> = of_v.iter().map(|row| nystrom_weights(row, a)).collect();
     [of_q, of_v].map(|rows| {
         let of_stage = |stage| rows.iter().map(|row| S::from_double_double(row[stage])).collect();
-        (0..a.len()).map(of_stage).collect()
+        (0..stages).map(of_stage).collect()
     })
 }

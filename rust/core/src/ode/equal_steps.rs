@@ -164,7 +164,7 @@ pub(super) fn nested<S: Controlled>(terms: impl ExactSizeIterator<Item = S>, the
     let rest = S::one() - theta;
     let last = terms.len();
     terms.enumerate().fold(S::zero(), |inner, (index, term)| {
-        let factor = if (last - 1 - index) % 2 == 0 { theta } else { rest };
+        let factor = if (last - 1 - index).is_multiple_of(2) { theta } else { rest };
         factor * (term + inner)
     })
 }

@@ -149,7 +149,8 @@ mod tests {
 
     #[test]
     fn zeros_are_located_to_round_off() -> Result<()> {
-        let cases: [(fn(f64) -> f64, f64, f64, f64); 5] = [
+        type Case = (fn(f64) -> f64, f64, f64, f64);
+        let cases: [Case; 5] = [
             (|x| x - 7.0, 5.0, 9.0, 7.0),
             (|x| x * x - 2.0, 0.0, 2.0, core::f64::consts::SQRT_2),
             (|x| x.powi(9), -1.0, 3.0, 0.0),

@@ -108,7 +108,7 @@ impl Request {
     fn tolerances(&self) -> Result<RootMeanSquare<f64>> {
         let each = |name: &str, given: &Option<Vec<f64>>, usual: f64| {
             let values = given.clone().unwrap_or_else(|| vec![usual]);
-            if let Some(bad) = values.iter().find(|&&x| !(x >= 0.0)) {
+            if let Some(bad) = values.iter().find(|x| x.is_nan() || **x < 0.0) {
                 let message = format!("expected tolerances that are not negative, got {}", number(*bad));
                 return Err(Error::invalid(name, message));
             }
@@ -138,7 +138,7 @@ impl Request {
         let positive = [("first_step", self.first_step), ("max_step", self.max_step), ("dt", self.dt)];
         for (name, value) in positive {
             if let Some(value) = value
-                && !(value > 0.0)
+                && (value.is_nan() || value <= 0.0)
             {
                 return Err(Error::invalid(
                     name,
@@ -173,7 +173,8 @@ impl Request {
                 ),
             ));
         }
-        if let Some(pair) = outputs.windows(2).find(|pair| !(direction * (pair[1] - pair[0]) > 0.0)) {
+        // All of them are numbers: they lie within the span.
+        if let Some(pair) = outputs.windows(2).find(|pair| direction * (pair[1] - pair[0]) <= 0.0) {
             return Err(Error::invalid(
                 "t_eval",
                 format!(
@@ -233,7 +234,7 @@ impl Request {
                 }
                 Ok(Box::new(EqualSteps::new(tableau, self.direction() * dt, system, state)))
             }
-            Scheme::Splitting(_) | Scheme::Multistep(_) => {
+            Scheme::Splitting(_) | Scheme::Boris(_) | Scheme::Multistep(_) => {
                 refused("method", format!("{} takes no equations y' = f(t, y)", method.name))
             }
         }

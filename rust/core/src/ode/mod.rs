@@ -7,6 +7,7 @@
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
+pub mod boris;
 pub mod embedded;
 pub mod equal_steps;
 pub mod events;
@@ -61,6 +62,8 @@ pub struct Method {
 pub enum Scheme {
     /// Alternating kicks and drifts.
     Splitting(Splitting),
+    /// Kicks and drifts, with velocities turned exactly in the middle of every kick.
+    Boris(Splitting),
     /// Explicit Runge–Kutta with a fixed step.
     RungeKutta(Tableau),
     /// Explicit Runge–Kutta with an error estimate and a continuous extension.
@@ -143,8 +146,9 @@ impl Method {
             Scheme::RungeKutta(_) | Scheme::Embedded(_) => true,
             // Between two kicks, and at the nodes of a multistep method, there is no velocity of the same time.
             Scheme::Splitting(_) | Scheme::Multistep(_) => {
-                matches!(form, Form::SecondOrder(_)) && !needs.velocity
+                matches!(form, Form::SecondOrder(_)) && !needs.velocities()
             }
+            Scheme::Boris(_) => matches!(form, Form::SecondOrder(_)) && !needs.velocity,
         }
     }
 }

@@ -125,3 +125,44 @@ impl<S: Controlled> Norm<S> {
         if self.together { largest.map(S::largest_lane) } else { largest }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The squared sizes of `h Σ weight·k` beside a state, for weights 1 and 10.
+    fn sizes(norm: &Norm<f64>, y: &[f64], next: &[f64], k: &[f64], h: f64) -> [f64; 2] {
+        let [state, next] = [y, next].map(|y| State::first_order(y.to_vec()));
+        let terms = [PairTerm { stage: 0, weights: [1.0, 10.0] }];
+        let change = Change { k, stride: k.len(), terms: &terms, factor: h };
+        norm.sizes(&state, &next, 0.0, &[change, change])
+    }
+
+    #[test]
+    fn the_largest_vector_counts_by_its_tolerances() {
+        let shape = Shape { rows: 2, components: 2 };
+        let mut norm = Norm::new(shape, Form::FirstOrder(4), 0.25, false);
+        norm.blocks[0].atol = 0.5;
+        norm.blocks[0].reference[0] = 1.0;
+        // Vectors (1+3, 4) and (1, 0): sizes 5 and 0, tolerances 0.5 + 0.25·5 and 0.5; errors |(3, 4)|/2 and |(0, 1)|/2.
+        let y = [4.0, 1.0, 4.0, 0.0];
+        let [first, second] = sizes(&norm, &y, &y, &[3.0, 0.0, 4.0, 1.0], 0.5);
+        // Roots are rough, to four digits.
+        assert!((first - (2.5_f64 / 1.75).powi(2)).abs() < 1e-3, "{first}");
+        assert!((second - (25.0_f64 / 1.75).powi(2)).abs() < 1e-1, "{second}");
+    }
+
+    #[test]
+    fn the_root_mean_square_counts_each_number_by_its_own_tolerances() {
+        let mean = RootMeanSquare { atol: vec![0.5, 0.0, 0.0], rtol: vec![0.0, 0.25, 0.0] };
+        let norm = Norm::root_mean_square(mean);
+        let (y, next) = ([1.0, -2.0, 0.0], [7.0, -8.0, 0.0]);
+        // Errors 1, 1 and none, tolerances 0.5, 0.25·8 and none.
+        let [first, second] = sizes(&norm, &y, &next, &[2.0, 2.0, 0.0], 0.5);
+        assert!((first - (4.0 + 0.25) / 3.0).abs() < 1e-15, "{first}");
+        assert!((second - 100.0 * (4.0 + 0.25) / 3.0).abs() < 1e-12, "{second}");
+        // An error without a tolerance is infinite, and so is one that is no number.
+        assert!(sizes(&norm, &y, &next, &[0.0, 0.0, 1.0], 0.5)[0] >= 1e299);
+        assert!(sizes(&norm, &y, &next, &[f64::NAN, 0.0, 0.0], 0.5)[0] >= 1e299);
+    }
+}

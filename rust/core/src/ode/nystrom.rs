@@ -85,3 +85,33 @@ pub fn pair_terms<S: Element>(rows: [&[DoubleDouble]; 2]) -> Vec<PairTerm<S>> {
         .map(|(stage, weights)| PairTerm { stage, weights: weights.map(S::from_double_double) })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ode::{Embedded, Scheme};
+    use crate::registry::METHODS;
+
+    #[test]
+    fn weights_of_a_step_sum_to_one_and_to_a_half() {
+        for method in METHODS {
+            let (Scheme::RungeKutta(tableau) | Scheme::Embedded(Embedded { tableau, .. })) = &method.scheme
+            else {
+                continue;
+            };
+            let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
+            let end = Row::<f64>::end(tableau.b, &a);
+            let sum = |terms: &[Term<f64>]| {
+                terms.iter().fold(DoubleDouble::zero(), |sum, term| sum + DoubleDouble::from(term.weight))
+            };
+            // What the rounding of all weights leaves out is in the smallest: to half its last place, which is less than
+            // the half of that of 1, 2^-54, that a single rounded weight may leave.
+            for (terms, exact) in [(&end.velocity, 1.0), (&end.position, 0.5)] {
+                let smallest = terms.iter().map(|term| term.weight.abs()).fold(f64::INFINITY, f64::min);
+                let slack = smallest * f64::EPSILON / 2.0;
+                let missed = (sum(terms) - DoubleDouble::from(exact)).to_f64().abs();
+                assert!(missed <= slack, "{}: {missed:e} for {slack:e}", method.name);
+            }
+        }
+    }
+}

@@ -77,7 +77,7 @@ impl Subject {
     fn new(method: &Method, trees: &[Tree]) -> Self {
         let (step, dense) = (method.order as usize, method.dense_order as usize);
         match &method.scheme {
-            Scheme::Splitting(table) => Self::Splitting(table.into(), step),
+            Scheme::Splitting(table) | Scheme::Boris(table) => Self::Splitting(table.into(), step),
             Scheme::RungeKutta(table) => {
                 Self::RungeKutta(table.into(), Orders { step, dense, estimates: vec![] })
             }

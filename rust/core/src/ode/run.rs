@@ -155,7 +155,7 @@ fn steps(
             if outcome.accepted {
                 break outcome;
             }
-            if !(clock.h.abs() >= smallest) {
+            if clock.h.is_nan() || clock.h.abs() < smallest {
                 return Ok(Ending::StepTooSmall);
             }
         };

@@ -34,11 +34,12 @@ impl<S: Element> Stages<S> {
         let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
         let form = system.form();
         let len = form.evaluated();
+        let of_coordinates = coupling(form, &a);
         Self {
             form,
             needs: system.needs(),
-            rows: a.iter().zip(tableau.c).map(|(row, &c)| Row::new(row, c, &a)).collect(),
-            end: Row::end(tableau.b, &a),
+            rows: a.iter().zip(tableau.c).map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
+            end: Row::end(tableau.b, of_coordinates),
             k: vec![S::zero(); (tableau.b.len() + extra) * len],
             position: vec![S::zero(); len],
             velocity: vec![S::zero(); len],
@@ -108,7 +109,7 @@ impl<S: Element> Stages<S> {
             slope,
             stages: stages(&row.position),
         });
-        let velocity = if self.needs.velocity {
+        let velocity = if self.needs.velocities() {
             S::pass(Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) });
             &self.velocity
         } else {
@@ -154,6 +155,14 @@ impl<S: Element> Stages<S> {
         let slope = (state.v(), &row.fraction);
         S::pass(CompensatedPositions { out: q, q: state.position(), slope, stages: stages(&row.position) });
         S::pass(CompensatedRates { out: v, y: state.velocity(), stages: stages(&row.velocity) });
+    }
+}
+
+/// The rows that Nyström weights are made of: a system of the first order has none, and no time is spent on them.
+pub(super) fn coupling(form: Form, a: &[Vec<DoubleDouble>]) -> &[Vec<DoubleDouble>] {
+    match form {
+        Form::FirstOrder(_) => &[],
+        Form::SecondOrder(_) => a,
     }
 }
 

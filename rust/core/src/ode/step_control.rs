@@ -88,6 +88,13 @@ impl<S: Real> Clock<S> {
         self.rejected = self.rejected.and(lanes.not());
     }
 
+    /// Counts time anew in the lanes of the mask, up to `end`; the next step stays what it is.
+    pub fn recount(&mut self, lanes: S::Mask, end: S) {
+        self.elapsed = S::select(lanes, S::zero(), self.elapsed);
+        self.error = S::select(lanes, S::zero(), self.error);
+        self.end = S::select(lanes, end, self.end);
+    }
+
     /// The next step of the running lanes, 0 in the others, and whether it leads to the end.
     #[inline(always)]
     fn next_step(&self, running: S::Mask) -> (S, S::Mask) {
@@ -248,6 +255,33 @@ mod tests {
         assert_eq!(clock.h, SHRINK);
         assert!(clock.settle(true, 0.0, RULE).accepted);
         assert_eq!(clock.h, SHRINK * GROW);
+    }
+
+    #[test]
+    fn the_step_goes_with_the_root_that_the_estimate_has() {
+        for exponent in 1..=20 {
+            let rule = Rule::new(exponent, f64::INFINITY);
+            for power in -12..=12 {
+                let error = 10f64.powi(power);
+                let exact = error.powf(1.0 / f64::from(exponent));
+                let found = root(error * error, &rule);
+                // The power is known to 1.2e-4: (1e12²)^0.00012 = 1.0067.
+                assert!((found / exact - 1.0).abs() < 7e-3, "{exponent}: {found} for {exact}");
+            }
+        }
+    }
+
+    #[test]
+    fn no_step_is_longer_than_the_longest() {
+        for sign in [1.0, -1.0] {
+            let rule = Rule { max_step: 1.5, ..*RULE };
+            let mut clock = Clock::new(100.0 * sign);
+            clock.h = sign;
+            for _ in 0..5 {
+                assert!(clock.settle(true, 1e-20, &rule).accepted);
+                assert_eq!(clock.h, 1.5 * sign);
+            }
+        }
     }
 
     #[test]

@@ -3,6 +3,7 @@
 //! The one idea: the run knows nodes and never what happens between them, so a method may take many steps in one call
 //! and keep its state to itself until somebody reads it.
 
+use super::boris::BorisStep;
 use super::multistep::MultistepStep;
 use super::runge_kutta::RungeKuttaStep;
 use super::splitting::SplittingStep;
@@ -84,6 +85,7 @@ pub fn stepper<S: Element>(
         return Ok(special);
     }
     Ok(match &method.scheme {
+        Scheme::Boris(table) => Box::new(BorisStep::new(table, h, system)),
         Scheme::Splitting(table) => Box::new(SplittingStep::new(table, h, system)),
         Scheme::RungeKutta(tableau) => Box::new(RungeKuttaStep::new(tableau, h, system, state)),
         Scheme::Multistep(table) => Box::new(MultistepStep::new(table, h, system, state)),

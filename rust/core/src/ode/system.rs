@@ -7,7 +7,7 @@ use super::Method;
 use super::state::State;
 use super::stepper::Stepper;
 use crate::error::{Error, Result};
-use crate::numerics::element::Element;
+use crate::numerics::element::{Element, PairMut};
 use crate::parallel::Ticker;
 
 /// The form of a system's equations.
@@ -45,15 +45,26 @@ impl Form {
 pub struct Needs {
     /// The time.
     pub time: bool,
-    /// The velocities.
+    /// The velocities, for anything but a rotation.
     pub velocity: bool,
+    /// The velocities, to turn them about a fixed axis at a fixed rate: then it can do so exactly ([`System::rotate`]).
+    pub rotation: bool,
 }
 
 impl Needs {
     /// What either looks at.
     #[must_use]
     pub const fn and(self, other: Self) -> Self {
-        Self { time: self.time | other.time, velocity: self.velocity | other.velocity }
+        Self {
+            time: self.time | other.time,
+            velocity: self.velocity | other.velocity,
+            rotation: self.rotation | other.rotation,
+        }
+    }
+
+    /// Whether velocities have to be there.
+    pub const fn velocities(self) -> bool {
+        self.velocity | self.rotation
     }
 }
 
@@ -65,7 +76,7 @@ pub trait System<S: Element>: Send {
 
     /// What its evaluation looks at.
     fn needs(&self) -> Needs {
-        Needs { time: true, velocity: true }
+        Needs { time: true, velocity: true, rotation: false }
     }
 
     /// Evaluations so far.
@@ -92,6 +103,19 @@ pub trait System<S: Element>: Send {
     fn acceleration(&mut self, t: S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         let _ = (t, q, v, a, ticker);
         Err(Error::Internal("the system has no accelerations".to_owned()))
+    }
+
+    /// As [`acceleration`](Self::acceleration), without what rotates velocities.
+    ///
+    /// # Errors
+    /// As [`rate`](Self::rate).
+    fn kick(&mut self, t: S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+        self.acceleration(t, q, &[], a, ticker)
+    }
+
+    /// Turns velocities exactly as what rotates them does in the time `h`.
+    fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
+        let _ = (h, v);
     }
 
     /// Whether an evaluation takes so long that it ticks, and so may be interrupted in its middle. Whoever changes a

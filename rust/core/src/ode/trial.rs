@@ -76,8 +76,8 @@ pub trait Trial<S: Controlled>: Send {
     /// The state at the fraction `theta` of the step, lane by lane; needs [`dense`](Self::dense).
     fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>);
 
-    /// What the continuous extension of a system of the first order is made of, once [`dense`](Self::dense) has readied
-    /// it: a block of numbers for each of the [`terms`](Self::terms) `f` in
+    /// What the continuous extension is made of, once [`dense`](Self::dense) has readied it: a block of numbers (of a
+    /// system of the second order: of the coordinates) for each of the [`terms`](Self::terms) `f` in
     /// `y(t + θh) = y + θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`.
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>);
 

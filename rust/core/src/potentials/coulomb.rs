@@ -19,6 +19,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     notes: "",
     source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.7",
     example: ">>> vv.potentials.Coulomb(k=2.0).value([1.0, 4.0])\narray([2. , 0.5])",
+    at_rest: "",
+    one_way: "",
     parameters: &[Parameter::number(
         "k",
         [3, 1, -2],

@@ -6,7 +6,7 @@
 use super::Formula;
 use crate::numerics::element::Shape;
 use crate::numerics::elementary::Exponential;
-use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::tiered;
 
 /// Bodies around a fixed point.
@@ -50,4 +50,148 @@ fn around<V: Vector8 + Exponential, P: Formula>(
 
 tiered! {
     pub(super) fn around_tier[P: Formula][P](potential: &P, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) = around;
+}
+
+/// Bodies of one system in rows, eight to a row, or a system to each lane.
+#[derive(Debug)]
+pub struct Pairs {
+    /// How their coordinates lie.
+    pub shape: Shape,
+    /// Systems one after another in the rows, if lanes are systems.
+    pub blocks: usize,
+    /// Bodies of a system.
+    pub bodies: usize,
+}
+
+/// Bodies of a row that meet a block of eight together, so that one's operations fill another's waits.
+const GROUP: usize = 4;
+
+/// How much of `d` is the force along it, for distances squared.
+#[inline(always)]
+fn pull<V: Vector8 + Exponential, P: Formula>(potential: &P, d: [V; 3]) -> V {
+    let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
+    potential.over_distance(r2)
+}
+
+#[inline(always)]
+fn between_systems<V: Vector8 + Exponential, P: Formula>(
+    potential: &P,
+    pairs: &Pairs,
+    q: &[Lanes],
+    force: &mut [Lanes],
+) {
+    let Shape { rows, components } = pairs.shape;
+    let (q, force) = (V::view(q), V::view_mut(force));
+    for block in 0..pairs.blocks {
+        let start = block * pairs.bodies;
+        for i in start..start + pairs.bodies {
+            for j in i + 1..start + pairs.bodies {
+                let mut d = [V::zero(); 3];
+                for c in 0..components {
+                    d[c] = q[c * rows + j] - q[c * rows + i];
+                }
+                let w = pull(potential, d);
+                for c in 0..components {
+                    let (from, to) = (c * rows + i, c * rows + j);
+                    force[from] = w.multiply_subtract_from(d[c], force[from]);
+                    force[to] = w.multiply_add(d[c], force[to]);
+                }
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn between_few<V: Vector8 + Exponential, P: Formula>(
+    potential: &P,
+    pairs: &Pairs,
+    q: &[Lanes],
+    force: &mut [Lanes],
+) {
+    let Shape { rows, components } = pairs.shape;
+    let numbers = as_numbers(q);
+    for j in 0..pairs.bodies {
+        let others = Bits(((1_u32 << pairs.bodies) - 1) as u8 & !(1 << j));
+        let mut d = [V::zero(); 3];
+        for c in 0..components {
+            d[c] = V::splat(numbers[c * rows * WIDTH + j]) - V::load(q[c * rows]);
+        }
+        let w = pull(potential, d);
+        for c in 0..components {
+            let before = V::load(force[c * rows]);
+            force[c * rows] = V::select(others, w.multiply_subtract_from(d[c], before), before).store();
+        }
+    }
+}
+
+/// The bodies of a row against the blocks of eight from it on; `force` begins at the row `from`.
+#[inline(always)]
+fn between_rows<V: Vector8 + Exponential, P: Formula>(
+    potential: &P,
+    pairs: &Pairs,
+    q: &[Lanes],
+    force: &mut [Lanes],
+    place: (usize, usize),
+) {
+    let ((row, from), Shape { rows, components }) = (place, pairs.shape);
+    let numbers = as_numbers(q);
+    let local = rows - from;
+    let last = Bits(0xff_u8 >> ((WIDTH - pairs.bodies % WIDTH) % WIDTH));
+    for group in 0..WIDTH / GROUP {
+        let first = group * GROUP;
+        let mut held = [[V::zero(); 3]; GROUP];
+        let mut sum = [[V::zero(); 3]; GROUP];
+        for i in 0..GROUP {
+            for c in 0..components {
+                held[i][c] = V::splat(numbers[(c * rows + row) * WIDTH + first + i]);
+            }
+        }
+        for block in row..rows {
+            let mut d = [[V::zero(); 3]; GROUP];
+            let mut w = [V::zero(); GROUP];
+            for i in 0..GROUP {
+                for c in 0..components {
+                    d[i][c] = V::load(q[c * rows + block]) - held[i][c];
+                }
+                w[i] = pull(potential, d[i]);
+            }
+            if block == row || block + 1 == rows {
+                // Not with itself or one before, nor with lanes that have no body, whatever the potential is there.
+                for i in 0..GROUP {
+                    let body = row * WIDTH + first + i;
+                    let mut with = if block + 1 == rows { last } else { Bits(0xff) };
+                    if block == row {
+                        with = Bits(with.0 & (0xfe_u32 << (first + i)) as u8);
+                    }
+                    if body >= pairs.bodies {
+                        with = Bits(0);
+                    }
+                    w[i] = V::select(with, w[i], V::zero());
+                    for c in 0..components {
+                        d[i][c] = V::select(with, d[i][c], V::zero());
+                    }
+                }
+            }
+            for c in 0..components {
+                let mut on = V::load(force[c * local + block - from]);
+                for i in 0..GROUP {
+                    sum[i][c] = w[i].multiply_add(d[i][c], sum[i][c]);
+                    on = w[i].multiply_add(d[i][c], on);
+                }
+                force[c * local + block - from] = on.store();
+            }
+        }
+        for i in 0..GROUP {
+            for c in 0..components {
+                let at = (c * local + row - from) * WIDTH + first + i;
+                as_numbers_mut(force)[at] -= sum[i][c].store().horizontal_sum();
+            }
+        }
+    }
+}
+
+tiered! {
+    pub(super) fn between_systems_tier[P: Formula][P](potential: &P, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]) = between_systems;
+    pub(super) fn between_few_tier[P: Formula][P](potential: &P, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]) = between_few;
+    pub(super) fn between_rows_tier[P: Formula][P](potential: &P, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes], place: (usize, usize)) = between_rows;
 }

@@ -20,6 +20,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     notes: "",
     source: "J. E. Jones, Proc. R. Soc. A 106 (1924) 463",
     example: ">>> vv.potentials.LennardJones(epsilon=1.0, sigma=1.0).value([1.0, 2.0 ** (1 / 6)]).round(12) + 0.0\narray([ 0., -1.])",
+    at_rest: "",
+    one_way: "",
     parameters: &[
         Parameter::positive("epsilon", [2, 1, -2], "depth of the well, energy"),
         Parameter::positive("sigma", [1, 0, 0], "distance at which V = 0"),
@@ -54,6 +56,13 @@ impl Formula for LennardJones {
     fn force<S: Exponential>(&self, r: S) -> S {
         let sixth = self.sixth_power(r);
         S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) / r
+    }
+    #[inline(always)]
+    fn over_distance<S: Exponential>(&self, r2: S) -> S {
+        let inverse = S::one() / r2;
+        let ratio = S::splat(self.sigma * self.sigma) * inverse;
+        let sixth = ratio * ratio * ratio;
+        S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) * inverse
     }
     #[inline(always)]
     fn curvature<S: Exponential>(&self, r: S) -> S {

@@ -16,7 +16,7 @@ use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
 use crate::units::Units;
 use core::fmt::Debug;
-use kernels::{Around, around_tier};
+use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
 use parameters::{Declaration, Value};
 use std::sync::Arc;
 
@@ -38,6 +38,16 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn force<S: Exponential>(&self, r: S) -> S;
     /// d²V/dr².
     fn curvature<S: Exponential>(&self, r: S) -> S;
+    /// −dV/dr / r as a function of r²: what a pair needs, which may be less than a root and two divisions.
+    #[inline(always)]
+    fn over_distance<S: Exponential>(&self, r2: S) -> S {
+        let r = r2.sqrt();
+        if Self::SINGULAR {
+            return self.force(r) / r;
+        }
+        // Its limit in the middle, where 0/0 would be undefined.
+        S::select(r2.less_equal(S::zero()), -self.curvature(r), self.force(r) / r)
+    }
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64> {
         None
@@ -60,6 +70,12 @@ pub trait Potential: Debug + Send + Sync {
     fn inverse_distance_strength(&self) -> Option<f64>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
+    /// Adds the forces between the bodies of each lane's system, partners in order of index.
+    fn between_systems(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]);
+    /// As [`between_systems`](Self::between_systems), of up to eight bodies in one row.
+    fn between_few(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]);
+    /// Adds the forces between the bodies of a row and those after them, to forces that begin at another row.
+    fn between_rows(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes], place: (usize, usize));
 }
 
 /// A formula and the values it was made from.
@@ -103,6 +119,15 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);
+    }
+    fn between_systems(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]) {
+        between_systems_tier(&self.formula, pairs, q, force);
+    }
+    fn between_few(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]) {
+        between_few_tier(&self.formula, pairs, q, force);
+    }
+    fn between_rows(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes], place: (usize, usize)) {
+        between_rows_tier(&self.formula, pairs, q, force, place);
     }
 }
 

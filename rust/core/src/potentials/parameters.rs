@@ -240,6 +240,10 @@ pub struct Declaration<T: ?Sized + 'static> {
     pub source: &'static str,
     /// An example for its documentation, as typed into Python and as it answers.
     pub example: &'static str,
+    /// What of it is at rest, and would move in a boosted frame; or nothing.
+    pub at_rest: &'static str,
+    /// Why motion under it cannot be run backward; or nothing.
+    pub one_way: &'static str,
     /// Its parameters, in order.
     pub parameters: &'static [Parameter],
     /// Makes one from its parameters, already checked against the declaration.

@@ -20,6 +20,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     notes: "",
     source: "H. Yukawa, Proc. Phys.-Math. Soc. Japan 17 (1935) 48",
     example: ">>> vv.potentials.Yukawa(k=-1.0, length=2.0).rescaled(length=10.0)\nYukawa(k=-1000.0, length=20.0)",
+    at_rest: "",
+    one_way: "",
     parameters: &[
         Parameter::number(
             "k",

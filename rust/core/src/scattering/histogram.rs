@@ -5,7 +5,7 @@
 //! bisection on the computed function itself, and an event costs a table look-up and an integer
 //! comparison.
 
-use crate::numerics::philox::DRAW_BITS;
+use crate::numerics::philox::{DRAW_BITS, Draw};
 use crate::parallel::Ticker;
 use crate::words::number;
 use crate::{Error, Result};
@@ -157,13 +157,16 @@ impl Steps {
     pub fn counters(&self) -> Vec<[u64; BANKS]> {
         vec![[0; BANKS]; self.pieces()]
     }
-    /// Counts draws of 53 bits (further bits are not looked at) in counters from [`Steps::counters`].
+    /// Counts draws in counters from [`Steps::counters`].
+    ///
+    /// # Panics
+    /// For the counters of another histogram: a defect of the caller.
     #[inline]
-    pub fn count(&self, draws: &[u64], counters: &mut [[u64; BANKS]]) {
+    pub fn count(&self, draws: &[Draw], counters: &mut [[u64; BANKS]]) {
         assert!(counters.len() == self.pieces(), "counters of another histogram");
-        let mut one = |draw: u64, bank: usize| {
-            let draw = draw & (DRAWS - 1);
-            // SAFETY: the draw has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
+        let mut one = |draw: Draw, bank: usize| {
+            let draw = draw.number();
+            // SAFETY: a `Draw` has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
             // cell holds a piece; the last start, u64::MAX, exceeds every draw, so the search ends at
             // a piece; there are as many counters as pieces.
             unsafe {
@@ -233,7 +236,7 @@ mod tests {
 
     fn slot_of(steps: &Steps, bins: usize, draw: u64) -> usize {
         let mut counters = steps.counters();
-        steps.count(&[draw], &mut counters);
+        steps.count(&[Draw::of(draw << (64 - DRAW_BITS))], &mut counters);
         let counts = steps.collect(bins, &counters);
         let slots = [&[counts.underflow], counts.bins.as_slice(), &[counts.overflow]].concat();
         slots.iter().position(|count| *count == 1).unwrap()
@@ -266,14 +269,16 @@ mod tests {
         assert!(matches!(outcome, Err(Error::Interrupted)));
     }
 
-    /// Safe code may hand in any number; the bits of a draw decide, and memory stays whole.
+    /// Safe code can make no draw of more bits, and counters of another histogram are refused.
     #[test]
-    fn numbers_beyond_53_bits_are_counted_by_their_draw() {
+    fn nothing_is_counted_outside_the_counters() {
         let edges = Edges::uniform(2, 0.0, 1.0).unwrap();
         let steps = steps(&edges, None, |draw| draw as f64 / DRAWS as f64);
         let mut counters = steps.counters();
-        steps.count(&[u64::MAX, DRAWS, u64::MAX, u64::MAX - 1, 1 << 63], &mut counters);
-        assert_eq!(steps.collect(2, &counters).bins, [2, 3]);
+        steps.count(&[Draw::of(u64::MAX), Draw::of(0)], &mut counters);
+        assert_eq!((Draw::of(u64::MAX).number(), steps.collect(2, &counters).bins), (DRAWS - 1, vec![1, 1]));
+        let short = std::panic::catch_unwind(|| steps.count(&[Draw::of(0)], &mut steps.counters()[1..]));
+        assert!(short.is_err());
     }
 
     proptest! {

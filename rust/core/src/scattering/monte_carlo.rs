@@ -15,7 +15,7 @@ use super::histogram::{Counts, Edges, Steps};
 use super::kinematics::{Collision, HalfAngle};
 use super::reach::Limits;
 use super::rutherford::half_distance;
-use crate::numerics::philox::{DRAW_BITS, DRAWS, fill_draws, key};
+use crate::numerics::philox::{DRAW_BITS, DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::words::{number, unknown};
 use crate::{Error, Result};
@@ -306,7 +306,7 @@ fn count_events(
         let stop = events.end.min(event + EVENTS_PER_TICK);
         ticker.advance(stop - event);
         while event < stop {
-            let mut draws = [[0; DRAWS]; BATCH / DRAWS];
+            let mut draws = [[Draw::default(); DRAWS]; BATCH / DRAWS];
             fill_draws(key(seed), event >> 1, &mut draws);
             // A block serves two events: an odd beginning leaves out its first.
             let skipped = (event & 1) as usize;

@@ -1,176 +1,196 @@
-//! Scenes whose motion is known in closed form: any time costs the same, and nothing is stepped.
+//! Members whose motion is known: the rows of all of them, shared out over threads.
 //!
-//! Straight lines and parabolas are evaluated in double-double and rounded once. Kepler orbits come from
-//! [`KeplerOrbit`]: a few units in the last place times the conditioning of the problem.
+//! Each row is written as it is computed, so that an interrupted run keeps what it has. A row depends on nothing but
+//! its member and its time: where the parts are cut changes no bit.
 
 use super::Scene;
-use super::columns::{Entry, Writer};
-use super::plan::{Plan, Solution};
-use super::run::Reached;
-use crate::error::Result;
+use super::columns::{Entry, Missing, Writer};
+use super::plan::{Plan, member};
+use crate::closed_forms::{ExactState, Motion};
+use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
-use crate::nbody::kepler::KeplerOrbit;
-use crate::nbody::two_body::{ExactState, TwoBody};
 use crate::numerics::double_double::DoubleDouble;
-use crate::parallel::Ticker;
-use nalgebra::Vector3;
+use crate::parallel::{Ticker, for_chunks};
 
-/// The motion of one particle relative to another point.
-enum Path {
-    /// Uniform acceleration (which may be zero).
-    Parabola { position: [f64; 3], velocity: [f64; 3], acceleration: [f64; 3] },
-    /// A Kepler orbit about a point, seen from a moving base.
-    Orbit { orbit: Box<KeplerOrbit>, base: Box<Path> },
+/// States that one thread computes at a time, about.
+const STATES_PER_CHUNK: usize = 512;
+/// Rows for which preparing the motion once more does not count.
+const FEWEST_ROWS: usize = 16;
+
+/// Rows, of one member after another, that one thread computes at a time.
+pub(super) fn rows_per_chunk(particles: usize) -> usize {
+    (STATES_PER_CHUNK / particles.max(1)).max(FEWEST_ROWS)
 }
 
-impl Path {
-    fn line(position: [f64; 3], velocity: [f64; 3]) -> Self {
-        Self::Parabola { position, velocity, acceleration: [0.0; 3] }
-    }
+/// What became of a member.
+#[derive(Clone, Debug, Default)]
+pub struct Report {
+    /// Rows recorded.
+    pub rows: usize,
+    /// Whether the next one is beyond the range of numbers.
+    pub beyond: bool,
+    /// The states of the last row; empty if there is none.
+    pub states: Vec<[[f64; 3]; 2]>,
+}
 
-    /// Position and velocity after a time, unrounded where they can be.
-    fn state(&self, elapsed: DoubleDouble) -> ExactState {
-        match self {
-            Self::Parabola { position, velocity, acceleration } => {
-                let at = |c: usize| {
-                    let (x, v) = (DoubleDouble::from(position[c]), DoubleDouble::from(velocity[c]));
-                    let a = DoubleDouble::from(acceleration[c]);
-                    (x + elapsed * (v + a * elapsed.scale(0.5)), v + a * elapsed)
-                };
-                let states: [_; 3] = core::array::from_fn(at);
-                (states.map(|state| state.0), states.map(|state| state.1))
-            }
-            Self::Orbit { orbit, base } => {
-                let (mut position, mut velocity) = base.state(elapsed);
-                let (relative, rate) = orbit.state(elapsed.to_f64());
-                for c in 0..3 {
-                    position[c] += DoubleDouble::from(relative[c]);
-                    velocity[c] += DoubleDouble::from(rate[c]);
-                }
-                (position, velocity)
-            }
-        }
+impl Report {
+    /// What is not there of the member at this place.
+    pub fn missing(&self, copy: usize, scene: &Scene, times: usize) -> impl Iterator<Item = Missing> {
+        let from_time = self.rows;
+        let particles = if from_time < times { 0..scene.particles } else { 0..0 };
+        particles.map(move |particle| Missing { copy, from_time, particle })
     }
 }
 
-/// The motion of the particles of a copy.
-enum Motion {
-    /// Each on its own path.
-    Paths(Vec<Path>),
-    /// Two that attract each other.
-    Pair(Box<TwoBody>),
+/// Some rows of a member that follow each other.
+struct Segment {
+    copy: usize,
+    first: usize,
+    report: Report,
 }
 
-impl Motion {
-    fn states(&self, elapsed: DoubleDouble, states: &mut Vec<ExactState>) {
-        states.clear();
-        match self {
-            Self::Paths(paths) => states.extend(paths.iter().map(|path| path.state(elapsed))),
-            Self::Pair(pair) => states.extend(pair.unrounded(elapsed)),
-        }
-    }
-}
-
-fn orbit(mu: f64, from: ([f64; 3], [f64; 3]), to: ([f64; 3], [f64; 3])) -> Result<Box<KeplerOrbit>> {
-    let difference = |a: [f64; 3], b: [f64; 3]| Vector3::from_fn(|c, _| b[c] - a[c]);
-    Ok(Box::new(KeplerOrbit::new(mu, difference(from.0, to.0), difference(from.1, to.1))?))
-}
-
-fn motion(scene: &Scene, plan: &Plan, copy: usize) -> Result<Motion> {
-    let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
-    let state = |i: usize| (position[i], velocity[i]);
-    let gravity = plan.forces.iter().find_map(|force| force.as_newtonian());
-    let constant = gravity.map_or(0.0, |(constant, _)| constant);
-    let all = 0..scene.particles;
-    let paths: Result<Vec<Path>> = match &plan.solution {
-        Solution::TwoBody => {
-            let states = [0, 1].map(|i| (Vector3::from(position[i]), Vector3::from(velocity[i])));
-            return Ok(Motion::Pair(Box::new(TwoBody::new(constant, [mass[0], mass[1]], states)?)));
-        }
-        Solution::Uniform(g) => Ok(all
-            .map(|i| Path::Parabola { position: position[i], velocity: velocity[i], acceleration: *g })
-            .collect()),
-        Solution::OneMassive(center) => all
-            .map(|i| {
-                let base = Path::line(position[*center], velocity[*center]);
-                if i == *center {
-                    return Ok(base);
-                }
-                let orbit = orbit(constant * mass[*center], state(*center), state(i))?;
-                Ok(Path::Orbit { orbit, base: Box::new(base) })
-            })
-            .collect(),
-        Solution::FixedCenter { k, center } => all
-            .map(|i| {
-                let still = (*center, [0.0; 3]);
-                let orbit = orbit(-k / mass[i], still, state(i))?;
-                Ok(Path::Orbit { orbit, base: Box::new(Path::line(*center, [0.0; 3])) })
-            })
-            .collect(),
-        Solution::Free | Solution::Integration => {
-            Ok(all.map(|i| Path::line(position[i], velocity[i])).collect())
-        }
-    };
-    Ok(Motion::Paths(paths?))
-}
-
-/// Fills the columns from the closed form.
+/// Fills the columns; what became of each member.
 ///
 /// # Errors
-/// [`Error::Interrupted`](crate::Error::Interrupted), or what the closed form refuses.
+/// What a closed form refuses, by name. A caller who asks to stop is in the reports.
 pub fn run(
     scene: &Scene,
     plan: &Plan,
     times: &[f64],
     writer: &Writer<'_>,
     ticker: &mut Ticker<'_>,
-) -> Result<Reached> {
-    let mut bodies = PreciseBodies::default();
-    let mut reached = Reached { position: Vec::new(), velocity: Vec::new() };
-    for copy in 0..scene.copies {
-        let motion = motion(scene, plan, copy)?;
-        let (mut states, mut last) = (Vec::new(), Vec::new());
-        for (index, &t) in times.iter().enumerate() {
-            motion.states(DoubleDouble::sum(t, -scene.t0), &mut states);
-            last.clear();
-            // SAFETY: no other thread writes here.
-            let output = unsafe { writer.output(copy, index) };
-            for (particle, state) in states.iter().enumerate() {
-                let entry = entry(scene, copy, particle, *state, t);
-                output.write(particle, &entry);
-                last.push(entry);
-            }
-            if writer.derives() {
-                bodies.clear(last.len());
-                for (particle, entry) in last.iter().enumerate() {
-                    let position = [entry.position, entry.position_rest];
-                    let velocity = [entry.velocity, entry.velocity_rest];
-                    bodies.set(particle, scene.masses(copy)[particle], position, velocity);
-                }
-                bodies.settle();
-                output.derive(&bodies, ticker)?;
-            }
-            ticker.tick()?;
+) -> Result<Vec<Report>> {
+    let rows = scene.copies * times.len();
+    let together = rows_per_chunk(scene.particles);
+    ticker.control().add_total(rows as u64);
+    let parts = for_chunks(plan.threads.0, rows.div_ceil(together), ticker, |chunk, ticker| {
+        let (mut row, end) = (chunk * together, rows.min((chunk + 1) * together));
+        let mut worker = Worker {
+            scene,
+            plan,
+            times,
+            writer,
+            bodies: PreciseBodies::default(),
+            exact: Vec::new(),
+            entries: Vec::new(),
+            last: Vec::new(),
+        };
+        let mut segments = Vec::new();
+        while row < end && ticker.tick().is_ok() {
+            let (copy, first) = (row / times.len(), row % times.len());
+            let last = times.len().min(first + (end - row));
+            segments.push(Segment { copy, first, report: worker.fill(copy, first..last, ticker)? });
+            ticker.advance((last - first) as u64);
+            row += last - first;
         }
-        reached.position.extend(last.iter().map(|entry| entry.position));
-        reached.velocity.extend(last.iter().map(|entry| entry.velocity));
+        Ok(segments)
+    })?;
+    let mut reports = vec![Report::default(); scene.copies];
+    for Segment { copy, first, report } in parts.into_iter().flatten() {
+        let whole = &mut reports[copy];
+        // What comes after a gap is not there.
+        if whole.rows == first && !whole.beyond && (report.rows > 0 || report.beyond) {
+            whole.beyond = report.beyond;
+            if report.rows > 0 {
+                *whole = Report { rows: first + report.rows, ..report };
+            }
+        }
     }
-    Ok(reached)
+    Ok(reports)
 }
 
-fn entry(scene: &Scene, copy: usize, particle: usize, (position, velocity): ExactState, t: f64) -> Entry {
-    if t == scene.t0 {
-        // The state at the start is the one that was given, to the bit.
-        return Entry {
-            position: scene.positions(copy)[particle],
-            velocity: scene.velocities(copy)[particle],
-            ..Entry::default()
-        };
+/// A thread's.
+struct Worker<'a> {
+    scene: &'a Scene,
+    plan: &'a Plan,
+    times: &'a [f64],
+    writer: &'a Writer<'a>,
+    bodies: PreciseBodies,
+    exact: Vec<ExactState>,
+    entries: Vec<Entry>,
+    last: Vec<Entry>,
+}
+
+impl Worker<'_> {
+    /// Computes some rows of a member, until one is beyond the range or the caller asks to stop.
+    fn fill(
+        &mut self,
+        copy: usize,
+        rows: core::ops::Range<usize>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Report> {
+        let mut report = Report::default();
+        let told = self.try_fill(copy, rows, &mut report, ticker);
+        if report.rows > 0 {
+            report.states = self.last.iter().map(|entry| [entry.position, entry.velocity]).collect();
+        }
+        match told {
+            Err(Error::Interrupted) | Ok(()) => Ok(report),
+            Err(other) => Err(other),
+        }
     }
-    Entry {
-        position: position.map(DoubleDouble::high),
-        velocity: velocity.map(DoubleDouble::high),
-        position_rest: position.map(DoubleDouble::low),
-        velocity_rest: velocity.map(DoubleDouble::low),
+
+    fn try_fill(
+        &mut self,
+        copy: usize,
+        rows: core::ops::Range<usize>,
+        report: &mut Report,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let member = member(self.scene, copy);
+        let form = self.plan.solutions.of_member(copy);
+        let Some(form) = form else { return Err(Error::Internal("a member has no closed form".to_owned())) };
+        let motion = (form.motion)(&member, ticker)?;
+        for index in rows {
+            self.state(&*motion, copy, self.times[index], ticker)?;
+            let finite = |x: &[f64; 3]| x.iter().all(|x| x.is_finite());
+            if !self.entries.iter().all(|entry| finite(&entry.position) && finite(&entry.velocity)) {
+                report.beyond = true;
+                return Ok(());
+            }
+            // SAFETY: the rows of different chunks are different, and one thread has this one.
+            let output = unsafe { self.writer.output(copy, index) };
+            for (particle, entry) in self.entries.iter().enumerate() {
+                output.write(particle, entry);
+            }
+            if self.writer.derives() {
+                self.bodies.clear(self.entries.len());
+                for (particle, entry) in self.entries.iter().enumerate() {
+                    let position = [entry.position, entry.position_rest];
+                    let velocity = [entry.velocity, entry.velocity_rest];
+                    self.bodies.set(particle, member.mass[particle], position, velocity);
+                }
+                self.bodies.settle();
+                output.derive(&self.bodies, ticker)?;
+            }
+            core::mem::swap(&mut self.entries, &mut self.last);
+            report.rows += 1;
+            ticker.tick()?;
+        }
+        Ok(())
+    }
+
+    /// The entries at a time.
+    fn state(&mut self, motion: &dyn Motion, copy: usize, t: f64, ticker: &mut Ticker<'_>) -> Result<()> {
+        let Self { scene, exact, entries, .. } = self;
+        entries.clear();
+        if t == scene.t0 {
+            // The state at the start is the one that was given, to the bit.
+            let given = scene.positions(copy).iter().zip(scene.velocities(copy));
+            entries.extend(given.map(|(&position, &velocity)| Entry {
+                position,
+                velocity,
+                ..Entry::default()
+            }));
+            return Ok(());
+        }
+        motion.states(DoubleDouble::sum(t, -scene.t0), exact, ticker)?;
+        entries.extend(exact.iter().map(|(position, velocity)| Entry {
+            position: position.map(DoubleDouble::high),
+            velocity: velocity.map(DoubleDouble::high),
+            position_rest: position.map(DoubleDouble::low),
+            velocity_rest: velocity.map(DoubleDouble::low),
+        }));
+        Ok(())
     }
 }

@@ -122,7 +122,7 @@ impl View<'_> {
     }
 
     /// Distance vector from a point at rest, and velocity.
-    fn from_point(&self, i: usize, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+    fn about_point(&self, i: usize, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
         let state = self.state(i, &self.origin.at(self.elapsed));
         (
             core::array::from_fn(|c| (state[0][c].0 - point[c]) + state[0][c].1),
@@ -199,7 +199,7 @@ impl Event {
                 let distance = distance.map(|x| x / length);
                 dot(distance, distance) - 1.0
             }
-            What::Plane { point, normal, .. } => dot(*normal, view.from_point(places[0], *point).0),
+            What::Plane { point, normal, .. } => dot(*normal, view.about_point(places[0], *point).0),
             What::Apsis { about, .. } => {
                 let (distance, velocity) = Self::orbit(about, view, places);
                 dot(distance, velocity)
@@ -226,7 +226,7 @@ impl Event {
         8.0 * f64::EPSILON
             * match &self.what {
                 What::Distance { .. } => 1.0,
-                What::Plane { point, .. } => size(*point) + size(view.from_point(places[0], *point).0),
+                What::Plane { point, .. } => size(*point) + size(view.about_point(places[0], *point).0),
                 What::Apsis { about, .. } => {
                     let (distance, velocity) = Self::orbit(about, view, places);
                     size(distance) * size(velocity)
@@ -239,7 +239,7 @@ impl Event {
     fn orbit(about: &Focus, view: &View<'_>, places: &[usize]) -> ([f64; 3], [f64; 3]) {
         match about {
             Focus::Body(_) => view.relative(places[0], places[1]),
-            Focus::Point(point) => view.from_point(places[0], *point),
+            Focus::Point(point) => view.about_point(places[0], *point),
         }
     }
 
@@ -251,7 +251,7 @@ impl Event {
                 2.0 * dot(distance.map(|x| x / length), velocity.map(|x| x / length))
             })),
             What::Plane { point, normal, .. } => {
-                Some(ends.map(|view| dot(*normal, view.from_point(places[0], *point).1)))
+                Some(ends.map(|view| dot(*normal, view.about_point(places[0], *point).1)))
             }
             What::Apsis { about, .. } => {
                 let [(x0, v0), (x1, v1)] = ends.map(|view| Self::orbit(about, view, places));

@@ -19,6 +19,9 @@ use std::sync::Arc;
 /// and what is up to 2^32 larger or smaller than its unit is far from overflowing.
 const COARSE: i32 = 64;
 
+/// The largest multiple of which 2 to the power of it is a number.
+const LARGEST: i32 = 1023 / COARSE * COARSE;
+
 /// The nearest multiple.
 fn coarse(exponent: i32) -> i32 {
     (exponent + COARSE / 2).div_euclid(COARSE) * COARSE
@@ -43,8 +46,8 @@ impl Units {
         let given =
             scene.forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
         let time = given.unwrap_or(if speed > 0.0 { length - exponent(speed) } else { 0 });
-        let length = coarse(length);
-        // One factor then takes a length or a velocity back to the scene's units.
+        // One factor then takes a length or a velocity back to the scene's units: it must be a number, which 2^1024 is not.
+        let length = coarse(length).clamp(-LARGEST, LARGEST);
         Self { length, time: coarse(time).clamp(length - 1000, length + 1000), mass: coarse(mass) }
     }
 }

@@ -83,7 +83,22 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+pub fn run_units(job: &Job<'_>, units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+    if !job.plan.guided {
+        return run_apart(job, units, ticker);
+    }
+    // Bodies that are looked at together record nothing, and nobody follows them.
+    let (guided, watched): (Vec<Unit>, Vec<Unit>) =
+        units.into_iter().partition(|unit| !unit.recorded.is_empty());
+    let mut reports = run_guided(job, guided, ticker)?;
+    if !watched.is_empty() {
+        reports.extend(run_apart(job, watched, ticker)?);
+    }
+    Ok(reports)
+}
+
+/// As [`run_units`], of units that nobody follows.
+fn run_apart(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     // Units share lanes with units of the same make-up; massive bodies alone differ from those with
     // massless ones beside them.
     units.sort_by_key(|unit| unit.make_up);
@@ -99,8 +114,44 @@ pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -
     }
     ticker.control().add_total(job.total_progress(&runs));
     let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
-        Scheme::Embedded(_) => adaptive::run(job, runs[chunk], inside, ticker),
+        Scheme::Embedded(_) => adaptive::run(job, runs[chunk], &[], inside, ticker),
         _ => fixed::run(job, runs[chunk], inside, ticker),
     })?;
     Ok(reports.into_iter().flatten().collect())
+}
+
+/// As [`run_units`], of massive bodies and massless ones that follow them. Whatever the pieces, massless bodies have the
+/// same bits: each depends on the massive ones and itself.
+fn run_guided(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+    let (over, inside) = job.plan.threads;
+    ticker.control().add_total(units.len() as u64 * adaptive::PROGRESS_PER_UNIT);
+    units.sort_by_key(|unit| (unit.copy, unit.make_up));
+    let (mut guides, mut followers): (Vec<Unit>, Vec<&[Unit]>) = (Vec::new(), Vec::new());
+    for of_copy in units.chunk_by(|a, b| a.copy == b.copy) {
+        let (first, active) = (&of_copy[0], job.plan.active.len());
+        let massless = &of_copy[usize::from(!first.follows)..];
+        let guide = if first.follows { job.plan.guide(first.copy, false) } else { first.clone() };
+        let pieces = job.plan.pieces(massless.len(), over);
+        // An event ends it for all pieces at the same step: what they cost is the same on any number of threads.
+        let once_more = Unit { recorded: active..active, ..guide.clone() };
+        guides.push(guide);
+        // Whole lanes for all but the last piece.
+        let mut pieces = massless.chunks(massless.len().div_ceil(pieces).next_multiple_of(WIDTH).max(WIDTH));
+        followers.push(pieces.next().unwrap_or_default());
+        for piece in pieces {
+            guides.push(once_more.clone());
+            followers.push(piece);
+        }
+    }
+    let lanes = job.plan.layout.units();
+    let per_chunk = guides.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
+    let chunks = guides.len().div_ceil(per_chunk);
+    let reports = for_chunks(over, chunks, ticker, |chunk, ticker| {
+        let own = chunk * per_chunk..((chunk + 1) * per_chunk).min(guides.len());
+        adaptive::run(job, &guides[own.clone()], &followers[own], inside, ticker)
+    })?;
+    let mut reports: Vec<Report> = reports.into_iter().flatten().collect();
+    // The first that did not finish tells how a copy ended: the same on any number of threads.
+    reports.sort_by_key(|report| (report.unit.copy, report.unit.make_up, report.unit.bodies[0]));
+    Ok(reports)
 }

@@ -3,52 +3,41 @@
 mod coupling;
 mod events;
 mod explain;
+mod solutions;
 
 pub use coupling::Groups;
 pub use explain::Row;
+pub use solutions::{Solutions, member};
 
 use super::Scene;
+use super::closed_form::rows_per_chunk;
 use super::events::Event;
 use super::frame::{Origin, Units, closed};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
 use crate::ode::Method;
+use crate::ode::system::{Form, Needs};
+use crate::registry::METHODS;
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
 const PAIRS_FOR_THREADS: u64 = 60_000;
 /// From this many units times pairs on, units are shared out over threads: fewer are done before a thread wakes.
 const WORK_FOR_THREADS: u64 = 64;
-/// Massless bodies that share the steps of one adaptive unit.
+/// From this many states of bodies on, closed forms are shared out over threads.
+const STATES_FOR_THREADS: usize = 4_096;
+/// Massless bodies in one unit with the massive ones, where they cannot follow them.
 const PASSIVE_PER_UNIT: usize = 64;
-
-/// How the motion is found.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Solution {
-    /// No force acts: straight lines.
-    Free,
-    /// The same acceleration on everything: parabolas.
-    Uniform([f64; 3]),
-    /// Two bodies, at least one of them massive.
-    TwoBody,
-    /// One massive body, and massless ones that orbit it.
-    OneMassive(usize),
-    /// An inverse-distance potential `k/r` of a fixed centre.
-    FixedCenter {
-        /// Its strength.
-        k: f64,
-        /// Its place.
-        center: [f64; 3],
-    },
-    /// Step by step.
-    Integration,
-}
+/// So many massless bodies take long enough for the massive ones to be integrated again for them, on another thread.
+const FOLLOWERS_WORTH_A_GUIDE: usize = 128;
+/// The most massless bodies that follow at a time: their steps stay in a cache.
+const FOLLOWERS_MAX: usize = 1024;
 
 /// What will be done.
 #[derive(Clone, Debug)]
@@ -59,8 +48,8 @@ pub struct Plan {
     pub dt: Option<f64>,
     /// +1 forward, -1 backward.
     pub direction: f64,
-    /// How the motion is found.
-    pub solution: Solution,
+    /// How the motion of each ensemble member is found.
+    pub solutions: Solutions,
     /// The forces that do something, in order.
     pub forces: Vec<Arc<dyn ForceTerm>>,
     /// What they make depend on each other.
@@ -83,6 +72,8 @@ pub struct Plan {
     pub relative: bool,
     /// How units lie in lanes.
     pub layout: Layout,
+    /// Whether massless bodies follow the steps of the massive ones, each with steps of its own.
+    pub guided: bool,
     /// Threads over units, and inside one force evaluation.
     pub threads: (usize, usize),
     /// Output times between the start and the end.
@@ -91,6 +82,8 @@ pub struct Plan {
     pub events: Arc<[Event]>,
     /// Columns to be computed.
     pub record: Vec<String>,
+    /// The time of the scene.
+    pub t0: f64,
     copies: usize,
     particles: usize,
 }
@@ -105,6 +98,7 @@ impl Plan {
         let Checked { method, automatic, direction, dt } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
+        check_method(method, &forces)?;
         let groups = Groups::of(scene.particles, &forces);
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
@@ -114,13 +108,12 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solution = if automatic && request.events.is_empty() {
-            closed_form(scene, &forces, &active)
-        } else {
-            Solution::Integration
-        };
+        // Events are looked for on steps.
+        let closed_forms = automatic && request.events.is_empty();
+        let solutions =
+            if closed_forms { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
-        let closed = solution == Solution::Integration && closed(&forces);
+        let closed = solutions.integrates() && closed(&forces);
         let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
         let origins: Vec<Origin> = (0..scene.copies).map(origin).collect();
         // What accelerates all alike moves the origin, and nothing relative to it.
@@ -142,7 +135,7 @@ impl Plan {
             method,
             dt,
             direction,
-            solution,
+            solutions,
             planar,
             alike,
             span: (request.times[request.times.len() - 1] - scene.t0).abs(),
@@ -154,24 +147,35 @@ impl Plan {
             origins,
             relative,
             layout,
+            guided: false,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
             events: request.events.clone().into(),
             record: request.record.clone(),
+            t0: scene.t0,
             copies: scene.copies,
             particles: scene.particles,
         };
-        plan.threads = plan.share_threads(request.threads);
+        plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
+        plan.threads = plan.share_threads(request);
         Ok(plan)
     }
 
-    fn share_threads(&self, threads: usize) -> (usize, usize) {
-        let calls = self.events.iter().any(Event::calls);
-        if calls || self.solution != Solution::Integration {
+    fn share_threads(&self, request: &Request) -> (usize, usize) {
+        let threads = request.threads;
+        if self.events.iter().any(Event::calls) {
             return (1, 1);
         }
+        if !self.solutions.integrates() {
+            let rows = self.copies.saturating_mul(request.times.len());
+            let work = rows.saturating_mul(self.particles);
+            let threads = threads.min(rows.div_ceil(rows_per_chunk(self.particles)));
+            return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
+        }
         let units = self.unit_list().len();
-        let groups = units.div_ceil(self.layout.units());
+        let together =
+            if self.guided { self.copies * self.pieces(self.passive.len(), threads) } else { units };
+        let groups = together.div_ceil(self.layout.units());
         let pairs = self.pairs_per_evaluation();
         if groups == 1 && pairs >= PAIRS_FOR_THREADS {
             (1, threads)
@@ -188,6 +192,36 @@ impl Plan {
             && (self.method.adaptive() || self.relative)
             && !self.active.is_empty()
             && !self.passive.is_empty()
+    }
+
+    /// How a unit lies in lanes: massless bodies that follow others have a lane each.
+    pub fn layout_of(&self, unit: &Unit) -> Layout {
+        if unit.follows { Layout::Batched } else { self.layout }
+    }
+
+    /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
+    /// massive ones are integrated again.
+    pub fn pieces(&self, massless: usize, threads: usize) -> usize {
+        if self.layout == Layout::Batched {
+            return 1;
+        }
+        let useful = (massless / FOLLOWERS_WORTH_A_GUIDE).min((2 * threads).div_ceil(self.copies));
+        massless.div_ceil(FOLLOWERS_MAX).max(if threads > 1 { useful } else { 1 }).max(1)
+    }
+
+    /// The massive bodies of a copy, for massless ones to follow; `recorded` or not.
+    pub fn guide(&self, copy: usize, recorded: bool) -> Unit {
+        let active = self.active.len();
+        let recorded = if recorded { 0..active } else { active..active };
+        Unit {
+            copy,
+            bodies: Arc::from(&self.active[..]),
+            active,
+            recorded,
+            follows: false,
+            make_up: 0,
+            events: Arc::from([]),
+        }
     }
 
     /// The units of the integration, in the order in which they are begun.
@@ -208,6 +242,7 @@ impl Plan {
             bodies,
             active,
             recorded,
+            follows: false,
             make_up,
             events: Arc::clone(&none),
         };
@@ -221,6 +256,11 @@ impl Plan {
                     kind(Arc::clone(bodies), bodies.len(), 0..bodies.len(), 1 + index)
                 };
                 groups.iter().enumerate().map(group).chain(self.passive.iter().map(alone)).collect()
+            }
+            Groups::All if self.guided => {
+                let following = |body| Unit { follows: true, ..kind(Arc::from([body]), 0, 0..1, 1) };
+                let massless = self.passive.iter().copied().map(following);
+                core::iter::once(self.guide(0, true)).chain(massless).collect()
             }
             Groups::All if self.passive_apart() => {
                 let with_active = |run: &[usize]| {
@@ -252,6 +292,30 @@ impl Plan {
     }
 }
 
+/// Refuses a method that cannot take what a force looks at.
+fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
+    // The numbers of a state do not matter here.
+    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
+    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
+    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
+    Err(Error::invalid(
+        "method",
+        format!(
+            "{} cannot take {}, which looks at velocities; expected one of {}",
+            method.name,
+            force.declaration().class_name,
+            others.collect::<Vec<_>>().join(", ")
+        ),
+    ))
+}
+
+/// Whether massless bodies feel the force along a path of the massive ones, or without them.
+fn guides(force: &Arc<dyn ForceTerm>) -> bool {
+    force.coupling() == Coupling::None
+        || (force.coupling() == Coupling::AllPairs && force.as_newtonian().is_some())
+}
+
 /// The forces that do anything in this scene.
 fn effective_forces(scene: &Scene) -> Vec<Arc<dyn ForceTerm>> {
     let bodies = scene.bodies();
@@ -266,22 +330,4 @@ fn outputs_between(scene: &Scene, request: &Request) -> usize {
 fn planar(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> bool {
     scene.position.iter().chain(&scene.velocity).all(|x| x[2] == 0.0)
         && forces.iter().all(|force| force.keeps_plane())
-}
-
-fn closed_form(scene: &Scene, forces: &[Arc<dyn ForceTerm>], active: &[usize]) -> Solution {
-    if forces.is_empty() {
-        return Solution::Free;
-    }
-    let fields: Option<Vec<[f64; 3]>> = forces.iter().map(|force| force.as_uniform()).collect();
-    if let Some(fields) = fields {
-        let add = |sum: [f64; 3], g: [f64; 3]| core::array::from_fn(|c| sum[c] + g[c]);
-        return Solution::Uniform(fields.into_iter().fold([0.0; 3], add));
-    }
-    let [force] = forces else { return Solution::Integration };
-    match (force.as_newtonian(), force.as_inverse_distance_center()) {
-        (Some((_, 0.0)), _) if scene.particles == 2 => Solution::TwoBody,
-        (Some((_, 0.0)), _) if active.len() == 1 => Solution::OneMassive(active[0]),
-        (_, Some((k, center))) => Solution::FixedCenter { k, center },
-        _ => Solution::Integration,
-    }
 }

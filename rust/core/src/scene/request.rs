@@ -160,11 +160,20 @@ impl Request {
         // Without a branch for each: a run of cheap steps with many outputs would feel it.
         let follows = |before: f64, t: f64| t.is_finite() & ((t - before) * direction >= 0.0);
         let all = |good, pair: &[f64]| good & follows(pair[0], pair[1]);
-        if self.times.windows(2).fold(follows(scene.t0, first), all) {
-            Ok(direction)
-        } else {
-            Err(self.disorder(scene.t0, direction))
+        if !self.times.windows(2).fold(follows(scene.t0, first), all) {
+            return Err(self.disorder(scene.t0, direction));
         }
+        if (end - scene.t0).is_finite() {
+            return Ok(direction);
+        }
+        Err(Error::invalid(
+            "t",
+            format!(
+                "expected times within the range of float64 from t0 = {}, got {}, which is farther than that",
+                number(scene.t0),
+                number(end)
+            ),
+        ))
     }
 
     /// What is wrong with times that do not follow each other.

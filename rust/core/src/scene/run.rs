@@ -10,7 +10,7 @@ use super::Scene;
 use super::closed_form;
 use super::columns::{Columns, Missing, Wanted};
 use super::integrate::{self, Counts, Ending, Job};
-use super::plan::{Plan, Solution};
+use super::plan::Plan;
 use super::request::Request;
 use super::room::give_back;
 use crate::error::{Error, Result};
@@ -79,7 +79,7 @@ impl Part<'_> {
 
     /// Whether columns can be derived at the record.
     fn tells(&self) -> bool {
-        self.plan.solution != Solution::Integration
+        !self.plan.solutions.integrates()
             || self.plan.unit_list().first().is_some_and(|unit| unit.is_whole(self.scene))
     }
 }
@@ -167,16 +167,21 @@ fn run_part(
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Missing>> {
     let Part { scene, plan, .. } = *part;
-    if plan.solution != Solution::Integration {
+    if !plan.solutions.integrates() {
         let writer = columns.writer(scene, part.members, 1);
-        let end = closed_form::run(scene, plan, &request.times, &writer, ticker)?;
-        let size = scene.particles;
-        for copy in 0..scene.copies {
-            let (from, to) = (copy * size, part.member(copy) * size);
-            reached.position[to..to + size].copy_from_slice(&end.position[from..from + size]);
-            reached.velocity[to..to + size].copy_from_slice(&end.velocity[from..from + size]);
+        let reports = closed_form::run(scene, plan, &request.times, &writer, ticker)?;
+        let mut missing = Vec::new();
+        for (copy, report) in reports.iter().enumerate() {
+            let member = part.member(copy);
+            let places = member * scene.particles..(member + 1) * scene.particles;
+            for (place, &[position, velocity]) in places.zip(&report.states) {
+                reached.position[place] = position;
+                reached.velocity[place] = velocity;
+            }
+            outcomes[member].stop(report, request, scene.t0);
+            missing.extend(report.missing(member, scene, request.times.len()));
         }
-        return Ok(Vec::new());
+        return Ok(missing);
     }
     check_units(part)?;
     let writer = columns.writer(scene, part.members, plan.threads.1);
@@ -237,6 +242,15 @@ impl Outcome {
             counts: Counts::default(),
             time: times[times.len() - 1],
             energy_error: f64::NAN,
+        }
+    }
+
+    /// Ends where a closed form did, if that is before the end.
+    fn stop(&mut self, report: &closed_form::Report, request: &Request, t0: f64) {
+        if report.rows < request.times.len() {
+            self.ending = if report.beyond { Ending::NotFinite } else { Ending::Interrupted };
+            self.rows = report.rows;
+            self.time = report.rows.checked_sub(1).map_or(t0, |row| request.times[row]);
         }
     }
 }

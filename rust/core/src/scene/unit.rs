@@ -9,13 +9,14 @@ mod lanes;
 mod record;
 mod size;
 
-pub use forces::dynamics;
+pub use forces::{dynamics, uncoupled};
 
 use super::Scene;
 use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
 use crate::forces::bodies::PreciseBodies;
+use crate::forces::term::Coupling;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
@@ -34,6 +35,8 @@ pub struct Unit {
     pub active: usize,
     /// Which of them, by their place in `bodies`, are recorded from this unit.
     pub recorded: core::ops::Range<usize>,
+    /// Whether it is a massless body that follows the massive ones of its copy.
+    pub follows: bool,
     /// Units of the same make-up may share lanes: forces see no difference but in numbers.
     pub make_up: usize,
     /// The events that are looked for in it.
@@ -41,13 +44,22 @@ pub struct Unit {
 }
 
 impl Unit {
-    /// Whether the columns of its copy are derived from it, where one unit can tell them.
-    pub fn derives(&self) -> bool {
-        self.recorded.start == 0
+    /// Whether it has a report. Massive bodies that are integrated once more, for massless ones to follow, have none.
+    pub fn reports(&self) -> bool {
+        !self.recorded.is_empty() || self.make_up != 0
     }
 
-    /// Whether nothing that has a mass is elsewhere.
+    /// Whether the columns of its copy are derived from it, where one unit can tell them.
+    pub fn derives(&self) -> bool {
+        self.recorded.start == 0 && !self.follows
+    }
+
+    /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
+    /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {
+        if scene.forces.iter().any(|force| matches!(force.coupling(), Coupling::Listed(_))) {
+            return self.bodies.iter().copied().eq(0..scene.particles);
+        }
         let massive = scene.masses(self.copy).iter().filter(|&&mass| mass > 0.0).count();
         let own = self.bodies.iter().filter(|&&body| scene.masses(self.copy)[body] > 0.0).count();
         self.bodies.len() == scene.particles || (own > 0 && own == massive)
@@ -89,6 +101,7 @@ impl Prepared {
     pub fn new(plan: &Plan, scene: &Scene, unit: Unit) -> Self {
         let units = plan.units;
         let origin = plan.origins[unit.copy];
+        let layout = plan.layout_of(&unit);
         let (masses, positions, velocities) =
             (scene.masses(unit.copy), scene.positions(unit.copy), scene.velocities(unit.copy));
         let relative = |x: [f64; 3], origin: [f64; 3], exponent: i32| {
@@ -109,7 +122,7 @@ impl Prepared {
         let strength = mass[..unit.active].iter().map(|mass| constant * mass).collect();
         let mut prepared = Self {
             shape: lanes::shape(&unit, plan),
-            reading: Reading::new(&unit, plan.layout, &origin, units),
+            reading: Reading::new(&unit, layout, &origin, units),
             unit,
             position,
             velocity,
@@ -119,7 +132,7 @@ impl Prepared {
             origin,
             reference: Origin::default(),
             size: (1.0, 1.0),
-            layout: plan.layout,
+            layout,
             units,
             scratch: RefCell::default(),
         };

@@ -97,6 +97,94 @@ fn states_between_nodes_have_the_declared_dense_order() {
     }
 }
 
+/// `a = -q³ + v × Ω` in the plane: a turning that a method may take apart.
+struct Turned;
+impl Force<DoubleDouble> for Turned {
+    fn apply(
+        &mut self,
+        &Phase { v, .. }: &Phase<'_, DoubleDouble>,
+        a: &mut [DoubleDouble],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        for (a, term) in a.iter_mut().zip([v[1], -v[0]]) {
+            *a = if first { term } else { *a + term };
+        }
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { rotation: true, ..Needs::default() }
+    }
+    /// By the series of sine and cosine: steps are short.
+    fn rotate(&mut self, h: f64, (v, _): (&mut [DoubleDouble], &mut [DoubleDouble])) {
+        let h = DoubleDouble::from(h);
+        let (mut sine, mut cosine, mut term) =
+            (DoubleDouble::default(), DoubleDouble::default(), DoubleDouble::from(1.0));
+        for power in 0..24 {
+            match power % 4 {
+                0 => cosine += term,
+                1 => sine += term,
+                2 => cosine += -term,
+                _ => sine += -term,
+            }
+            term = term * h / DoubleDouble::from(f64::from(power + 1));
+        }
+        let [x, y] = [v[0], v[1]];
+        [v[0], v[1]] = [cosine * x + sine * y, cosine * y - sine * x];
+    }
+}
+
+/// `a = -q³`, component by component.
+struct Quartic;
+impl Force<DoubleDouble> for Quartic {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, DoubleDouble>,
+        a: &mut [DoubleDouble],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        for (a, &q) in a.iter_mut().zip(phase.q) {
+            *a = if first { -(q * q * q) } else { *a - q * q * q };
+        }
+        Ok(())
+    }
+}
+
+#[test]
+fn a_force_that_turns_velocities_is_followed_to_the_declared_order() {
+    let turned = || {
+        let shape = Shape { rows: 1, components: 2 };
+        let number = |x: f64| DoubleDouble::from(x);
+        (
+            Dynamics::new(shape, vec![Box::new(Quartic), Box::new(Turned)]),
+            State::new(&[number(1.0), number(0.25)], &[number(0.5), number(-0.75)]),
+        )
+    };
+    for method in METHODS {
+        if !method.serves(Form::SecondOrder(2), turned().0.needs()) {
+            continue;
+        }
+        let end = |steps: usize| {
+            let (mut dynamics, mut state) = turned();
+            advance(method, 2.0 / steps as f64, steps, &mut state, &mut dynamics);
+            state
+        };
+        let steps = steps_for(method.order);
+        let [coarse, middle, fine] = [steps, 2 * steps, 4 * steps].map(end);
+        let order = (distance(&coarse, &middle) / distance(&middle, &fine)).log2();
+        println!("{}: order {order:.3} with rotation", method.name);
+        assert!((order - f64::from(method.order)).abs() < 0.15, "{}: {order}", method.name);
+        if method.reversible {
+            let (mut dynamics, mut state) = turned();
+            let start = state.clone();
+            advance(method, 1.0 / 16.0, 32, &mut state, &mut dynamics);
+            advance(method, -1.0 / 16.0, 32, &mut state, &mut dynamics);
+            assert!(distance(&state, &start) < 1e-27, "{}", method.name);
+        }
+    }
+}
+
 /// `a = -q³ - v³/4`.
 struct Resisted;
 impl Force<DoubleDouble> for Resisted {

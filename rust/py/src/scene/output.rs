@@ -8,7 +8,7 @@ use visviva_core::numerics::simd::tier;
 use visviva_core::scene::Scene;
 use visviva_core::scene::columns::Derived;
 use visviva_core::scene::integrate::Ending;
-use visviva_core::scene::plan::{Plan, Solution};
+use visviva_core::scene::plan::Plan;
 use visviva_core::scene::request::Request;
 use visviva_core::scene::run::{Outcome, Output};
 
@@ -16,7 +16,7 @@ use visviva_core::scene::run::{Outcome, Output};
 pub(super) fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     let rows = plan.rows();
-    let integration = plan.solution == Solution::Integration;
+    let integration = plan.solutions.integrates();
     dict.set_item("solution", rows.first().map(|row| row.decision.clone()))?;
     dict.set_item("method", plan.method_name())?;
     dict.set_item("evaluations_per_step", if integration { plan.method.stages } else { 0 })?;

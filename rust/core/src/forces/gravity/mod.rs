@@ -16,7 +16,7 @@ pub mod energy;
 pub mod few;
 pub mod newton;
 mod pair;
-mod passive;
+pub mod passive;
 mod relative;
 pub mod ring;
 pub mod tiles;

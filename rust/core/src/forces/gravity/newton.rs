@@ -28,6 +28,8 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 3.7; \
              softening: H. C. Plummer, MNRAS 71 (1911) 460",
     example: ">>> vv.Gravity(G=1.0)\nGravity(G=1.0, softening=0.0)",
+    at_rest: "",
+    one_way: "",
     parameters: &[
         Parameter::number("G", CONSTANT, "The gravitational constant"),
         Parameter::new("softening", Kind::Number(Sign::NotNegative), "Plummer softening length")
@@ -98,31 +100,19 @@ impl ForceTerm for Gravity {
         if self.softening > 0.0 {
             return Ok(());
         }
-        for copy in 0..bodies.copies {
-            let (mass, position) = bodies.copy(copy);
-            // Sorted along x, bodies that coincide are neighbours: O(N log N), not O(N²).
-            let mut order: Vec<usize> = (0..bodies.particles).collect();
-            order.sort_by(|&i, &j| {
-                let (a, b) = (position[i], position[j]);
-                a[0].total_cmp(&b[0]).then(a[1].total_cmp(&b[1])).then(a[2].total_cmp(&b[2])).then(i.cmp(&j))
-            });
-            for pair in order.windows(2) {
-                let (i, j) = (pair[0].min(pair[1]), pair[0].max(pair[1]));
-                if position[i] == position[j] && (mass[i] > 0.0 || mass[j] > 0.0) {
-                    let [first, second] =
-                        [i, j].map(|body| bodies.name("position", copy * bodies.particles + body));
-                    return Err(Error::invalid(
-                        "position",
-                        format!(
-                            "expected distinct positions for bodies that attract each other, got {first} = \
-                             {second} = {}; move one of them or give Gravity a softening",
-                            numbers(&position[i])
-                        ),
-                    ));
-                }
-            }
+        match bodies.coincident(|m, n| m > 0.0 || n > 0.0) {
+            None => Ok(()),
+            Some((i, j)) => Err(Error::invalid(
+                "position",
+                format!(
+                    "expected distinct positions for bodies that attract each other, got {} = {} = {}; move one of \
+                     them or give Gravity a softening",
+                    bodies.name("position", i),
+                    bodies.name("position", j),
+                    numbers(&bodies.position[i])
+                ),
+            )),
         }
-        Ok(())
     }
 
     fn acts(&self, bodies: &Bodies<'_>) -> bool {

@@ -1,8 +1,9 @@
 //! Massless bodies in the field of massive ones: no third law, no pairs among themselves.
 
 use super::pair::squared_distance;
+use crate::numerics::element::{Pass, View};
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::Vector8;
+use crate::numerics::lanes::{Lanes, Vector8};
 
 /// The acceleration at `position` from massive bodies at `places`, in their order; `strengths` are their `G·m`.
 ///
@@ -59,4 +60,54 @@ pub(super) fn packed_attraction<V: Vector8 + InverseCube, const PLANAR: bool, co
         a = attract::<V, PLANAR, SOFT>(a, position, place, V::splat(strength), softening2);
     }
     a
+}
+
+/// The pull on one massless body in each lane of massive ones at given places: written into `a` if `first`, else added.
+#[derive(Debug)]
+pub struct Pull<'a> {
+    /// Where the massive bodies are, component after component.
+    pub places: &'a [Lanes],
+    /// Their `G·m`.
+    pub strength: &'a [Lanes],
+    /// The softening length, squared.
+    pub softening2: f64,
+    /// Where the massless bodies are, one number for each component.
+    pub q: &'a [Lanes],
+    /// Their accelerations.
+    pub a: &'a mut [Lanes],
+    /// Whether these are the first.
+    pub first: bool,
+}
+
+impl Pass<Lanes> for Pull<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) {
+        match (self.q.len() == 2, self.softening2 > 0.0) {
+            (false, false) => pull::<V, false, false>(self),
+            (false, true) => pull::<V, false, true>(self),
+            (true, false) => pull::<V, true, false>(self),
+            (true, true) => pull::<V, true, true>(self),
+        }
+    }
+}
+
+#[inline(always)]
+fn pull<V: View<Lanes>, const PLANAR: bool, const SOFT: bool>(pull: Pull<'_>) {
+    let components = if PLANAR { 2 } else { 3 };
+    let (places, strength, q, a) =
+        (V::view(pull.places), V::view(pull.strength), V::view(pull.q), V::view_mut(pull.a));
+    let softening2 = V::splat(pull.softening2);
+    let massive = strength.len();
+    let mut position = [V::zero(); 3];
+    position[..components].copy_from_slice(&q[..components]);
+    let mut sum = [V::zero(); 3];
+    for j in 0..massive {
+        let z = if PLANAR { V::zero() } else { places[2 * massive + j] };
+        let place = [places[j], places[massive + j], z];
+        sum = attract::<V, PLANAR, SOFT>(sum, position, place, strength[j], softening2);
+    }
+    for c in 0..components {
+        a[c] = if pull.first { sum[c] } else { a[c] + sum[c] };
+    }
 }

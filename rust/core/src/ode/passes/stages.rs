@@ -182,3 +182,26 @@ impl<S: Element> Pass<S> for CompensatedRates<'_, S> {
         for_weighted!((n, terms, k), |i, sum| (out[i], out_error[i]) = add_compensated(y[i], e[i], h * sum));
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn stages_take_the_compensations_along() {
+        let (left_out, small) = (f64::EPSILON / 1024.0, f64::EPSILON / 16.0);
+        let terms = [Term { stage: 0, weight: 1.0 }];
+        let stages = Weighted { h: &1.0, terms: &terms, k: &[small] };
+        let (mut out, mut left) = ([0.0], [0.0]);
+        let (near, far) = ((&[0.0][..], &[left_out][..]), (&[1.0][..], &[left_out][..]));
+        let slope = (&[0.0][..], &0.5);
+        f64::pass(Positions { out: &mut out, q: near, slope, stages });
+        assert_eq!(out[0], small + left_out);
+        f64::pass(Rates { out: &mut out, y: near, stages });
+        assert_eq!(out[0], small + left_out);
+        f64::pass(CompensatedPositions { out: (&mut out, &mut left), q: far, slope, stages });
+        assert_eq!((out[0], left[0]), (1.0, small + left_out));
+        f64::pass(CompensatedRates { out: (&mut out, &mut left), y: far, stages });
+        assert_eq!((out[0], left[0]), (1.0, small + left_out));
+    }
+}

@@ -33,7 +33,7 @@ proptest! {
         for (index, (quantity, edges)) in tallies.iter().enumerate() {
             let mut expected = vec![0; 37];
             for event in first..first + count {
-                let x = beam.value(*quantity, draw(key(7), event) as f64 * UNIT);
+                let x = beam.value(*quantity, draw(key(7), event).number() as f64 * UNIT);
                 let edges = edges.values();
                 let bin = edges.partition_point(|edge| *edge <= x).min(37);
                 expected[bin - 1] += 1;

@@ -1,9 +1,12 @@
 //! Steps that each unit chooses: eight units in the lanes, each at its own pace.
 //!
 //! The one idea: when a unit ends, the next that waits takes its lane, so lanes seldom run dry. Packed,
-//! there is one unit at a time, in all lanes.
+//! there is one unit at a time, in all lanes. Massless bodies go through each step of the massive ones in the same way,
+//! before those are moved on ([`followers`]).
 
 mod events;
+mod followers;
+mod guide;
 mod measure;
 mod outputs;
 mod stuck;
@@ -26,6 +29,10 @@ use crate::ode::trial::{Cost, Trial, trial};
 use crate::parallel::Ticker;
 use core::iter::Enumerate;
 use core::slice;
+use followers::{Followers, Span};
+use guide::{Guided, Path};
+use std::collections::BTreeSet;
+use std::sync::Arc;
 
 /// Units of progress of a unit: thousandths of its time.
 pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
@@ -37,23 +44,32 @@ pub(super) const PROGRESS_PER_UNIT: u64 = 1000;
 pub(super) fn run(
     job: &Job<'_>,
     units: &[Unit],
+    followers: &[&[Unit]],
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
-    let mut run = Run::new(job, units, threads)?;
+    let elapsed = |&t: &f64| scale(t - job.scene.t0, -job.plan.units.time);
+    let outputs: Arc<[f64]> = job.times.iter().map(elapsed).collect();
+    let first = job.prepare(&units[0]);
+    let own = Forces::Own(unit::dynamics(job.plan, &[&first], threads));
+    let mut run = Run::new(job, first, own, &outputs)?;
+    run.waiting = units.iter().enumerate();
+    run.threads = threads;
+    let guided = Followers::new(job, followers, &outputs);
+    run.followers = guided.any().then_some(guided);
     loop {
         let fresh = match run.take_up(ticker) {
             Ok(fresh) => fresh,
-            Err(Error::Interrupted) => return Ok(run.into_reports()),
+            Err(Error::Interrupted) => return Ok(run.into_all_reports(units, followers)),
             Err(other) => return Err(other),
         };
         let running = run.running();
         if !running.any() {
-            return Ok(run.into_reports());
+            return Ok(run.into_all_reports(units, followers));
         }
         match run.advance(fresh, running, ticker) {
             Ok(()) => {}
-            Err(Error::Interrupted) => return Ok(run.into_reports()),
+            Err(Error::Interrupted) => return Ok(run.into_all_reports(units, followers)),
             Err(other) => return Err(other),
         }
     }
@@ -72,64 +88,108 @@ struct Slot<'a> {
     watch: Option<Box<Watch<'a>>>,
 }
 
+/// What moves the units in the lanes.
+enum Forces {
+    /// Forces among themselves and from outside.
+    Own(Dynamics<Lanes>),
+    /// Forces from outside and from massive bodies that move along a path.
+    Along(Guided),
+}
+
+impl Forces {
+    fn system(&mut self) -> &mut dyn System<Lanes> {
+        match self {
+            Self::Own(dynamics) => dynamics,
+            Self::Along(guided) => guided,
+        }
+    }
+}
+
 /// Units on their way through the lanes.
 struct Run<'a> {
     job: &'a Job<'a>,
-    units: &'a [Unit],
     threads: usize,
+    layout: Layout,
     waiting: Enumerate<slice::Iter<'a, Unit>>,
     slots: [Option<Slot<'a>>; WIDTH],
-    reports: Vec<Option<Report>>,
+    /// The reports of the units that have ended, and their places among the units of the run.
+    reports: Vec<(usize, Report)>,
     /// Output times as elapsed time in the plan's units.
-    outputs: Vec<f64>,
+    outputs: Arc<[f64]>,
     /// The first unit stands in for one in idle lanes.
     first: Prepared,
     state: State<Lanes>,
     /// A state between two steps.
     between: State<Lanes>,
     /// The forces on the units that are in the lanes now.
-    dynamics: Dynamics<Lanes>,
+    forces: Forces,
     norm: Norm<Lanes>,
     clock: Clock<Lanes>,
     trial: Box<dyn Trial<Lanes>>,
     cost: Cost,
+    /// Those that follow the units in the lanes.
+    followers: Option<Followers<'a>>,
+    /// What of the time of each lane the clock counts: all of it, or a step of those that it follows.
+    part: Part,
+}
+
+/// A part of the elapsed time, lane by lane, through which units are taken.
+struct Part {
+    /// Where it begins, and where it ends.
+    from: Lanes,
+    to: Lanes,
+    /// How long it is.
+    length: Lanes,
+    /// Whether it is the last.
+    last: Bits,
+    /// The lanes that have come to its end, though it is not the last.
+    arrived: Bits,
+    /// Units that have not begun.
+    fresh: Bits,
+    /// What distances are measured from at the start of the run.
+    reference: [Lanes; 4],
 }
 
 impl<'a> Run<'a> {
-    /// For units of one make-up.
-    fn new(job: &'a Job<'a>, units: &'a [Unit], threads: usize) -> Result<Self> {
+    /// For units of one make-up, like the first.
+    fn new(job: &'a Job<'a>, first: Prepared, mut forces: Forces, outputs: &Arc<[f64]>) -> Result<Self> {
         let plan = job.plan;
-        let elapsed = |&t: &f64| scale(t - job.scene.t0, -plan.units.time);
-        let outputs: Vec<f64> = job.times.iter().map(elapsed).collect();
-        let first = job.prepare(&units[0]);
+        let layout = plan.layout_of(&first.unit);
         let mut state = first.blank_state(1);
-        for lane in 0..plan.layout.units() {
+        for lane in 0..layout.units() {
             first.write(&mut state, lane);
         }
-        let dynamics = unit::dynamics(plan, &[&first], threads);
+        let system = forces.system();
         let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
-        let trial = trial(plan.method, &dynamics, &state, max_step)?;
+        let trial = trial(plan.method, system, &state, max_step)?;
+        let end = Lanes::splat(outputs[outputs.len() - 1]);
+        let together = layout == Layout::Packed;
         Ok(Self {
             job,
-            units,
-            threads,
-            waiting: units.iter().enumerate(),
+            threads: 1,
+            layout,
+            waiting: [].iter().enumerate(),
             slots: [const { None }; WIDTH],
-            reports: units.iter().map(|_| None).collect(),
-            clock: Clock::new(Lanes::splat(outputs[outputs.len() - 1])),
+            reports: Vec::new(),
+            clock: Clock::new(end),
             cost: trial.cost(),
             trial,
-            norm: Norm::new(
-                dynamics.shape,
-                dynamics.form(),
-                Lanes::splat(job.rtol),
-                plan.layout == Layout::Packed,
-            ),
-            dynamics,
+            norm: Norm::new(first.state_shape(1), system.form(), Lanes::splat(job.rtol), together),
+            forces,
             between: state.clone(),
-            outputs,
+            outputs: Arc::clone(outputs),
             first,
             state,
+            followers: None,
+            part: Part {
+                from: Lanes::zero(),
+                to: end,
+                length: end,
+                last: Bits(0xff),
+                arrived: Bits(0),
+                fresh: Bits(0),
+                reference: [Lanes::zero(); 4],
+            },
         })
     }
 
@@ -141,7 +201,7 @@ impl<'a> Run<'a> {
     /// The lanes with a unit in them.
     fn running(&self) -> Bits {
         let lanes = self.slots.iter().enumerate().filter(|(_, slot)| slot.is_some());
-        lanes.fold(Bits(0), |mask, (lane, _)| mask.or(self.job.plan.layout.mask(lane)))
+        lanes.fold(Bits(0), |mask, (lane, _)| mask.or(self.layout.mask(lane)))
     }
 
     /// Gives the free lanes to units that wait; which lanes were given.
@@ -149,36 +209,46 @@ impl<'a> Run<'a> {
     /// # Errors
     /// When the caller asks to stop.
     fn take_up(&mut self, ticker: &mut Ticker<'_>) -> Result<Bits> {
-        let mut fresh = Bits(0);
-        let watched = self.job.watched();
-        for lane in 0..self.job.plan.layout.units() {
+        for lane in 0..self.layout.units() {
             while self.slots[lane].is_none() {
                 let Some((index, unit)) = self.waiting.next() else { break };
                 let unit = self.job.prepare(unit);
-                let mask = self.job.plan.layout.mask(lane);
-                unit.write(&mut self.state, lane);
-                measure::set(&mut self.norm, self.job, &unit, mask);
-                let mut slot = Slot {
-                    unit,
-                    index,
-                    next_output: 0,
-                    counts: Counts { evaluations: self.cost.start, ..Counts::default() },
-                    progress: 0,
-                    watch: None,
-                };
-                if watched {
-                    slot.watch = Watch::begin(self.job, &slot.unit, (&self.state, lane), ticker)?;
+                if let Some(followers) = &mut self.followers {
+                    followers.take_up(lane, index, &unit, ticker)?;
                 }
-                self.record_start(&mut slot, lane, ticker)?;
-                if slot.next_output < self.outputs.len() {
-                    self.slots[lane] = Some(slot);
-                    fresh = fresh.or(mask);
-                } else {
-                    self.finish(slot, lane, self.job.scene.t0, Ending::Finished);
-                }
+                self.put(lane, index, unit, ticker)?;
             }
         }
-        Ok(fresh)
+        Ok(core::mem::replace(&mut self.part.fresh, Bits(0)))
+    }
+
+    /// Puts a unit into a free lane, to be started.
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    fn put(&mut self, lane: usize, index: usize, unit: Prepared, ticker: &mut Ticker<'_>) -> Result<()> {
+        let mask = self.layout.mask(lane);
+        unit.write(&mut self.state, lane);
+        measure::set(&mut self.norm, self.job, &unit, mask);
+        for block in self.norm.blocks.iter().filter(|block| !block.velocity) {
+            for (start, &now) in self.part.reference.iter_mut().zip(&block.reference) {
+                *start = Lanes::select(mask, now, *start);
+            }
+        }
+        self.part.from = Lanes::select(mask, Lanes::zero(), self.part.from);
+        self.clock.recount(mask, self.part.length);
+        let counts = Counts { evaluations: self.cost.start, ..Counts::default() };
+        let watched = self.job.watched();
+        let watch = if watched { Watch::begin(self.job, &unit, (&self.state, lane), ticker)? } else { None };
+        let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
+        self.record_start(&mut slot, lane, ticker)?;
+        if self.end() == 0.0 {
+            self.finish(slot, lane, self.job.scene.t0, Ending::Finished);
+        } else {
+            self.slots[lane] = Some(slot);
+            self.part.fresh = self.part.fresh.or(mask);
+        }
+        Ok(())
     }
 
     /// Starts the fresh lanes and takes a step in all that run.
@@ -198,40 +268,95 @@ impl<'a> Run<'a> {
                 return Err(error);
             }
         };
+        // A step that was cut short by the end of a part tells little about the next.
+        let cut = outcome.finished.and(outcome.h.abs().less(before.h.abs() * Lanes::splat(0.5)));
+        let longer = cut.and(self.clock.h.abs().less(before.h.abs()));
+        self.clock.h = Lanes::select(longer, before.h, self.clock.h);
         self.trial.keep(outcome.accepted, &mut self.state);
-        for lane in 0..self.job.plan.layout.units() {
-            self.settle(lane, &outcome, ticker);
+        for lane in 0..self.layout.units() {
+            if running.lane(lane) {
+                self.settle(lane, &outcome, ticker);
+            }
         }
         ticker.tick()
     }
 
     /// Tries a step and records the outputs on it, up to where the state moves.
     fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Outcome<Lanes>> {
-        let Self { trial, state, clock, dynamics, norm, .. } = self;
-        let outcome = trial.attempt(running, dynamics, state, clock, norm, ticker)?;
-        let dense = self.record(&outcome, ticker)?;
+        let Self { trial, state, clock, forces, norm, .. } = self;
+        let outcome = trial.attempt(running, forces.system(), state, clock, norm, ticker)?;
+        let guiding = self.followers.is_some() && outcome.accepted.any();
+        if guiding {
+            self.trial.dense(&outcome, self.forces.system(), &self.state, ticker)?;
+            self.charge(outcome.accepted);
+        }
+        let dense = self.record(&outcome, guiding, ticker)?;
         if self.job.watched() {
             self.watch(&outcome, dense, ticker)?;
+        }
+        if let Some(followers) = self.followers.as_mut().filter(|_| guiding) {
+            let packed = self.layout == Layout::Packed;
+            let span = Span {
+                lanes: outcome.accepted,
+                from: outcome.from,
+                to: self.clock.elapsed,
+                last: outcome.finished,
+                path: Arc::new(Path::new(&self.first, &*self.trial, &self.state, outcome.h, packed)),
+            };
+            followers.through(&span, ticker)?;
         }
         Ok(outcome)
     }
 
     fn start(&mut self, fresh: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
         // Masses differ from unit to unit, so the forces are set up again with the new lanes.
-        let slots = self.slots[..self.job.plan.layout.units()].iter();
+        let slots = self.slots[..self.layout.units()].iter();
         let units: Vec<&Prepared> =
             slots.map(|slot| slot.as_ref().map_or(&self.first, |slot| &slot.unit)).collect();
-        self.dynamics = unit::dynamics(self.job.plan, &units, self.threads);
-        self.clock.restart(fresh, Lanes::splat(self.end()));
-        let Self { trial, state, clock, dynamics, norm, .. } = self;
-        trial.start(fresh, dynamics, state, clock, norm, ticker)
+        match &mut self.forces {
+            Forces::Own(dynamics) => *dynamics = unit::dynamics(self.job.plan, &units, self.threads),
+            Forces::Along(guided) => guided.take_up(self.job.plan, &units),
+        }
+        self.clock.restart(fresh, self.part.length);
+        let Self { trial, state, clock, forces, norm, .. } = self;
+        trial.start(fresh, forces.system(), state, clock, norm, ticker)
+    }
+
+    /// Takes the units through a step of those that they follow.
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    fn through(&mut self, span: &Span, ticker: &mut Ticker<'_>) -> Result<()> {
+        let (lanes, part) = (span.lanes, &mut self.part);
+        part.from = Lanes::select(lanes, span.from, part.from);
+        part.to = Lanes::select(lanes, span.to, part.to);
+        part.length = Lanes::select(lanes, span.path.h, part.length);
+        part.last = part.last.and(lanes.not()).or(span.last.and(lanes));
+        part.arrived = part.arrived.and(lanes.not());
+        self.clock.recount(lanes, part.length);
+        for block in self.norm.blocks.iter_mut().filter(|block| !block.velocity) {
+            for c in 0..block.reference.len() {
+                block.reference[c] = part.reference[c] + block.drift[c] * part.from;
+            }
+        }
+        let mut fresh = part.fresh.and(lanes);
+        part.fresh = part.fresh.and(lanes.not());
+        if let Forces::Along(guided) = &mut self.forces {
+            guided.follow(&span.path, self.part.from);
+        }
+        loop {
+            let running = self.running().and(lanes).and(self.part.arrived.not());
+            if !running.any() {
+                return Ok(());
+            }
+            self.advance(core::mem::replace(&mut fresh, Bits(0)), running, ticker)?;
+        }
     }
 
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
     fn settle(&mut self, lane: usize, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) {
-        let end = self.end();
+        let (end, elapsed) = (self.end(), self.elapsed(lane));
         let Some(slot) = self.slots[lane].as_mut() else { return };
-        let elapsed = self.clock.elapsed.0[lane];
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
         // taken when it is kept.
         slot.counts.evaluations += self.cost.tried;
@@ -239,16 +364,25 @@ impl<'a> Run<'a> {
             slot.counts.steps += 1;
             slot.counts.evaluations += self.cost.kept;
             let done = (elapsed / end * PROGRESS_PER_UNIT as f64) as u64;
-            ticker.advance(done - slot.progress);
-            slot.progress = done;
+            if slot.unit.unit.reports() {
+                ticker.advance(done.saturating_sub(slot.progress));
+            }
+            slot.progress = done.max(slot.progress);
         } else {
             slot.counts.rejected += 1;
         }
         let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
-        let ending = if outcome.finished.lane(lane) {
+        let ending = if outcome.finished.lane(lane) && self.part.last.lane(lane) {
             Ending::Finished
+        } else if outcome.finished.lane(lane) {
+            self.part.arrived = self.part.arrived.or(self.layout.mask(lane));
+            return;
         } else if outcome.stuck.lane(lane) {
-            stuck::why(self.job, &slot.unit, &self.state, lane, elapsed)
+            let massive = match &mut self.forces {
+                Forces::Along(guided) => guided.places(self.clock.elapsed.0[lane], lane),
+                Forces::Own(_) => Vec::new(),
+            };
+            stuck::why(self.job, &slot.unit, &self.state, (lane, elapsed), &massive)
         } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
             Ending::TooManySteps
         } else if stopped {
@@ -263,35 +397,75 @@ impl<'a> Run<'a> {
         }
     }
 
-    /// The time of the unit in a lane.
-    fn time(&self, lane: usize) -> f64 {
-        self.job.scene.t0 + scale(self.clock.elapsed.0[lane], self.job.plan.units.time)
+    /// The elapsed time of the unit in a lane: at the end of a part the time that those have whom it follows.
+    fn elapsed(&self, lane: usize) -> f64 {
+        let Part { from, to, length, .. } = &self.part;
+        let elapsed = self.clock.elapsed.0[lane];
+        if elapsed == length.0[lane] { to.0[lane] } else { from.0[lane] + elapsed }
     }
 
+    /// The time of the unit in a lane.
+    fn time(&self, lane: usize) -> f64 {
+        self.job.scene.t0 + scale(self.elapsed(lane), self.job.plan.units.time)
+    }
+
+    /// A unit has ended; those that follow it cannot go further.
     fn finish(&mut self, slot: Slot<'a>, lane: usize, time: f64, ending: Ending) {
         let (rows, counts) = (slot.next_output, slot.counts);
+        if let Some(followers) = &mut self.followers {
+            followers.end(lane, &ending);
+        }
+        if !slot.unit.unit.reports() {
+            return;
+        }
         let mut report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
         if let Some(watch) = slot.watch {
             watch.tell(&mut report);
         }
-        self.reports[slot.index] = Some(report);
+        self.reports.push((slot.index, report));
     }
 
-    /// The reports; a unit that has not ended was interrupted, on its way or before it began.
-    fn into_reports(mut self) -> Vec<Report> {
-        for lane in 0..WIDTH {
+    /// The units in these lanes end, if they have not.
+    fn end_with(&mut self, lanes: Bits, ending: &Ending) {
+        for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
             if let Some(slot) = self.slots[lane].take() {
-                self.finish(slot, lane, self.time(lane), Ending::Interrupted);
+                self.finish(slot, lane, self.time(lane), ending.clone());
             }
         }
-        let not_begun = |unit| {
-            let prepared = self.job.prepare(unit);
-            let mut state = prepared.blank_state(1);
-            prepared.write(&mut state, 0);
-            let t0 = self.job.scene.t0;
-            self.job.report(&prepared, &state, 0, t0, Ending::Interrupted, 0, Counts::default())
-        };
-        let reports = self.units.iter().zip(self.reports);
-        reports.map(|(unit, report)| report.unwrap_or_else(|| not_begun(unit))).collect()
+        self.part.fresh = self.part.fresh.and(lanes.not());
     }
+
+    /// The reports; a unit that is on its way was interrupted.
+    fn into_reports(mut self) -> Vec<(usize, Report)> {
+        self.end_with(Bits(0xff), &Ending::Interrupted);
+        self.reports
+    }
+
+    /// The reports of all these units and of those that follow them, also of the ones that were interrupted before they
+    /// began.
+    fn into_all_reports(mut self, units: &[Unit], followers: &[&[Unit]]) -> Vec<Report> {
+        let job = self.job;
+        self.end_with(Bits(0xff), &Ending::Interrupted);
+        let following = self.followers.take().into_iter().flat_map(Followers::reports);
+        self.reports.sort_by_key(|(index, _)| *index);
+        let mut reports: Vec<Report> =
+            self.reports.into_iter().chain(following).map(|(_, report)| report).collect();
+        let reporting = units.iter().filter(|unit| unit.reports());
+        let all = reporting.chain(followers.iter().copied().flatten());
+        if reports.len() < all.clone().count() {
+            let first = |unit: &Unit| unit.bodies.get(unit.recorded.start).copied();
+            let name = |unit: &Unit| (unit.copy, unit.make_up, first(unit));
+            let begun: BTreeSet<_> = reports.iter().map(|report| name(&report.unit)).collect();
+            reports.extend(all.filter(|unit| !begun.contains(&name(unit))).map(|unit| not_begun(job, unit)));
+        }
+        reports
+    }
+}
+
+/// The report of a unit that was interrupted before it began.
+fn not_begun(job: &Job<'_>, unit: &Unit) -> Report {
+    let prepared = job.prepare(unit);
+    let mut state = prepared.blank_state(1);
+    prepared.write(&mut state, 0);
+    job.report(&prepared, &state, 0, job.scene.t0, Ending::Interrupted, 0, Counts::default())
 }

@@ -13,7 +13,9 @@ impl Plan {
         let own = kinds.len();
         for (index, event) in self.events.iter().enumerate() {
             let looked_at = event.bodies(&self.groups, self.particles, &self.active);
-            let holds = |unit: &Unit| looked_at.iter().all(|body| unit.bodies.contains(body));
+            // Those that follow others are taken through steps of theirs, not through steps of the run.
+            let holds =
+                |unit: &Unit| !unit.follows && looked_at.iter().all(|body| unit.bodies.contains(body));
             let place = kinds.iter().position(holds).unwrap_or_else(|| {
                 kinds.push(self.together(&looked_at, kinds.len() - own));
                 kinds.len() - 1
@@ -43,6 +45,7 @@ impl Plan {
             active,
             recorded: bodies.len()..bodies.len(),
             bodies: Arc::from(bodies),
+            follows: false,
             // Of no other unit; groups count from 1.
             make_up: usize::MAX - extra,
             events: Arc::from([]),

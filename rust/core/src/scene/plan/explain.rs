@@ -2,7 +2,7 @@
 
 use super::super::layout::Layout;
 use super::super::request::columns;
-use super::{Groups, Plan, Solution};
+use super::{Groups, Plan};
 use crate::forces::term::Coupling;
 use crate::ode::Scheme;
 use core::fmt;
@@ -27,7 +27,7 @@ impl Plan {
         };
         let (decision, reason) = self.describe_solution();
         row("solution", decision, reason);
-        if self.solution == Solution::Integration {
+        if self.solutions.integrates() {
             let steps = match self.dt {
                 Some(dt) => format!("fixed step {dt}"),
                 None => "steps chosen by the error estimate".to_owned(),
@@ -65,6 +65,8 @@ impl Plan {
                 over.max(inside).to_string(),
                 if inside > 1 { "inside a force evaluation" } else { "over systems" }.to_owned(),
             );
+        } else if self.threads.0 > 1 {
+            row("threads", self.threads.0.to_string(), "over ensemble members and output times".to_owned());
         }
         rows
     }
@@ -85,7 +87,7 @@ impl Plan {
 
     /// What the SIMD lanes are.
     pub fn lanes(&self) -> &'static str {
-        match (self.solution == Solution::Integration, self.layout, &self.groups) {
+        match (self.solutions.integrates(), self.layout, &self.groups) {
             (false, ..) => "none",
             (_, Layout::Packed, _) => "over bodies",
             (_, Layout::Batched, Groups::Single) => "over particles",
@@ -95,16 +97,19 @@ impl Plan {
 
     /// The method that runs; a closed form needs none.
     pub fn method_name(&self) -> &'static str {
-        if self.solution == Solution::Integration { self.method.name } else { "closed form" }
+        if self.solutions.integrates() { self.method.name } else { "closed form" }
     }
 
     /// What will not be done, and why.
     pub fn skipped(&self) -> Vec<(String, String)> {
         let mut skipped = Vec::new();
         let mut skip = |what: &str, why: String| skipped.push((what.to_owned(), why));
-        if self.solution != Solution::Integration {
+        if !self.solutions.integrates() {
             skip("stepping", "the motion has a closed form".to_owned());
         } else {
+            if !self.solutions.integrates_all() {
+                skip("stepping of some ensemble members", "their motion has a closed form".to_owned());
+            }
             if self.alike > 0 {
                 skip(
                     "uniform fields",
@@ -153,28 +158,30 @@ impl Plan {
     }
 
     fn describe_solution(&self) -> (String, String) {
-        let (decision, reason) = match &self.solution {
-            Solution::Free => ("closed form: straight lines", "no force acts"),
-            Solution::Uniform(_) => ("closed form: parabolas", "the only force is a uniform field"),
-            Solution::TwoBody => {
-                ("closed form: Kepler's two-body problem", "two bodies and unsoftened gravity")
-            }
-            Solution::OneMassive(_) => {
-                ("closed form: Kepler orbits", "one massive body, unsoftened gravity, the rest massless")
-            }
-            Solution::FixedCenter { .. } => {
-                ("closed form: Kepler orbits", "the only force is an inverse-distance centre")
-            }
-            Solution::Integration => (
-                "integration",
-                match self.method.scheme {
-                    Scheme::Embedded(_) if !self.events.is_empty() => "events are looked for step by step",
-                    Scheme::Embedded(_) => "no closed form applies, or a method was named",
-                    _ => "the method was named",
-                },
-            ),
+        let integration = match self.method.scheme {
+            Scheme::Embedded(_) if !self.events.is_empty() => "events are looked for step by step",
+            Scheme::Embedded(_) => "no closed form applies, or a method was named",
+            _ => "the method was named",
         };
-        (decision.to_owned(), reason.to_owned())
+        match self.solutions.counts()[..] {
+            [(Some(form), _)] => (format!("closed form: {}", form.name), form.reason.to_owned()),
+            [(None, _)] => ("integration".to_owned(), integration.to_owned()),
+            ref several => {
+                let (mut integrated, mut closed) = (0, Vec::new());
+                for (solution, count) in several {
+                    match solution {
+                        None => integrated = *count,
+                        Some(form) => closed.push(format!("{} ({count})", form.name)),
+                    }
+                }
+                let closed = format!("closed form: {}", closed.join(", "));
+                let decision = match integrated {
+                    0 => closed,
+                    count => format!("integration ({count}), {closed}"),
+                };
+                (decision, "ensemble members differ; of how many each is, in brackets".to_owned())
+            }
+        }
     }
 }
 

@@ -1,23 +1,31 @@
-//! Batches whose copies differ in which bodies are massless, or by far in size: each such pattern is a run of its own.
+//! Batches whose copies differ in how their motion is found, in which bodies are massless, or by far in size: each such
+//! pattern is a run of its own.
 
 use super::super::Scene;
 use super::super::frame::Units;
 use super::super::plan::Plan;
 use std::collections::BTreeMap;
 
-/// Copies with the same set of massless bodies and the same units, and their scene; `None` if that is all of them.
+/// Copies that have closed forms, and copies that are integrated with the same set of massless bodies and the same units,
+/// and their scenes; `None` if that is all of them.
 ///
 /// They are run apart, so that each has the bits it has alone, and a wild one spoils no other.
 pub(super) fn patterns(scene: &Scene, plan: &Plan) -> Option<Vec<(Vec<usize>, Scene)>> {
+    if !plan.solutions.integrates() {
+        return None;
+    }
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
     let units: Vec<Units> =
         (0..scene.copies).map(|copy| Units::of(scene, copy, &plan.origins[copy])).collect();
-    if (1..scene.copies).all(|copy| units[copy] == units[0] && pattern(copy).eq(pattern(0))) {
+    let alike = |copy: usize| units[copy] == units[0] && pattern(copy).eq(pattern(0));
+    if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
         return None;
     }
-    let mut groups: BTreeMap<(Vec<bool>, Units), Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<Option<(Vec<bool>, Units)>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
-        groups.entry((pattern(copy).collect(), units[copy])).or_default().push(copy);
+        let integrated = plan.solutions.of_member(copy).is_none();
+        let key = integrated.then(|| (pattern(copy).collect(), units[copy]));
+        groups.entry(key).or_default().push(copy);
     }
     Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect())
 }

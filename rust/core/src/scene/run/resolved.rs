@@ -65,8 +65,17 @@ pub(super) fn look(
         }
         let [(kinetic, potential), (kinetic_end, potential_end)] = energies;
         let change = kinetic_end.plus(potential_end).plus(kinetic.plus(potential).times(-1.0));
-        let size = if potential.to_f64() < 0.0 { potential.times(-1.0) } else { potential };
+        // Of the two potential energies the larger: what falls from rest where the potential is zero begins with nothing.
+        let size = larger(absolute(potential), absolute(potential_end));
         outcome.energy_error = change.over(kinetic.plus(size)).to_f64().abs();
     }
     Ok(())
+}
+
+fn absolute(energy: Scaled) -> Scaled {
+    if energy.value().high() < 0.0 { energy.times(-1.0) } else { energy }
+}
+
+fn larger(a: Scaled, b: Scaled) -> Scaled {
+    if a.plus(b.times(-1.0)).value().high() < 0.0 { b } else { a }
 }

@@ -19,7 +19,7 @@ const FAR_OUT: f64 = 1.267_650_600_228_229_4e30; // 2^100
 pub(super) fn shape(unit: &Unit, plan: &Plan) -> Shape {
     let components = if plan.planar { 2 } else { 3 };
     let bodies = unit.bodies.len();
-    let rows = match plan.layout {
+    let rows = match plan.layout_of(unit) {
         Layout::Batched => bodies,
         Layout::Packed => unit.active.div_ceil(WIDTH) + (bodies - unit.active).div_ceil(WIDTH),
     };
@@ -36,7 +36,7 @@ impl Prepared {
     }
 
     /// How the coordinates of so many units of this make-up lie in one state.
-    pub(super) fn state_shape(&self, units: usize) -> Shape {
+    pub(in crate::scene) fn state_shape(&self, units: usize) -> Shape {
         Shape { rows: units.div_ceil(self.layout.units()) * self.shape.rows, ..self.shape }
     }
 

@@ -2,18 +2,18 @@
 
 use super::super::events::{Interpolant, Span};
 use super::{Result, Run};
-use crate::forces::Dynamics;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 use crate::ode::step_control::Outcome;
+use crate::ode::system::System;
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
 
 /// A step of all lanes; what one lane asks for is there for the others.
 struct Inside<'r> {
     trial: &'r mut dyn Trial<Lanes>,
-    dynamics: &'r mut Dynamics<Lanes>,
+    system: &'r mut dyn System<Lanes>,
     state: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
     /// The polynomials of coordinates that were asked for.
@@ -28,7 +28,7 @@ impl Inside<'_> {
     fn ready(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
         self.used = true;
         if !self.ready {
-            self.trial.dense(self.outcome, self.dynamics, self.state, ticker)?;
+            self.trial.dense(self.outcome, self.system, self.state, ticker)?;
             self.ready = true;
         }
         Ok(())
@@ -74,12 +74,12 @@ impl Run<'_> {
         dense: Bits,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { trial, dynamics, state, between, slots, clock, .. } = self;
+        let Self { trial, forces, state, between, slots, clock, .. } = self;
         // The end of the step is read while its inside is asked for.
         let after = trial.next().clone();
         let mut inside = Inside {
             trial: &mut **trial,
-            dynamics,
+            system: forces.system(),
             state,
             between,
             terms: Vec::new(),

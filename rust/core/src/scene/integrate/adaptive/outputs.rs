@@ -31,6 +31,9 @@ impl Run<'_> {
         lane: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
+        if !slot.unit.unit.reports() {
+            slot.next_output = self.outputs.len();
+        }
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
             let _: bool =
                 slot.unit.record(self.job.writer, slot.next_output, &self.state, lane, 0.0, ticker)?;
@@ -39,23 +42,27 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Records the outputs that the step has passed, before it is committed; the lanes that have paid for its continuous
-    /// extension, which is then ready.
+    /// Records the outputs that the step has passed, before it is committed; the continuous extension may be `ready`
+    /// and charged. Gives the lanes that have paid for it; it is then ready.
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record(&mut self, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) -> Result<Bits> {
-        let mut ready = false;
-        let mut charged = Bits(0);
+    pub(super) fn record(
+        &mut self,
+        outcome: &Outcome<Lanes>,
+        mut ready: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Bits> {
+        let mut charged = if ready { outcome.accepted } else { Bits(0) };
         loop {
             let round = self.round(outcome);
             if !round.due.any() {
                 return Ok(charged);
             }
             if round.inside.any() {
-                let Self { trial, state, between, dynamics, .. } = self;
+                let Self { trial, state, between, forces, .. } = self;
                 if !ready {
-                    trial.dense(outcome, dynamics, state, ticker)?;
+                    trial.dense(outcome, forces.system(), state, ticker)?;
                     ready = true;
                 }
                 trial.at(state, outcome.h, round.theta, between);
@@ -76,14 +83,16 @@ impl Run<'_> {
                 continue;
             }
             let output = self.outputs[slot.next_output];
-            let to = self.clock.elapsed.0[lane];
-            if (output - to) * direction > 0.0 && !outcome.finished.lane(lane) {
+            let to = self.elapsed(lane);
+            let at_the_end = outcome.finished.lane(lane) && self.part.last.lane(lane);
+            if (output - to) * direction > 0.0 && !at_the_end {
                 continue;
             }
             round.due = round.due.or(Bits(1 << lane));
             if (to - output) * direction > 0.0 {
-                let lanes = self.job.plan.layout.mask(lane);
-                let fraction = (output - outcome.from.0[lane]) / outcome.h.0[lane];
+                let lanes = self.layout.mask(lane);
+                let since = (output - self.part.from.0[lane]) - outcome.from.0[lane];
+                let fraction = since / outcome.h.0[lane];
                 round.inside = round.inside.or(lanes);
                 round.theta = Lanes::select(lanes, Lanes::splat(fraction), round.theta);
             }

@@ -13,8 +13,14 @@ const CLOSE: f64 = 1e-6;
 /// … or so close that an orbit there is over in so many of the shortest steps that the time can tell.
 const STEPS: f64 = 1e6;
 
-/// The ending of a unit whose step fell to zero at that time.
-pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize, elapsed: f64) -> Ending {
+/// The ending of a unit whose step fell to zero, in its lane at that time; `massive` are the places of those that it follows.
+pub(super) fn why(
+    job: &Job<'_>,
+    unit: &Prepared,
+    state: &State<Lanes>,
+    (lane, elapsed): (usize, f64),
+    massive: &[[f64; 3]],
+) -> Ending {
     let bodies = &unit.unit.bodies;
     // Relative to the unit's own origin: differences of places far away would have no digits.
     let places: Vec<[f64; 3]> = (0..bodies.len()).map(|slot| unit.place(slot, state, lane)).collect();
@@ -28,6 +34,12 @@ pub(super) fn why(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: us
             if distance < closest.0 {
                 closest = (distance, (bodies[i].min(bodies[j]), bodies[i].max(bodies[j])));
             }
+        }
+    }
+    for (&other, &place) in job.plan.active.iter().zip(massive) {
+        let (distance, body) = (distance(places[0], place), bodies[0]);
+        if distance < closest.0 {
+            closest = (distance, (body.min(other), body.max(other)));
         }
     }
     for center in job.plan.forces.iter().filter_map(|force| force.center()) {

@@ -1,0 +1,129 @@
+"""Compiled functions as right-hand sides: which they are, where they are, and whether they take data.
+
+The one signature is ``void f(double t, const double *y, double *rate)``, with a ``void *data`` at the end or without.
+"""
+
+from __future__ import annotations
+
+import ctypes
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+__all__ = ["Compiled", "compiled"]
+
+_SIGNATURE = "void f(double t, const double *y, double *rate), with void *data at the end or without"
+_FUNCTION: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]  # ctypes names it with an underscore
+_POINTER = ctypes.POINTER(ctypes.c_double)
+_PLAIN = "void(double,double*,double*)"
+_WITH_DATA = ("void(double,double*,double*,void*)", "void(double,double*,double*,double*)")
+
+
+class Compiled:
+    """A compiled function, its data, and what keeps both alive.
+
+    Attributes
+    ----------
+    where : tuple
+        The address of the function and of its data; None for a function that takes none.
+    """
+
+    def __init__(self, address: int | None, data: int | None, *keep: object) -> None:
+        if not address:
+            raise InvalidInput("fun", f"expected the address of {_SIGNATURE}, got {address}")
+        self.where = (address, data)
+        self._keep = keep
+
+
+def compiled(fun: Any, args: object) -> Compiled | None:
+    """Give the compiled function that this is, or None for a function of Python.
+
+    An address, a ``@cfunc`` of numba, a function of ctypes, or a ``scipy.LowLevelCallable``; `args` are its data as an
+    array of float64.
+
+    Raises
+    ------
+    InvalidInput
+        For a compiled function of another signature, and for data that it does not take.
+    """
+    if isinstance(fun, int | np.integer) and not isinstance(fun, bool):
+        data = _numbers(args)
+        return Compiled(int(fun), None if data is None else data.ctypes.data, data)
+    if isinstance(fun, _FUNCTION):
+        return _with(fun, ctypes.cast(fun, ctypes.c_void_p).value, _takes_data(_of_ctypes(fun)), args)
+    if isinstance(fun, tuple) and type(fun).__name__ == "LowLevelCallable":
+        return _low_level(fun, args)
+    if isinstance(getattr(fun, "address", None), int) and hasattr(fun, "native_name"):  # numba's CFunc
+        return _with(fun, fun.address, _takes_data(_of_numba(fun)), args)
+    return None
+
+
+def _with(fun: object, address: int | None, takes_data: bool, args: object) -> Compiled:
+    data = _numbers(args)
+    if data is not None and not takes_data:
+        raise InvalidInput(
+            "args", "expected none for a compiled function without data; add void *data to its arguments"
+        )
+    pointer = (0 if data is None else data.ctypes.data) if takes_data else None
+    return Compiled(address, pointer, fun, data)
+
+
+def _numbers(args: object) -> np.ndarray[Any, np.dtype[np.float64]] | None:
+    return None if args is None else float_array("args", args, (None,))
+
+
+def _takes_data(signature: str) -> bool:
+    if signature == _PLAIN:
+        return False
+    if signature in _WITH_DATA:
+        return True
+    raise InvalidInput("fun", f"expected a compiled function {_SIGNATURE}, got {signature}")
+
+
+def _of_ctypes(fun: Any) -> str:
+    """Its signature; one that declares none is taken for what is expected."""
+    if fun.argtypes is None:
+        return _PLAIN
+    names = {ctypes.c_double: "double", _POINTER: "double*", ctypes.c_void_p: "void*"}
+    result = "void" if fun.restype is None else fun.restype.__name__
+    return f"{result}({','.join(names.get(kind, kind.__name__) for kind in fun.argtypes)})"
+
+
+def _of_numba(fun: Any) -> str:
+    signature = fun._sig
+    names = {"float64": "double", "float64*": "double*", "void*": "void*", "none": "void"}
+    kinds = [names.get(str(kind), str(kind)) for kind in (signature.return_type, *signature.args)]
+    return f"{kinds[0]}({','.join(kinds[1:])})"
+
+
+def _low_level(fun: Any, args: object) -> Compiled:
+    """Take the pointers out of the capsule that SciPy keeps in the tuple; a C string there is the signature."""
+    api = ctypes.pythonapi
+    kinds: dict[str, tuple[type, list[type]]] = {
+        "PyCapsule_GetName": (ctypes.c_char_p, [ctypes.py_object]),
+        "PyCapsule_GetContext": (ctypes.c_void_p, [ctypes.py_object]),
+        "PyCapsule_GetPointer": (ctypes.c_void_p, [ctypes.py_object, ctypes.c_char_p]),
+    }
+
+    def ask(name: str, *arguments: object) -> Any:
+        prototype: Callable[..., Any] = ctypes.PYFUNCTYPE(kinds[name][0], *kinds[name][1])((name, api))
+        return prototype(*arguments)
+
+    capsule = tuple.__getitem__(fun, 0)
+    name = ask("PyCapsule_GetName", capsule)
+    if name is None:
+        raise InvalidInput("fun", f"expected a LowLevelCallable of {_SIGNATURE}, got one without a signature")
+    signature = name.decode().replace("const ", "").replace(" ", "")
+    address = ask("PyCapsule_GetPointer", capsule, name)
+    context = ask("PyCapsule_GetContext", capsule)
+    if context is None:
+        return _with(fun, address, _takes_data(signature), args)
+    if args is not None:
+        raise InvalidInput("args", "expected none beside the user_data of the LowLevelCallable; give one of them")
+    return Compiled(address, context if _takes_data(signature) else None, fun)

@@ -1,0 +1,382 @@
+"""Initial value problems of any function, asked and answered as SciPy's ``solve_ivp`` does; the core solves them."""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, fields
+from typing import TYPE_CHECKING, Any, TypeAlias
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array, number
+from visviva._compiled import compiled
+from visviva._keywords import known_keywords
+from visviva.errors import Interrupted, InvalidInput
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
+
+Function: TypeAlias = Callable[..., Any]
+
+_SMALLEST_RTOL = 100 * 2.0**-52
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False)
+class OdeSolution:
+    """The solution between its nodes: a polynomial for each step.
+
+    Attributes
+    ----------
+    ts : (S + 1,) ndarray
+        The nodes.
+    t_min, t_max : float
+        The ends of the span that it is good for; beyond them it is what the outermost steps say.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> solution = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0], rtol=1e-10, atol=1e-12, dense_output=True).sol
+    >>> abs(float(solution(1.0)[0]) - 0.36787944117) < 1e-9
+    True
+    """
+
+    ts: NDArray[np.float64]
+    _extension: tuple[NDArray[np.float64], ...]
+
+    @property
+    def t_min(self) -> float:
+        """The smaller end of the span."""
+        return float(min(self.ts[0], self.ts[-1]))
+
+    @property
+    def t_max(self) -> float:
+        """The larger end of the span."""
+        return float(max(self.ts[0], self.ts[-1]))
+
+    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Evaluate the solution: shape (n,) at one time, (n, T) at T times."""
+        times = float_array("t", t, None)
+        if times.ndim > 1:
+            raise InvalidInput("t", f"expected one time or an array of times, got shape {times.shape}")
+        states = _core.interpolate(self._extension, times.reshape(-1))
+        return states[0] if times.ndim == 0 else states.T
+
+    def __repr__(self) -> str:
+        return f"<OdeSolution of {len(self.ts) - 1} steps from t = {self.ts[0]} to {self.ts[-1]}>"
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False)
+class OdeResult:
+    """What `solve_ivp` gives, with the fields of SciPy's result.
+
+    Attributes
+    ----------
+    t : (T,) ndarray
+        Times: the nodes, or `t_eval` as far as the run came.
+    y : (n, T) ndarray
+        States there.
+    sol : OdeSolution or None
+        The solution as a function of time, if `dense_output`.
+    t_events : list of ndarray or None
+        For each event the times of its zeros.
+    y_events : list of ndarray or None
+        The states there, one in a row.
+    nfev : int
+        Evaluations of the right-hand side.
+    njev, nlu : int
+        Always 0: no method here takes Jacobians.
+    status : int
+        0 at the end of the span, 1 at an event that ends the run, -1 if the run could not go on.
+    message : str
+        The same in words.
+    success : bool
+        Whether `status` is not -1.
+    """
+
+    t: NDArray[np.float64]
+    y: NDArray[np.float64]
+    sol: OdeSolution | None
+    t_events: list[NDArray[np.float64]] | None
+    y_events: list[NDArray[np.float64]] | None
+    nfev: int
+    njev: int
+    nlu: int
+    status: int
+    message: str
+    success: bool
+
+    def __getitem__(self, name: str) -> Any:
+        if name not in self.keys():
+            raise KeyError(name)
+        return getattr(self, name)
+
+    def keys(self) -> list[str]:
+        """Names of the fields, so that ``dict(result)`` works."""
+        return [field.name for field in fields(self)]
+
+    def __repr__(self) -> str:
+        return (
+            f"OdeResult(status={self.status}, message={self.message!r}, nfev={self.nfev}, t of {len(self.t)}, "
+            f"y of shape {np.shape(self.y)})"
+        )
+
+
+@known_keywords
+def solve_ivp(
+    fun: Function | int,
+    t_span: Sequence[float],
+    y0: ArrayLike,
+    method: str | type = "RK45",
+    t_eval: ArrayLike | None = None,
+    dense_output: bool = False,
+    events: Function | Sequence[Function] | None = None,
+    vectorized: bool = False,
+    args: Sequence[Any] | NDArray[np.float64] | None = None,
+    *,
+    rtol: ArrayLike | None = None,
+    atol: ArrayLike | None = None,
+    first_step: float | None = None,
+    max_step: float = math.inf,
+    dt: float | None = None,
+    min_step: object = None,
+    jac: object = None,
+    jac_sparsity: object = None,
+    lband: object = None,
+    uband: object = None,
+) -> OdeResult:
+    """Solve ``y' = f(t, y)`` from ``y(t0) = y0``.
+
+    Arguments and result are those of ``scipy.integrate.solve_ivp``, and so are the norm of the error, the first step
+    and the limits of the steps: equal tolerances lead to about equal steps.
+
+    Parameters
+    ----------
+    fun : callable, int or LowLevelCallable
+        The right-hand side: a function of Python ``fun(t, y, *args)`` that returns n numbers, or a compiled function
+        ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of
+        numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A compiled function runs without the
+        GIL, and must be what it says: a wrong signature or address ends the process.
+    t_span : (t0, tf)
+        Where to start and to end. The end may be smaller, or infinite if an event ends the run.
+    y0 : (n,) array_like
+        The state at t0, real numbers.
+    method : str, optional
+        ``"RK45"`` (= ``"dormand_prince54"``), ``"RK23"`` (= ``"bogacki_shampine32"``), ``"DOP853"`` (= ``"dop853"``),
+        or the name of any explicit Runge-Kutta method of `visviva.methods`.
+    t_eval : (T,) array_like, optional
+        Times of the output, in the order of `t_span`. They do not steer: values between steps are interpolated.
+    dense_output : bool, optional
+        Whether the result gets ``sol``, the solution as a function of time.
+    events : callable or sequence of callables, optional
+        Functions ``event(t, y, *args)`` whose zeros are looked for where the sign changes from step to step, and
+        located to round-off on the interpolant. ``event.terminal`` = True ends the run at the first zero, a number at
+        that one; ``event.direction`` > 0 takes zeros on the way up only, < 0 on the way down only.
+    vectorized : bool, optional
+        Whether `fun` takes and returns states as columns (n, 1).
+    args : tuple or array, optional
+        Further arguments of `fun` and the events; for a compiled function an array of float64, its ``data``.
+    rtol, atol : float or (n,) array_like, optional
+        The estimated error of each number in a step is kept to ``atol + rtol*abs(y)``, in the root mean square.
+        By default 1e-3 and 1e-6.
+    first_step, max_step : float, optional
+        The first step, and the longest.
+    dt : float, optional
+        The step of a method without step control, such as ``"rk4"``, and required by it; the last step ends at tf.
+        Such a method takes none of the four before.
+    min_step, jac, jac_sparsity, lband, uband : optional
+        Arguments of SciPy's implicit methods; they have no effect, and a `UserWarning` says so.
+
+    Returns
+    -------
+    OdeResult
+        With ``t, y, sol, t_events, y_events, nfev, njev, nlu, status, message, success``.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name, before anything runs: complex states, implicit methods, times out of order, and so on.
+    visviva.Interrupted
+        After Ctrl-C; ``trajectory`` holds what was computed.
+    BaseException
+        An exception of `fun` or of an event, the same object.
+
+    References
+    ----------
+    E. Hairer, S. P. Nørsett & G. Wanner, Solving Ordinary Differential Equations I, 2nd ed. (1993), II.4 to II.6.
+
+    Examples
+    --------
+    A stone that is thrown upwards, until it is back:
+
+    >>> import numpy as np, visviva as vv
+    >>> def height(t, y):
+    ...     return y[0]
+    >>> height.terminal, height.direction = True, -1
+    >>> stone = vv.solve_ivp(lambda t, y: [y[1], -9.81], (0.0, 100.0), [0.0, 20.0], events=height)
+    >>> bool(abs(stone.t[-1] - 2 * 20.0 / 9.81) < 1e-12), stone.message
+    (True, 'A termination event occurred.')
+
+    Lorenz's equations, at given times:
+
+    >>> def lorenz(t, y, sigma, rho, beta):
+    ...     return [sigma * (y[1] - y[0]), y[0] * (rho - y[2]) - y[1], y[0] * y[1] - beta * y[2]]
+    >>> out = vv.solve_ivp(
+    ...     lorenz, (0, 1), [1, 1, 1], "DOP853", t_eval=np.linspace(0, 1, 5), args=(10, 28, 8 / 3), rtol=1e-9, atol=1e-9
+    ... )
+    >>> out.y.shape, bool(abs(out.y[0, -1] + 9.378) < 1e-3)
+    ((3, 5), True)
+    """
+    _warn_of_what_has_no_effect(
+        {"min_step": min_step, "jac": jac, "jac_sparsity": jac_sparsity, "lband": lband, "uband": uband}
+    )
+    native = compiled(fun, args)
+    if native is None and not callable(fun):
+        raise InvalidInput("fun", f"expected a function f(t, y) or a compiled one, got {type(fun).__name__}")
+    if native is not None and vectorized:
+        raise InvalidInput("vectorized", "expected False for a compiled function, got True; leave vectorized out")
+    asked: _core._Problem = {
+        "method": _method(method),
+        "span": _span(t_span),
+        "y0": _state(y0),
+        "rtol": _relative(rtol),
+        "atol": None if atol is None else _tolerance("atol", atol),
+        "first_step": None if first_step is None else number("first_step", first_step),
+        "max_step": None if max_step is None or max_step == math.inf else number("max_step", max_step),
+        "dt": None if dt is None else number("dt", dt),
+        "t_eval": None if t_eval is None else float_array("t_eval", t_eval, (None,)),
+        "dense_output": bool(dense_output),
+        "events": _events(events),
+        "args": [] if native is not None or args is None else _unpacked(args),
+        "vectorized": bool(vectorized),
+        "compiled": None if native is None else native.where,
+    }
+    found = _core.solve_ivp(fun, asked)
+    result = _result(found, asked)
+    if found["interrupted"]:
+        raise Interrupted("the run was interrupted", result) from found["cause"]
+    return result
+
+
+def _result(found: _core._Solved, asked: _core._Problem) -> OdeResult:
+    t, y = found["t"], found["y"].T
+    # As SciPy has it, so that `if not result.t` goes on working: a run that ended before the first output has lists.
+    nothing: Any = []
+    early = asked["t_eval"] is not None and not t.size
+    extension = found["extension"]
+    zeros = found["zeros"] if asked["events"] else None
+    return OdeResult(
+        t=nothing if early else t,
+        y=nothing if early else y,
+        sol=None if extension is None else OdeSolution(extension[0], extension),
+        t_events=None if zeros is None else [times for times, _ in zeros],
+        # An event without zeros has no states at all, as in SciPy.
+        y_events=None if zeros is None else [states if times.size else np.empty(0) for times, states in zeros],
+        nfev=found["nfev"],
+        njev=0,
+        nlu=0,
+        status=found["status"],
+        message=found["message"],
+        success=found["status"] >= 0,
+    )
+
+
+def _warn_of_what_has_no_effect(given: dict[str, object]) -> None:
+    names = [f"`{name}`" for name, value in given.items() if value is not None]
+    if names:
+        warnings.warn(f"The following arguments have no effect for a chosen solver: {', '.join(names)}.", stacklevel=4)
+
+
+def _method(method: object) -> str:
+    # SciPy takes its classes too; they have the names.
+    name = method.__name__ if isinstance(method, type) else method
+    if not isinstance(name, str):
+        raise InvalidInput("method", f"expected a name, got {type(method).__name__}")
+    return name if name.isascii() else name.encode(errors="replace").decode()
+
+
+def _span(t_span: object) -> tuple[float, float]:
+    times = list(t_span) if isinstance(t_span, Iterable) else []
+    if len(times) != 2:
+        raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}")
+    t0, end = times
+    endless = isinstance(end, float | np.floating) and math.isinf(end)
+    return number("t_span", t0), float(end) if endless else number("t_span", end)
+
+
+def _state(y0: object) -> NDArray[np.float64]:
+    array = np.asarray(y0)
+    if array.dtype.kind == "c":
+        raise InvalidInput(
+            "y0",
+            "expected real numbers, got complex ones; give real and imaginary parts as 2n numbers, "
+            "y0 = [*y.real, *y.imag], or use scipy.integrate.solve_ivp",
+        )
+    if array.dtype == np.float64 and array.ndim == 1 and isinstance(y0, np.ndarray | list | tuple):
+        return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])  # the core judges whether they are finite
+    return float_array("y0", y0, (None,))
+
+
+def _tolerance(name: str, value: object) -> list[float]:
+    if type(value) is float and math.isfinite(value):
+        return [value]
+    values: list[float] = np.atleast_1d(float_array(name, value, None)).tolist()
+    return values
+
+
+def _relative(rtol: object) -> list[float] | None:
+    if rtol is None:
+        return None
+    values = _tolerance("rtol", rtol)
+    if any(value < _SMALLEST_RTOL for value in values):
+        warnings.warn(
+            f"At least one element of `rtol` is too small. Setting `rtol = np.maximum(rtol, {_SMALLEST_RTOL})`.",
+            stacklevel=4,
+        )
+        values = [max(value, _SMALLEST_RTOL) for value in values]
+    return values
+
+
+class _NotSeveral(InvalidInput, TypeError):
+    """What SciPy calls a TypeError."""
+
+
+def _unpacked(args: object) -> list[Any]:
+    if not isinstance(args, Iterable):
+        raise _NotSeveral(
+            "args", f"Supplied 'args' cannot be unpacked. Please supply `args` as a tuple (e.g. `args=({args},)`)"
+        )
+    return list(args)
+
+
+def _events(events: Any) -> list[tuple[Function, float, int | None]]:
+    if events is None:
+        return []
+    several = list(events) if not callable(events) and isinstance(events, Iterable) else [events]
+    return [(event, _direction(event), _last(event)) for event in several]
+
+
+def _direction(event: Function) -> float:
+    if not callable(event):
+        raise InvalidInput("events", f"expected functions event(t, y), got {type(event).__name__}")
+    return number("events", getattr(event, "direction", 0))
+
+
+def _last(event: Function) -> int | None:
+    """Give the number of the zero that ends the run; None if none does."""
+    terminal = getattr(event, "terminal", None)
+    if terminal is None or terminal == 0:
+        return None
+    if isinstance(terminal, bool | np.bool_):
+        return 1
+    if isinstance(terminal, int | float | np.integer | np.floating) and int(terminal) == terminal and terminal > 0:
+        return int(terminal)
+    raise InvalidInput(
+        "events", f"The `terminal` attribute must be a bool or a positive whole number, got {terminal!r}"
+    )

@@ -1,0 +1,127 @@
+//! Closed forms: motions known at every time, so that any time costs the same and nothing is stepped.
+//!
+//! The one idea: a form looks at one ensemble member and at the forces that act on it, says whether it applies, and then
+//! makes the [`Motion`], which gives the states unrounded at any time after the start. One file each; the line in
+//! [`registry::CLOSED_FORMS`](crate::registry::CLOSED_FORMS) is what makes the plan look at it.
+//!
+//! Errors, beside half a unit in the last place of what is given: straight lines, parabolas and linear drag 1e-27 of the
+//! largest term of their sums; gyration 1e-27 times (1 + angle in radians) of it; Kepler orbits a few units in the last
+//! place times the conditioning ([`kepler`](crate::nbody::kepler)). What is beyond the range of `f64` is infinite.
+
+pub mod crossed_fields;
+pub mod fixed_center;
+pub mod free;
+pub mod linear_drag;
+pub mod one_massive;
+mod parabola;
+pub mod two_body;
+pub mod uniform;
+
+use crate::error::Result;
+use crate::forces::ForceTerm;
+pub use crate::nbody::two_body::ExactState;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::scaled::Scaled;
+use crate::parallel::Ticker;
+
+/// An ensemble member at its start, and what acts on it.
+#[derive(Debug)]
+pub struct Member<'a> {
+    /// Masses.
+    pub mass: &'a [f64],
+    /// Positions.
+    pub position: &'a [[f64; 3]],
+    /// Velocities.
+    pub velocity: &'a [[f64; 3]],
+    /// The forces that do anything to it, in order.
+    pub forces: Vec<&'a dyn ForceTerm>,
+}
+
+/// A closed form.
+#[derive(Debug)]
+pub struct ClosedForm {
+    /// What the plan calls the motion.
+    pub name: &'static str,
+    /// Why it applies.
+    pub reason: &'static str,
+    /// Whether it is that of a member.
+    pub applies: fn(&Member<'_>) -> bool,
+    /// The motion of a member to which it applies; errors are refusals by name, or that the caller asked to stop.
+    pub motion: fn(&Member<'_>, &mut Ticker<'_>) -> Result<Box<dyn Motion>>,
+}
+
+impl PartialEq for ClosedForm {
+    fn eq(&self, other: &Self) -> bool {
+        core::ptr::eq(self, other)
+    }
+}
+
+/// A motion, ready to be asked.
+pub trait Motion {
+    /// The states of all particles, in order and unrounded, so long after the start (before it, if negative).
+    ///
+    /// # Errors
+    /// [`Error::Interrupted`](crate::Error::Interrupted), and then some are missing.
+    fn states(
+        &self,
+        elapsed: DoubleDouble,
+        states: &mut Vec<ExactState>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
+}
+
+/// A particle that moves by itself.
+trait Path {
+    /// Its state.
+    fn state(&self, elapsed: DoubleDouble) -> ExactState;
+}
+
+/// Particles that move each by itself.
+struct Paths<P>(Vec<P>);
+
+impl<P: Path + 'static> Paths<P> {
+    /// From the path of each.
+    fn motion(
+        member: &Member<'_>,
+        ticker: &mut Ticker<'_>,
+        mut path: impl FnMut(usize) -> Result<P>,
+    ) -> Result<Box<dyn Motion>> {
+        let each = 0..member.mass.len();
+        let paths = each.map(|particle| ticker.tick().and_then(|()| path(particle)));
+        Ok(Box::new(Self(paths.collect::<Result<_>>()?)))
+    }
+}
+
+impl<P: Path> Motion for Paths<P> {
+    fn states(
+        &self,
+        elapsed: DoubleDouble,
+        states: &mut Vec<ExactState>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        states.clear();
+        for path in &self.0 {
+            ticker.tick()?;
+            states.push(path.state(elapsed));
+        }
+        Ok(())
+    }
+}
+
+/// The sum of the uniform fields among some forces.
+fn uniform_part(forces: &[&dyn ForceTerm]) -> [Scaled; 3] {
+    let fields = forces.iter().filter_map(|force| force.as_uniform());
+    fields.fold([Scaled::ZERO; 3], |sum, g| core::array::from_fn(|c| sum[c].plus(Scaled::from(g[c]))))
+}
+
+/// As an unrounded number of `f64`'s range; infinite beyond it.
+fn unrounded(value: Scaled) -> DoubleDouble {
+    let number = value.to_double_double();
+    if number.is_finite() { number } else { DoubleDouble::from(number.to_f64()) }
+}
+
+/// a + b, infinite beyond the range.
+fn sum(a: DoubleDouble, b: f64) -> DoubleDouble {
+    let sum = a + DoubleDouble::from(b);
+    if sum.is_finite() { sum } else { unrounded(Scaled::new(a, 0).plus(Scaled::from(b))) }
+}

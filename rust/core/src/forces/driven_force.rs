@@ -1,0 +1,149 @@
+//! A periodic drive: the same force on every body, a cosine of time.
+
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::term::{Bodies, ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::cosine::cosine;
+use crate::numerics::double_double::{DoubleDouble, two_product, two_sum};
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::tiered;
+use crate::units::Units;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in a force.
+const FORCE: [i32; 3] = [1, 1, -2];
+const FREQUENCY: [i32; 3] = [0, 0, -1];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "driven_force",
+    class_name: "DrivenForce",
+    summary: "A periodic force, the same on every body",
+    formula: "F = amplitude cos(frequency t + phase)",
+    notes: "t is the scene's own time, also far from 0, where no digit of the phase is lost. It acts by its force, so \
+            every mass must be positive; it does work and conserves nothing.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 6.5",
+    example: ">>> vv.DrivenForce([1.0, 0.0, 0.0], frequency=2.0)\n\
+              DrivenForce(amplitude=(1.0, 0.0, 0.0), frequency=2.0, phase=0.0)",
+    at_rest: "",
+    one_way: "its phase goes on with time",
+    parameters: &[
+        Parameter::new("amplitude", Kind::Vector, "The largest force").of(FORCE),
+        Parameter::number("frequency", FREQUENCY, "The angular frequency, in radians per time"),
+        Parameter::number("phase", [0; 3], "The phase at time 0, in radians").or(0.0),
+    ],
+    make: |values| {
+        let [amplitude, frequency, phase] = values else {
+            return Err(crate::Error::Internal("DrivenForce takes three parameters".to_owned()));
+        };
+        Ok(Arc::new(DrivenForce {
+            amplitude: amplitude.vector(),
+            frequency: frequency.number(),
+            phase: phase.number(),
+        }))
+    },
+};
+
+/// A drive.
+#[derive(Debug)]
+struct DrivenForce {
+    amplitude: [f64; 3],
+    frequency: f64,
+    phase: f64,
+}
+
+impl ForceTerm for DrivenForce {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let start = DoubleDouble::product(self.frequency, context.t0) + DoubleDouble::from(self.phase);
+        Box::new(Kernel {
+            shape: context.shape,
+            amplitude: context.units.take_vector(self.amplitude, FORCE),
+            frequency: context.units.take(self.frequency, FREQUENCY),
+            start: start.parts(),
+            inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
+        })
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn needs_mass(&self, _: usize) -> bool {
+        true
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.amplitude.iter().any(|&f| f != 0.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs { time: true, ..Needs::default() }
+    }
+    fn keeps_plane(&self) -> bool {
+        self.amplitude[2] == 0.0
+    }
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        let largest =
+            units.take_vector(self.amplitude, FORCE).into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+        bodies.iter().map(|&(_, mass, _)| largest / mass).fold(0.0, f64::max)
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    shape: Shape,
+    amplitude: [f64; 3],
+    frequency: f64,
+    /// The phase at the start of the run, as an unevaluated sum.
+    start: (f64, f64),
+    inverse_mass: Vec<Lanes>,
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, t: Lanes, a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (a, inverse_mass) = (V::view_mut(a), V::view(&force.inverse_mass));
+    let (turned, error) = two_product(V::splat(force.frequency), V::load(t));
+    let (high, rest) = two_sum(turned, V::splat(force.start.0));
+    let (high, low) = two_sum(high, rest + (error + V::splat(force.start.1)));
+    let wave = cosine(high, low);
+    for c in 0..components {
+        let push = V::splat(force.amplitude[c]) * wave;
+        for row in 0..rows {
+            let term = push * inverse_mass[row];
+            let a = &mut a[c * rows + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, t: Lanes, a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, phase.t, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { time: true, ..Needs::default() }
+    }
+}

@@ -1,0 +1,94 @@
+//! Linear drag: every velocity decays, in the medium that is at rest.
+
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::term::{ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Parameter};
+use crate::tiered;
+use std::sync::Arc;
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "linear_drag",
+    class_name: "LinearDrag",
+    summary: "Drag in proportion to the velocity, in a medium at rest",
+    formula: "a = −v / tau",
+    notes: "It has no potential energy and conserves nothing.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.5",
+    example: ">>> vv.LinearDrag(tau=2.0)\nLinearDrag(tau=2.0)",
+    at_rest: "medium",
+    one_way: "drag slows bodies down, run backward it would speed them up",
+    parameters: &[Parameter::positive("tau", [0, 0, 1], "The time in which a velocity falls by a factor e")],
+    make: |values| Ok(Arc::new(LinearDrag { tau: values[0].number() })),
+};
+
+/// Drag with the time of its decay.
+#[derive(Debug)]
+struct LinearDrag {
+    tau: f64,
+}
+
+impl ForceTerm for LinearDrag {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(Kernel { rate: -1.0 / context.units.take(self.tau, [0, 0, 1]) })
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+    fn keeps_plane(&self) -> bool {
+        true
+    }
+    fn as_linear_drag(&self) -> Option<f64> {
+        Some(self.tau)
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    rate: f64,
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(rate: f64, v: &[Lanes], a: &mut [Lanes], first: bool) {
+    for (v, a) in V::view(v).iter().zip(V::view_mut(a)) {
+        let term = V::splat(rate) * *v;
+        *a = if first { term } else { *a + term };
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](rate: f64, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self.rate, phase.v, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+}

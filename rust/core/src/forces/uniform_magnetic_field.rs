@@ -1,0 +1,242 @@
+//! A uniform magnetic field: the Lorentz force on charges.
+
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm, MagneticField};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::angles::sin_cos;
+use crate::numerics::element::{Element, PairMut, Pass, Shape, View};
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::points::distance;
+use crate::numerics::real::Real;
+use crate::numerics::scaled::Scaled;
+use crate::ode::passes::updates::add_compensated;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::tiered;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in charge times field.
+const FIELD: [i32; 3] = [0, 1, -1];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "uniform_magnetic_field",
+    class_name: "UniformMagneticField",
+    summary: "The Lorentz force of a magnetic field that is the same everywhere",
+    formula: "F = charge v × B",
+    notes: "It does no work: the kinetic energy is conserved, momentum and angular momentum are not. \
+            The unit of charge is that in which charge times velocity times B is a force.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.5",
+    example: ">>> vv.UniformMagneticField([0.0, 0.0, 2.0])\n\
+              UniformMagneticField(B=(0.0, 0.0, 2.0), charge=1.0)",
+    at_rest: "magnetic field without an electric one",
+    one_way: "",
+    parameters: &[
+        Parameter::new("B", Kind::AxialVector, "The field").of(FIELD),
+        Parameter::new(
+            "charge",
+            Kind::Numbers(Sign::Any),
+            "The charge of every body, or shape (N,): of each",
+        )
+        .or(1.0),
+    ],
+    make: |values| {
+        Ok(Arc::new(UniformMagneticField { field: values[0].vector(), charge: values[1].numbers() }))
+    },
+};
+
+/// A field and the charges that feel it.
+#[derive(Debug)]
+struct UniformMagneticField {
+    field: [f64; 3],
+    charge: Vec<f64>,
+}
+
+impl UniformMagneticField {
+    fn charge(&self, particle: usize) -> f64 {
+        MagneticField { field: self.field, charge: &self.charge }.charge_of(particle)
+    }
+}
+
+impl ForceTerm for UniformMagneticField {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let ratio = context.per_body(|system, slot| {
+            let charge = self.charge(system.bodies[slot]);
+            if charge == 0.0 { 0.0 } else { charge / system.mass[slot] }
+        });
+        let field = context.units.take_vector(self.field, FIELD);
+        Box::new(Kernel { shape: context.shape, field, ratio, turns: Vec::new() })
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        view.check_count("charge", self.charge.len())
+    }
+    fn needs_mass(&self, particle: usize) -> bool {
+        self.charge(particle) != 0.0
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.field.iter().any(|&b| b != 0.0) && self.charge.iter().any(|&q| q != 0.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs { rotation: true, ..Needs::default() }
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { energy: true, ..Conserves::NOTHING }
+    }
+    fn keeps_plane(&self) -> bool {
+        self.field[0] == 0.0 && self.field[1] == 0.0
+    }
+    fn as_magnetic(&self) -> Option<MagneticField<'_>> {
+        Some(MagneticField { field: self.field, charge: &self.charge })
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    shape: Shape,
+    field: [f64; 3],
+    /// Charge over mass.
+    ratio: Vec<Lanes>,
+    /// By what velocities turn, for the times asked for so far.
+    turns: Vec<Turns>,
+}
+
+/// Rotations about the field, a body to a row and lane.
+#[derive(Debug)]
+struct Turns {
+    h: f64,
+    /// Sines of the angles.
+    sine: Vec<Lanes>,
+    /// One minus their cosines.
+    versine: Vec<Lanes>,
+}
+
+impl Kernel {
+    /// The strength of the field, and its direction.
+    fn direction(&self) -> (f64, [f64; 3]) {
+        let size = distance(self.field, [0.0; 3]);
+        (size, self.field.map(|component| component / size))
+    }
+
+    fn turns(&mut self, h: f64) -> usize {
+        let known = self.turns.iter().position(|turns| turns.h == h);
+        known.unwrap_or_else(|| {
+            let (size, _) = self.direction();
+            let angle = |ratio: f64| ratio * size * h;
+            let sine = self.ratio.iter().map(|ratio| ratio.map(|ratio| sin_cos(angle(ratio)).0)).collect();
+            // 1 - cos x = 2 sin²(x/2), without the cancellation.
+            let versine = |ratio: f64| {
+                let half = sin_cos(0.5 * angle(ratio)).0;
+                2.0 * half * half
+            };
+            let versine = self.ratio.iter().map(|ratio| ratio.map(versine)).collect();
+            // Steps to times between nodes are all of different lengths.
+            if self.turns.len() == MOST_TURNS {
+                let _: Turns = self.turns.remove(MOST_TURNS - 1);
+            }
+            self.turns.push(Turns { h, sine, versine });
+            self.turns.len() - 1
+        })
+    }
+}
+
+/// Rotations that are kept: as many as a step has, and one for a step to a time between nodes.
+const MOST_TURNS: usize = 64;
+
+/// `v += sin φ (v × b) + (1 - cos φ) ((v × b) × b)`, compensated.
+struct Rotate<'a> {
+    shape: Shape,
+    axis: [f64; 3],
+    turns: &'a Turns,
+    v: PairMut<'a, Lanes>,
+}
+
+impl Pass<Lanes> for Rotate<'_> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) {
+        let Shape { rows, components } = self.shape;
+        let (v, rest) = V::pair_mut(self.v);
+        let (sine, versine) = (V::view(&self.turns.sine), V::view(&self.turns.versine));
+        let [bx, by, bz] = self.axis;
+        let axis = [V::splat(bx), V::splat(by), V::splat(bz)];
+        for row in 0..rows {
+            let mut speed = [V::zero(); 3];
+            for c in 0..components {
+                speed[c] = v[c * rows + row];
+            }
+            let across = cross(speed, axis);
+            let back = cross(across, axis);
+            for c in 0..components {
+                let change = sine[row].multiply_add(across[c], versine[row] * back[c]);
+                let at = c * rows + row;
+                (v[at], rest[at]) = add_compensated(v[at], rest[at], change);
+            }
+        }
+    }
+}
+
+#[inline(always)]
+fn cross<S: Real>(a: [S; 3], b: [S; 3]) -> [S; 3] {
+    [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]]
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (v, a, ratio) = (V::view(v), V::view_mut(a), V::view(&force.ratio));
+    let mut field = [V::zero(); 3];
+    for c in 0..3 {
+        field[c] = V::splat(force.field[c]);
+    }
+    for row in 0..rows {
+        let mut speed = [V::zero(); 3];
+        for c in 0..components {
+            speed[c] = v[c * rows + row];
+        }
+        for c in 0..components {
+            let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+            let term = ratio[row] * (speed[d] * field[e] - speed[e] * field[d]);
+            let a = &mut a[c * rows + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, phase.v, a, first);
+        Ok(())
+    }
+    fn rotate(&mut self, h: f64, v: PairMut<'_, Lanes>) {
+        let index = self.turns(h);
+        let (_, axis) = self.direction();
+        Lanes::pass(Rotate { shape: self.shape, axis, turns: &self.turns[index], v });
+    }
+    fn needs(&self) -> Needs {
+        Needs { rotation: true, ..Needs::default() }
+    }
+}

@@ -1,0 +1,77 @@
+//! How the motion of each ensemble member is found: by a closed form of the registry, or step by step.
+
+use super::super::Scene;
+use crate::closed_forms::{ClosedForm, Member};
+use crate::forces::ForceTerm;
+use crate::forces::term::Bodies;
+use crate::registry::CLOSED_FORMS;
+
+/// A closed form, or none for an integration.
+type Solution = Option<&'static ClosedForm>;
+
+/// The solution of each ensemble member.
+#[derive(Clone, Debug)]
+pub struct Solutions {
+    /// Each of them, or the first if all are the same.
+    each: Vec<Solution>,
+    members: usize,
+}
+
+impl Solutions {
+    /// What the registry has for the members of a scene.
+    pub fn of(scene: &Scene) -> Self {
+        let members = scene.copies;
+        let solution = |copy: usize| {
+            let member = member(scene, copy);
+            CLOSED_FORMS.iter().copied().find(|form| (form.applies)(&member))
+        };
+        let mut each: Vec<Solution> = (0..members).map(solution).collect();
+        if each.windows(2).all(|pair| pair[0] == pair[1]) {
+            each.truncate(1);
+        }
+        Self { each, members }
+    }
+
+    /// Step by step.
+    pub fn integration(members: usize) -> Self {
+        Self { each: vec![None], members }
+    }
+
+    /// That of a member.
+    pub fn of_member(&self, copy: usize) -> Solution {
+        if let [all] = self.each[..] { all } else { self.each.get(copy).copied().flatten() }
+    }
+
+    /// Whether any member is integrated.
+    pub fn integrates(&self) -> bool {
+        self.each.contains(&None)
+    }
+
+    /// Whether all members are integrated.
+    pub fn integrates_all(&self) -> bool {
+        self.each.iter().all(Option::is_none)
+    }
+
+    /// The solutions there are, in the order of their first members, and of how many members each is.
+    pub fn counts(&self) -> Vec<(Solution, usize)> {
+        if let [all] = self.each[..] {
+            return vec![(all, self.members)];
+        }
+        let mut counts: Vec<(Solution, usize)> = Vec::new();
+        for &solution in &self.each {
+            match counts.iter_mut().find(|(other, _)| *other == solution) {
+                Some((_, count)) => *count += 1,
+                None => counts.push((solution, 1)),
+            }
+        }
+        counts
+    }
+}
+
+/// A member of a scene, for closed forms to look at.
+pub fn member(scene: &Scene, copy: usize) -> Member<'_> {
+    let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
+    let alone = Bodies { copies: 1, particles: scene.particles, mass, position, velocity };
+    let forces = scene.forces.iter().filter(|force| force.acts(&alone));
+    Member { mass, position, velocity, forces: forces.map(|force| &**force as &dyn ForceTerm).collect() }
+}
