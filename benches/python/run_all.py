@@ -16,6 +16,7 @@ SCRIPTS = (
     "energy_growth",
     "massless",
     "outputs",
+    "events",
     "figure_eight_ensemble",
     "rutherford",
     "same_bits",

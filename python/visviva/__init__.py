@@ -54,7 +54,7 @@ _HOME = {
     "methods": "integrators",
     "solve_ivp": "initial_value",
 }
-_ROOMS = ("datasets", "errors", "forces", "orbits", "potentials", "problems", "scattering", "typing")
+_ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing")
 
 __all__ = [
     "AccuracyWarning",
@@ -90,6 +90,7 @@ __all__ = [
     "UnknownKeyword",
     "datasets",
     "errors",
+    "events",
     "forces",
     "load",
     "methods",
@@ -102,7 +103,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, forces, orbits, potentials, problems, scattering, typing
+    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, typing
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

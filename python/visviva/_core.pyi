@@ -27,6 +27,7 @@ class _Request(_Scene):
     max_step: float | None
     max_steps: int | None
     record: list[str]
+    events: list[dict[str, Any]]
 
 class _Problem(TypedDict):
     """An initial value problem; events with their direction and the number of the zero that ends the run."""

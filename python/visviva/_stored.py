@@ -49,6 +49,14 @@ _ARRAYS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "per_trajectory/rejected": ("i8", ("B",)),
     "per_trajectory/evaluations": ("i8", ("B",)),
 }
+# Of a run with events, all of them (K lines).
+_EVENTS: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "events/which": ("i8", ("K",)),
+    "events/t": ("f8", ("K",)),
+    "events/position": ("f8", ("K", "N", 3)),
+    "events/velocity": ("f8", ("K", "N", 3)),
+    "events/member": ("i8", ("K",)),
+}
 # The keys that files of version 1 have always had; those of a later version are not asked for.
 _HEADER: dict[str, type | tuple[type, ...]] = {
     "ensemble": bool,
@@ -170,12 +178,20 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool) -> None:
         if name not in arrays:
             raise Damaged(f"the file lacks the array {name!r}")
         _check_array(name, arrays[name], dtype, axes, lengths)
+    if any(name.startswith("events/") for name in arrays):
+        for name, (dtype, axes) in _EVENTS.items():
+            if name not in arrays:
+                raise Damaged(f"the file lacks the array {name!r}")
+            _check_array(name, arrays[name], dtype, axes, lengths)
+        copies = arrays["events/member"]
+        if ((copies < 0) | (copies >= lengths["B"])).any():
+            raise Damaged("the file has an event of a copy that there is not")
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if group == "columns" and member:
             axes = ("B", "T", *_COLUMNS.get(member, array.shape[2:]))
             _check_array(name, array, "f8", axes, lengths)
-        elif name not in _ARRAYS:
+        elif name not in _ARRAYS and name not in _EVENTS:
             # Another version may keep more of each copy.
             if group not in GROUPS or not member:
                 raise Damaged(f"the file has an array {name!r} that this version does not know")

@@ -18,6 +18,7 @@ from visviva.errors import InvalidInput
 from visviva.particles import Particles, read_only
 from visviva.recorded import Recorded
 from visviva.runnable import Runnable
+from visviva.status import Status
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
@@ -153,7 +154,7 @@ class EnsembleTrajectory(Recorded):
     energy : ndarray, shape (B, T)
     momentum, angular_momentum, center_of_mass : ndarray, shape (B, T, 3)
     status : ndarray of int8, shape (B,)
-        Values of `Status`; rows after a failure are NaN.
+        Values of `Status`; rows after a failure or a terminal event are NaN.
     stats : Stats
         Totals over the copies; `per_trajectory` has them one by one.
 
@@ -191,6 +192,8 @@ class EnsembleTrajectory(Recorded):
         for group in ("columns", "final", "per_trajectory"):
             result[group] = {name: values[rows] for name, values in self._result[group].items()}
         result["status"] = self.status[rows]
+        if "events" in self._result:
+            result["events"] = _of_copies(self._result["events"], range(len(self))[rows])
         own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
         result["stats"] = {**result["stats"], **own}
         if isinstance(chosen, slice):
@@ -204,7 +207,7 @@ class EnsembleTrajectory(Recorded):
         return (self[index] for index in range(len(self)))
 
     def __repr__(self) -> str:
-        failed = int(np.count_nonzero(self.status))
+        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
         copies = count(len(self), "copy", "copies")
         return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
 
@@ -239,11 +242,13 @@ class EnsembleTrajectory(Recorded):
         Raises
         ------
         visviva.InvalidInput
-            If copies failed, so that they do not share a time; ``out[i].final`` works for each.
+            If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
         """
         if self.status.any():
             failed = np.flatnonzero(self.status)[:8].tolist()
-            raise InvalidInput("final", f"copies {failed} failed, so the copies do not share a time; use out[i].final")
+            raise InvalidInput(
+                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
+            )
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
@@ -260,6 +265,15 @@ def _chosen(index: object, count: int) -> int | slice:
     if not -count <= number < count:
         raise IndexError(f"copy {number} of {count}")
     return number % count
+
+
+def _of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
+    """The lines of some copies, which are numbered anew."""
+    lines = [np.flatnonzero(events["member"] == copy) for copy in copies]
+    chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])
+    table = {name: array[chosen] for name, array in events.items()}
+    table["member"] = np.repeat(np.arange(len(lines), dtype=np.int64), [len(line) for line in lines])
+    return table
 
 
 def _rebuild(

@@ -2,7 +2,8 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
+``per_trajectory/<name>``, and ``events/<name>`` of a run with events. Every
+later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
@@ -68,6 +69,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
     arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
+    arrays |= {f"events/{name}": array for name, array in result.get("events", {}).items()}
     text = json.dumps(header, default=_plain).encode()
     # A link stays a link: what it points to is written.
     target = Path(os.path.realpath(name)) if name else Path()
@@ -134,6 +136,8 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
 def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
     result: dict[str, Any] = {group: {} for group in GROUPS}
     result |= {"t": arrays["t"], "status": arrays["status"], "stats": header["stats"], "plan": header["plan"]}
+    if any(name.startswith("events/") for name in arrays):
+        result["events"] = {}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if member:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import frozen, known_keywords
+from visviva.errors import InvalidInput
 from visviva.plan import Plan
 
 if TYPE_CHECKING:
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from visviva.events import EventTable
     from visviva.runnable import Runnable
 
 
@@ -155,6 +157,21 @@ class Recorded(ABC):
     def recorded(self) -> tuple[str, ...]:
         """Names of the recorded columns."""
         return tuple(self._result["columns"])
+
+    @property
+    def events(self) -> EventTable:
+        """The events that were found.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If none were asked for.
+        """
+        if "events" not in self._result:
+            raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
+        from visviva.events import EventTable
+
+        return EventTable._from_core(self._result["events"])
 
     @property
     def stats(self) -> Stats:

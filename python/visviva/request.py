@@ -29,8 +29,9 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from visviva._progress import Progress
+    from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import ColumnName, MethodName
+    from visviva.typing import ColumnName, EventFunction, MethodName
 
 __all__ = ["PlanRequest", "RunRequest", "asked_by", "execute"]
 
@@ -69,6 +70,14 @@ def _or_none(check: Callable[[str, object], _Check]) -> Callable[[str, object], 
     return lambda name, value: None if value is None else check(name, value)
 
 
+def _events(_: str, given: object) -> list[dict[str, Any]]:
+    if isinstance(given, tuple | list) and not given:
+        return []
+    from visviva.events import to_core
+
+    return to_core(given)
+
+
 def _told(check: Callable[[str, object], object]) -> dict[str, Any]:
     """For a field that the core is told of, by the field's name, as ``check(name, value)``."""
     return {"check": check}
@@ -86,12 +95,10 @@ class PlanRequest:
     max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
     max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
     record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
-    events: Sequence[object] = ()
+    events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
 
     def to_core(self, prepared: _core._Scene) -> _core._Request:
         """What ``_core.run`` and ``_core.plan`` both take."""
-        if self.events:
-            raise InvalidInput("events", "events are not offered yet; leave events=() and look at the recorded columns")
         t = self.t
         # An array or a sequence is output times; anything else must be one number, and `number` says so.
         end_only = getattr(t, "ndim", int(hasattr(t, "__len__"))) == 0

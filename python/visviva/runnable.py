@@ -59,7 +59,9 @@ class Runnable(ABC, Generic[_Result]):
             ``angular_momentum``, ``center_of_mass``, ``kinetic_energy``, ``potential_energy``, ``virial``. What is not
             asked for is not computed.
         events : sequence, optional
-            Must be empty: events are not offered yet.
+            Of `visviva.events`, or functions ``f(t, position, velocity)``: their zeros on the way come back in
+            ``out.events``. They change no bit of the run. A terminal one ends it: rows, ``final`` and the table end
+            there, with `Status.STOPPED`; no closed form is used. An ensemble with functions runs on one thread.
         threads : int, optional
             Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
         progress : bool or callable, optional

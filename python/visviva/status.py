@@ -6,7 +6,7 @@ __all__ = ["Status"]
 
 
 class Status(IntEnum):
-    """How a trajectory ended.
+    """How a trajectory ended: `STOPPED` is by a terminal event, which is no failure.
 
     Examples
     --------
@@ -20,3 +20,4 @@ class Status(IntEnum):
     STEP_FAILURE = 2
     INTERRUPTED = 3
     TOO_MANY_STEPS = 4
+    STOPPED = 5

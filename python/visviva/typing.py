@@ -3,11 +3,18 @@
 `MethodName` and `ColumnName` are written by ``tools/write_names.py`` from what the core has; a test compares.
 """
 
-from typing import Literal, TypeAlias
+from collections.abc import Callable
+from typing import Any, Literal, TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
 
 from visviva._progress import Progress, Report
 
-__all__ = ["ColumnName", "MethodName", "Progress", "Report"]
+__all__ = ["ColumnName", "EventFunction", "MethodName", "Progress", "Report"]
+
+EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], Any]
+"""A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
 
 # written by tools/write_names.py: begin
 MethodName: TypeAlias = Literal[

@@ -102,7 +102,7 @@ scene.run(1, t_eval=[1])                            | t_eval      | ; the output
 scene.plan(1, t_eval=[1])                           | t_eval      | ; the output times are t$
 scene.run([[1.0]])                                  | t           | expected an array with one axis, got shape \(1, 1\)
 P([1e308, 1e308], apart)                            | mass        | total is within the range of float64, but the largest is 1e\+308
-vv.Scene(P([1e300, 1e300], apart), vv.Gravity(1e10)).run(1) | G   | G = 10000000000.0 and a mass of 1e\+300
+vv.Scene(P([1e300, 1e300], apart), vv.Gravity(1e10)).run(1) | mass | G = 10000000000.0 and a mass of 1e\+300
 setattr(vv.Gravity(1.0), "soft", 5)                 | soft        | a Gravity is frozen; .* did you mean 'softening'\?
 setattr(vv.Gravity(1.0), "softening", 5)            | softening   | dataclasses.replace\(gravity, softening=…\)
 setattr(scene, "t0", 5)                             | t0          | a Scene is frozen; .*dataclasses.replace\(scene, t0=…\)

@@ -56,7 +56,14 @@ def test_what_needs_a_body_says_so(scene: vv.Scene) -> None:
 def test_the_core_itself_refuses_no_copies(shape: tuple[int, int]) -> None:
     request: dict[str, Any] = EMPTY[1]._keywords | {"mass": np.zeros(shape)}
     request |= {name: np.zeros((*shape, 3)) for name in ("position", "velocity")}
-    request |= {"times": np.ones(1), "end_only": True, "method": "auto", "rtol": 1e-9, "record": list(COLUMNS)}
+    request |= {
+        "times": np.ones(1),
+        "end_only": True,
+        "method": "auto",
+        "rtol": 1e-9,
+        "record": list(COLUMNS),
+        "events": [],
+    }
     request |= dict.fromkeys(("dt", "atol", "max_step", "max_steps"))
     for call in (_core.plan, lambda asked: _core.run(asked, threads=None, progress=None, ensemble=True)):
         with pytest.raises(vv.InvalidInput, match="mass: expected at least one copy"):

@@ -174,6 +174,8 @@ def forces_follow_from_the_energy(recipe: Recipe) -> None:
     bodies = scene.particles
     if not kept_by_forces(scene, np.zeros(3))["energy"]:
         raise Refused("these forces keep no energy")
+    if any(isinstance(force, vv.UniformMagneticField) for force in scene.forces):
+        raise Refused("a magnetic field keeps the energy, but has no potential")
     rng = np.random.default_rng(recipe.seed)
     direction = rng.uniform(-1.0, 1.0, bodies.position.shape)
     # The difference errs by h² (of scenes with a scale of 2) and by roundings over h: least about here.

@@ -110,6 +110,7 @@ pub fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -
         max_steps: None,
         record: vec!["position".to_owned(), "velocity".to_owned()],
         threads,
+        events: Vec::new(),
     }
 }
 

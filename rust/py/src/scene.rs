@@ -3,12 +3,13 @@
 //! The dictionaries that come and go here are described in `visviva/_core.pyi`: `input` reads them, `output`
 //! writes them.
 
+mod events;
 mod input;
 mod output;
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
-use crate::gate::compute;
+use crate::gate::{compute, is_ctrl_c};
 use input::{Array, Asked, forces as described, points, snapshot};
 use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
@@ -25,7 +26,7 @@ use visviva_core::scene::run::run as run_scene;
 /// Plans a run without running it.
 #[pyfunction]
 pub(crate) fn plan<'py>(py: Python<'py>, asked: Asked<'py>) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, request) = asked.prepared(None)?;
+    let (scene, request, _) = asked.prepared(None)?;
     let plan = compute(py, 0, None, |_| Plan::new(&scene, &request))?.whole(py)?;
     plan_dict(py, &plan)
 }
@@ -40,10 +41,16 @@ pub(crate) fn run<'py>(
     progress: Option<Py<PyAny>>,
     ensemble: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, request) = asked.prepared(threads)?;
+    let (scene, request, raised) = asked.prepared(threads)?;
     let start = std::time::Instant::now();
     let outcome = compute(py, 0, progress.as_ref(), |ticker| run_scene(&scene, &request, ticker))?;
-    let (output, interrupted) = outcome.partial(py)?;
+    let (output, mut interrupted) = outcome.partial(py)?;
+    if let Some(exception) = raised.take() {
+        if !is_ctrl_c(py, &exception) {
+            return Err(exception);
+        }
+        interrupted = true;
+    }
     let dict = output_dict(py, &scene, request, output, start.elapsed().as_secs_f64(), ensemble)?;
     if interrupted {
         // Also for a batch, and for a run that ended before it noticed: Ctrl-C is never swallowed.

@@ -307,6 +307,19 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         }
     }
 
+    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
+        let len = self.stages.len();
+        for term in 0..self.terms() {
+            let mut sums = [S::zero(); 2];
+            for (sum, weights) in sums.iter_mut().zip(&self.dense) {
+                for (stage, weights) in weights.iter().enumerate() {
+                    *sum += weights[term] * self.stages.k[stage * len + coordinate];
+                }
+            }
+            into.push(sums);
+        }
+    }
+
     fn terms(&self) -> usize {
         self.dense[1].first().map_or(0, Vec::len)
     }

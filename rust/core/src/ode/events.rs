@@ -101,7 +101,10 @@ const MOST_ITERATIONS: usize = 200;
 
 /// A zero between two points with values of different signs, to round-off: T. R. Chandrupatla, Adv. Eng. Software 28 (1997)
 /// 145, which takes inverse quadratic interpolation where that is safe and halves the interval where it is not.
-fn zero([(a, at_a), (b, at_b)]: [(f64, f64); 2], mut value: impl FnMut(f64) -> Result<f64>) -> Result<f64> {
+pub(crate) fn zero(
+    [(a, at_a), (b, at_b)]: [(f64, f64); 2],
+    mut value: impl FnMut(f64) -> Result<f64>,
+) -> Result<f64> {
     if at_a == 0.0 {
         return Ok(a);
     }

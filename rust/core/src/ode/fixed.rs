@@ -58,15 +58,43 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
 }
 
 /// Who looks at the states of a run.
-pub trait Recorder<S> {
+pub trait Recorder<S: Element> {
     /// Takes the state at an output time; to refuse it ends the run.
     ///
     /// # Errors
     /// Whatever ends the run.
     fn record(&mut self, index: usize, state: &State<S>, ticker: &mut Ticker<'_>) -> Result<()>;
 
+    /// The last output, if each step up to it is to be looked into.
+    fn watches(&self) -> Option<usize> {
+        None
+    }
+
+    /// Looks into the step that led to the present node, or into a part of the next one; `false` ends the run.
+    ///
+    /// # Errors
+    /// Whatever ends the run.
+    fn look(&mut self, taken: Taken<'_, S>, ticker: &mut Ticker<'_>) -> Result<bool> {
+        let _ = (taken, ticker);
+        Ok(true)
+    }
+
     /// Whether the run is worth going on with; asked every few steps.
     fn goes_on(&mut self, state: &State<S>) -> bool;
+}
+
+/// A step that was taken, to be looked into.
+pub struct Taken<'a, S: Element> {
+    /// The present node.
+    pub node: u64,
+    /// The settled state there.
+    pub present: &'a State<S>,
+    /// The state that the run has come to past the present node, and how far past; else it has come to the node.
+    pub past: Option<(f64, &'a State<S>)>,
+    /// To take shadow steps from the present node.
+    pub stepper: &'a mut dyn Stepper<S>,
+    /// For those steps.
+    pub system: &'a mut dyn System<S>,
 }
 
 /// How a run ended.
@@ -93,6 +121,7 @@ pub fn run<S: Element>(
     let outcome = (|| {
         stepper.restart();
         let mut between = None;
+        let watches = recorder.watches();
         let mut before = system.stops_midway().then(|| state.clone());
         for (index, place) in places.enumerate() {
             while taken < place.node {
@@ -106,6 +135,7 @@ pub fn run<S: Element>(
                 }
                 let at_most =
                     (place.node.min(max_steps) - taken).min(PROGRESS_STEPS - taken % PROGRESS_STEPS);
+                let at_most = if watches.is_some() { 1 } else { at_most };
                 taken += match stepper.step(taken, at_most, state, system, ticker) {
                     Ok(steps) => steps,
                     Err(error) => {
@@ -125,6 +155,14 @@ pub fn run<S: Element>(
                         return Ok(());
                     }
                 }
+                if watches.is_some() {
+                    stepper.settle(state);
+                    let step =
+                        Taken { node: taken, present: state, past: None, stepper: &mut *stepper, system };
+                    if !recorder.look(step, ticker)? {
+                        return Ok(());
+                    }
+                }
                 if let Err(error) = ticker.tick() {
                     stepper.settle(state);
                     return Err(error);
@@ -140,6 +178,11 @@ pub fn run<S: Element>(
                     &*between
                 }
             };
+            if let (true, Some(past)) = (watches == Some(index), place.past) {
+                let past = Some((past, reached));
+                let step = Taken { node: taken, present: state, past, stepper: &mut *stepper, system };
+                let _: bool = recorder.look(step, ticker)?;
+            }
             recorder.record(index, reached, ticker)?;
         }
         ticker.advance(taken % PROGRESS_STEPS);

@@ -81,6 +81,13 @@ pub trait Trial<S: Controlled>: Send {
     /// `y(t + θh) = y + θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`.
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>);
 
+    /// Of a system of the second order: the terms of the accelerations' weighted sums in one coordinate (times h²) and in its
+    /// velocity (times h), in the basis of [`extension`](Self::extension). The coordinate moves by `θh` times its velocity,
+    /// besides.
+    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
+        let _ = (coordinate, into);
+    }
+
     /// How many terms the continuous extension has.
     fn terms(&self) -> usize;
 

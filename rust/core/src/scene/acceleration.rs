@@ -26,6 +26,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         max_step: None,
         max_steps: None,
         record: Vec::new(),
+        events: Vec::new(),
         threads,
     };
     let mut plan = Plan::new(scene, &request)?;

@@ -4,9 +4,11 @@
 //! units each at its own pace. What a unit gives depends on nothing but the unit.
 
 mod adaptive;
+mod events;
 mod fixed;
 mod report;
 
+pub use events::Found;
 pub use report::{Counts, Ending, Report};
 
 use super::Scene;
@@ -37,6 +39,8 @@ pub struct Job<'a> {
     pub max_step: f64,
     /// Most steps.
     pub max_steps: u64,
+    /// Whether the events of the plan are looked for.
+    pub watches: bool,
     /// Where the records go.
     pub writer: &'a Writer<'a>,
 }
@@ -45,6 +49,11 @@ impl Job<'_> {
     /// The last output time.
     fn end(&self) -> f64 {
         self.times[self.times.len() - 1]
+    }
+
+    /// Whether anything is looked for on the way.
+    fn watched(&self) -> bool {
+        self.watches && !self.plan.events.is_empty()
     }
 
     fn prepare(&self, unit: &Unit) -> Prepared {
@@ -74,10 +83,22 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
 ///
 /// # Errors
 /// As [`run`].
-pub fn run_units(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    if job.plan.guided {
-        return run_guided(job, units, ticker);
+pub fn run_units(job: &Job<'_>, units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
+    if !job.plan.guided {
+        return run_apart(job, units, ticker);
     }
+    // Bodies that are looked at together record nothing, and nobody follows them.
+    let (guided, watched): (Vec<Unit>, Vec<Unit>) =
+        units.into_iter().partition(|unit| !unit.recorded.is_empty());
+    let mut reports = run_guided(job, guided, ticker)?;
+    if !watched.is_empty() {
+        reports.extend(run_apart(job, watched, ticker)?);
+    }
+    Ok(reports)
+}
+
+/// As [`run_units`], of units that nobody follows.
+fn run_apart(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
     // Units share lanes with units of the same make-up; massive bodies alone differ from those with
     // massless ones beside them.
     units.sort_by_key(|unit| unit.make_up);
@@ -107,15 +128,18 @@ fn run_guided(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> R
     units.sort_by_key(|unit| (unit.copy, unit.make_up));
     let (mut guides, mut followers): (Vec<Unit>, Vec<&[Unit]>) = (Vec::new(), Vec::new());
     for of_copy in units.chunk_by(|a, b| a.copy == b.copy) {
-        let recorded = !of_copy[0].follows;
-        let (copy, massless) = (of_copy[0].copy, &of_copy[usize::from(recorded)..]);
+        let (first, active) = (&of_copy[0], job.plan.active.len());
+        let massless = &of_copy[usize::from(!first.follows)..];
+        let guide = if first.follows { job.plan.guide(first.copy, false) } else { first.clone() };
         let pieces = job.plan.pieces(massless.len(), over);
-        guides.push(job.plan.guide(copy, recorded));
+        // An event ends it for all pieces at the same step: what they cost is the same on any number of threads.
+        let once_more = Unit { recorded: active..active, ..guide.clone() };
+        guides.push(guide);
         // Whole lanes for all but the last piece.
         let mut pieces = massless.chunks(massless.len().div_ceil(pieces).next_multiple_of(WIDTH).max(WIDTH));
         followers.push(pieces.next().unwrap_or_default());
         for piece in pieces {
-            guides.push(job.plan.guide(copy, false));
+            guides.push(once_more.clone());
             followers.push(piece);
         }
     }

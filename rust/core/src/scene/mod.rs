@@ -6,6 +6,7 @@
 pub mod acceleration;
 pub mod closed_form;
 pub mod columns;
+pub mod events;
 pub mod frame;
 pub mod integrate;
 pub mod layout;

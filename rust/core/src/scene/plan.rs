@@ -1,6 +1,7 @@
 //! The plan: a pure function from (scene, request) to what will be done and what will be skipped.
 
 mod coupling;
+mod events;
 mod explain;
 mod solutions;
 
@@ -10,6 +11,7 @@ pub use solutions::{Solutions, member};
 
 use super::Scene;
 use super::closed_form::rows_per_chunk;
+use super::events::Event;
 use super::frame::{Origin, Units, closed};
 use super::layout::Layout;
 use super::request::{Checked, Request};
@@ -76,6 +78,8 @@ pub struct Plan {
     pub threads: (usize, usize),
     /// Output times between the start and the end.
     pub outputs_between: usize,
+    /// What is looked for on the way.
+    pub events: Arc<[Event]>,
     /// Columns to be computed.
     pub record: Vec<String>,
     /// The time of the scene.
@@ -104,7 +108,10 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        let solutions = if automatic { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
+        // Events are looked for on steps.
+        let closed_forms = automatic && request.events.is_empty();
+        let solutions =
+            if closed_forms { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
         let closed = solutions.integrates() && closed(&forces);
         let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
@@ -143,6 +150,7 @@ impl Plan {
             guided: false,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
+            events: request.events.clone().into(),
             record: request.record.clone(),
             t0: scene.t0,
             copies: scene.copies,
@@ -155,6 +163,9 @@ impl Plan {
 
     fn share_threads(&self, request: &Request) -> (usize, usize) {
         let threads = request.threads;
+        if self.events.iter().any(Event::calls) {
+            return (1, 1);
+        }
         if !self.solutions.integrates() {
             let rows = self.copies.saturating_mul(request.times.len());
             let work = rows.saturating_mul(self.particles);
@@ -211,12 +222,14 @@ impl Plan {
             leads,
             follows: false,
             make_up: 0,
+            events: Arc::from([]),
         }
     }
 
     /// The units of the integration, in the order in which they are begun.
     pub fn unit_list(&self) -> Vec<Unit> {
-        let kinds = self.kinds();
+        let mut kinds = self.kinds();
+        self.watch(&mut kinds);
         let kinds = &kinds;
         (0..self.copies)
             .flat_map(|copy| kinds.iter().enumerate().map(move |(index, kind)| (copy, index, kind)))
@@ -226,6 +239,7 @@ impl Plan {
 
     /// What each copy is made of: a unit for each group of bodies.
     fn kinds(&self) -> Vec<Unit> {
+        let none: Arc<[usize]> = Arc::from([]);
         let kind = |bodies: Arc<[usize]>, active, recorded, make_up| Unit {
             copy: 0,
             bodies,
@@ -234,6 +248,7 @@ impl Plan {
             leads: false,
             follows: false,
             make_up,
+            events: Arc::clone(&none),
         };
         let active = self.active.len();
         // Bodies by themselves are all of one make-up, whichever they are.

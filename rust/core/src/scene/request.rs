@@ -1,6 +1,7 @@
 //! What is asked of a scene: times, method, tolerances, columns; checked before anything runs.
 
 use super::Scene;
+use super::events::{self, Event};
 use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
 use crate::ode::Method;
@@ -37,6 +38,8 @@ pub struct Request {
     pub max_steps: Option<i64>,
     /// Names from [`columns`].
     pub record: Vec<String>,
+    /// What is looked for on the way.
+    pub events: Vec<Event>,
     /// Threads.
     pub threads: usize,
 }
@@ -84,6 +87,7 @@ impl Request {
                 return Err(unknown("record", column, columns()));
             }
         }
+        events::check(&self.events, scene.particles)?;
         let direction = self.direction(scene)?;
         self.check_tolerances(method)?;
         if let Some(step) = self.max_step {

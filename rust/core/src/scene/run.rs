@@ -1,6 +1,7 @@
 //! From a scene and a request to columns: plan, do, put together.
 
 mod derived;
+mod events;
 mod patterns;
 mod reached;
 mod resolved;
@@ -16,6 +17,7 @@ use crate::error::{Error, Result};
 use crate::memory;
 use crate::parallel::Ticker;
 use derived::derive;
+pub use events::Events;
 use patterns::patterns;
 use reached::gather;
 
@@ -54,6 +56,8 @@ pub struct Output {
     pub outcomes: Vec<Outcome>,
     /// The states reached.
     pub reached: Reached,
+    /// The events found.
+    pub events: Events,
     /// Of a scene of one copy, what is still to be made NaN where the rows beyond the last common one are wanted at all:
     /// the pages of millions of them may never have been touched.
     pub missing: Vec<Missing>,
@@ -110,8 +114,10 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
     let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
     let mut missing = Vec::new();
+    let mut events = Events::default();
     for part in &parts {
-        missing = run_part(part, request, &mut columns, &mut outcomes, &mut reached, ticker)?;
+        let into = (&mut columns, &mut outcomes[..], &mut reached, &mut events);
+        missing = run_part(part, request, into, ticker)?;
         if scene.copies > 1 {
             columns.finish(&core::mem::take(&mut missing));
         }
@@ -130,7 +136,8 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
             give_back(core::mem::take(array));
         }
     }
-    Ok(Output { plan, columns, outcomes, reached, missing })
+    events.sort(plan.direction);
+    Ok(Output { plan, columns, outcomes, reached, events, missing })
 }
 
 /// Refuses what there is no memory for: the columns, the times of each thread, the states reached.
@@ -156,9 +163,7 @@ fn check_memory(scene: &Scene, request: &Request, wanted: &Wanted, threads: usiz
 fn run_part(
     part: &Part<'_>,
     request: &Request,
-    columns: &mut Columns,
-    outcomes: &mut [Outcome],
-    reached: &mut Reached,
+    (columns, outcomes, reached, events): (&mut Columns, &mut [Outcome], &mut Reached, &mut Events),
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Missing>> {
     let Part { scene, plan, .. } = *part;
@@ -188,10 +193,11 @@ fn run_part(
         atol: request.atol,
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
+        watches: true,
         writer: &writer,
     };
     let reports = integrate::run(&job, ticker)?;
-    let missing: Vec<Missing> = reports
+    let mut missing: Vec<Missing> = reports
         .iter()
         .filter(|report| report.rows < request.times.len())
         .flat_map(|report| {
@@ -204,6 +210,8 @@ fn run_part(
         })
         .collect();
     gather(part, request, &reports, columns, outcomes, reached, ticker)?;
+    events.gather(part, &reports, outcomes);
+    missing.extend(events::cut(part, request, outcomes));
     resolved::look(part, request, outcomes, reached, ticker)?;
     Ok(missing)
 }

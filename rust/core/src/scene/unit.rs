@@ -41,9 +41,16 @@ pub struct Unit {
     pub follows: bool,
     /// Units of the same make-up may share lanes: forces see no difference but in numbers.
     pub make_up: usize,
+    /// The events that are looked for in it.
+    pub events: Arc<[usize]>,
 }
 
 impl Unit {
+    /// Whether it has a report. Massive bodies that are integrated once more, for massless ones to follow, have none.
+    pub fn reports(&self) -> bool {
+        !self.recorded.is_empty() || self.make_up != 0
+    }
+
     /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
     /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {

@@ -1,5 +1,6 @@
 //! What Python asks of a scene: its keywords as the core's plain data.
 
+use super::events::{Raised, events};
 use crate::arrays::copied;
 use crate::errors::raised;
 use crate::registry;
@@ -33,14 +34,15 @@ pub(crate) struct Asked<'py> {
     max_step: Option<f64>,
     max_steps: Option<i64>,
     record: Vec<String>,
+    events: Vec<Bound<'py, PyDict>>,
 }
 
 impl Asked<'_> {
-    /// The scene and the request, to be run on so many threads.
+    /// The scene and the request, to be run on so many threads, and what Python functions among the events raise.
     ///
     /// # Errors
     /// `InvalidInput` for arrays whose shapes do not agree, no copies, an unknown force, a number of threads that cannot be.
-    pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request)> {
+    pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request, Raised)> {
         let py = self.forces.py();
         let (mass, [copies, particles]) = copied("mass", &self.mass, [None, None])?;
         if copies == 0 {
@@ -55,11 +57,14 @@ impl Asked<'_> {
         let (t0, forces) = (self.t0, forces(&self.forces)?);
         let threads = thread_count(threads).map_err(|error| raised(py, error))?;
         let (times, _) = copied("t", &self.times, [None])?;
+        let raised = Raised::default();
+        let events = events(&self.events, particles, &raised)?;
         let Self { method, dt, rtol, atol, max_step, max_steps, record, .. } = self;
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let scene = Scene { copies, particles, mass, position, velocity, forces, t0 };
-        Ok((scene, Request { times, method, dt, rtol, atol, max_step, max_steps, record, threads }))
+        let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, threads };
+        Ok((scene, request, raised))
     }
 }
 

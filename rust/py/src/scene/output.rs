@@ -64,6 +64,7 @@ pub(super) fn output_dict<'py>(
     }
     let dict = PyDict::new(py);
     let outcomes = &output.outcomes;
+    let looked_for = !request.events.is_empty();
     let span = request.times.last().map_or(0.0, |end| (end - scene.t0).abs());
     let mut reached = request.times;
     reached.truncate(times);
@@ -72,6 +73,22 @@ pub(super) fn output_dict<'py>(
     dict.set_item("plan", plan_dict(py, &output.plan)?)?;
     let statuses: Vec<i8> = outcomes.iter().map(|outcome| status(&outcome.ending)).collect();
     dict.set_item("status", moved(py, statuses, &[copies])?)?;
+
+    if looked_for {
+        let found = &output.events;
+        let events = PyDict::new(py);
+        let shape = [found.len(), particles, 3];
+        let whole = |of: fn((usize, usize, f64)) -> usize| {
+            moved(py, found.lines().map(|line| of(line) as i64).collect::<Vec<i64>>(), &shape[..1])
+        };
+        events.set_item("member", whole(|line| line.0)?)?;
+        events.set_item("which", whole(|line| line.1)?)?;
+        events
+            .set_item("t", moved(py, found.lines().map(|line| line.2).collect::<Vec<f64>>(), &shape[..1])?)?;
+        events.set_item("position", moved(py, found.states(0, particles), &shape)?)?;
+        events.set_item("velocity", moved(py, found.states(1, particles), &shape)?)?;
+        dict.set_item("events", events)?;
+    }
 
     let (totals, each) = (PyDict::new(py), PyDict::new(py));
     type Count = fn(&Outcome) -> u64;
@@ -123,6 +140,7 @@ fn status(ending: &Ending) -> i8 {
         Ending::NoStep | Ending::NotFinite => 2,
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
+        Ending::Stopped => 5,
     }
 }
 
@@ -130,7 +148,7 @@ fn status(ending: &Ending) -> i8 {
 fn failure(outcome: &Outcome) -> Option<Error> {
     let time = outcome.time;
     match &outcome.ending {
-        Ending::Finished => None,
+        Ending::Finished | Ending::Stopped => None,
         Ending::CloseEncounter { bodies, distance } => {
             Some(Error::CloseEncounter { time, bodies: *bodies, distance: *distance })
         }

@@ -4,6 +4,7 @@
 //! there is one unit at a time, in all lanes. Massless bodies go through each step of the massive ones in the same way,
 //! before those are moved on ([`followers`]).
 
+mod events;
 mod followers;
 mod guide;
 mod measure;
@@ -12,6 +13,7 @@ mod stuck;
 
 use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
+use super::events::Watch;
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
@@ -74,7 +76,7 @@ pub(super) fn run(
 }
 
 /// A unit in its lane (in all lanes, if packed).
-struct Slot {
+struct Slot<'a> {
     unit: Prepared,
     /// Its place among the units of the run.
     index: usize,
@@ -82,6 +84,8 @@ struct Slot {
     counts: Counts,
     /// How much of it was counted as progress.
     progress: u64,
+    /// Its events, if it has any.
+    watch: Option<Box<Watch<'a>>>,
 }
 
 /// What moves the units in the lanes.
@@ -107,7 +111,7 @@ struct Run<'a> {
     threads: usize,
     layout: Layout,
     waiting: Enumerate<slice::Iter<'a, Unit>>,
-    slots: [Option<Slot>; WIDTH],
+    slots: [Option<Slot<'a>>; WIDTH],
     /// The reports of the units that have ended, and their places among the units of the run.
     reports: Vec<(usize, Report)>,
     /// Output times as elapsed time in the plan's units.
@@ -234,10 +238,12 @@ impl<'a> Run<'a> {
         self.part.from = Lanes::select(mask, Lanes::zero(), self.part.from);
         self.clock.recount(mask, self.part.length);
         let counts = Counts { evaluations: self.cost.start, ..Counts::default() };
-        let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0 };
+        let watched = self.job.watched();
+        let watch = if watched { Watch::begin(self.job, &unit, (&self.state, lane), ticker)? } else { None };
+        let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
         self.record_start(&mut slot, lane, ticker)?;
         if self.end() == 0.0 {
-            self.finish(&slot, lane, self.job.scene.t0, Ending::Finished);
+            self.finish(slot, lane, self.job.scene.t0, Ending::Finished);
         } else {
             self.slots[lane] = Some(slot);
             self.part.fresh = self.part.fresh.or(mask);
@@ -284,7 +290,10 @@ impl<'a> Run<'a> {
             self.trial.dense(&outcome, self.forces.system(), &self.state, ticker)?;
             self.charge(outcome.accepted);
         }
-        self.record(&outcome, guiding, ticker)?;
+        let dense = self.record(&outcome, guiding, ticker)?;
+        if self.job.watched() {
+            self.watch(&outcome, dense, ticker)?;
+        }
         if let Some(followers) = self.followers.as_mut().filter(|_| guiding) {
             let packed = self.layout == Layout::Packed;
             let span = Span {
@@ -355,13 +364,14 @@ impl<'a> Run<'a> {
             slot.counts.steps += 1;
             slot.counts.evaluations += self.cost.kept;
             let done = (elapsed / end * PROGRESS_PER_UNIT as f64) as u64;
-            if !slot.unit.unit.recorded.is_empty() {
+            if slot.unit.unit.reports() {
                 ticker.advance(done.saturating_sub(slot.progress));
             }
             slot.progress = done.max(slot.progress);
         } else {
             slot.counts.rejected += 1;
         }
+        let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
         let ending = if outcome.finished.lane(lane) && self.part.last.lane(lane) {
             Ending::Finished
         } else if outcome.finished.lane(lane) {
@@ -375,12 +385,15 @@ impl<'a> Run<'a> {
             stuck::why(self.job, &slot.unit, &self.state, (lane, elapsed), &massive)
         } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
             Ending::TooManySteps
+        } else if stopped {
+            // The events know better where.
+            Ending::Stopped
         } else {
             return;
         };
         let time = if ending == Ending::Finished { self.job.end() } else { self.time(lane) };
         if let Some(slot) = self.slots[lane].take() {
-            self.finish(&slot, lane, time, ending);
+            self.finish(slot, lane, time, ending);
         }
     }
 
@@ -397,15 +410,18 @@ impl<'a> Run<'a> {
     }
 
     /// A unit has ended; those that follow it cannot go further.
-    fn finish(&mut self, slot: &Slot, lane: usize, time: f64, ending: Ending) {
+    fn finish(&mut self, slot: Slot<'a>, lane: usize, time: f64, ending: Ending) {
         let (rows, counts) = (slot.next_output, slot.counts);
         if let Some(followers) = &mut self.followers {
             followers.end(lane, &ending);
         }
-        if slot.unit.unit.recorded.is_empty() {
+        if !slot.unit.unit.reports() {
             return;
         }
-        let report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
+        let mut report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
+        if let Some(watch) = slot.watch {
+            watch.tell(&mut report);
+        }
         self.reports.push((slot.index, report));
     }
 
@@ -413,7 +429,7 @@ impl<'a> Run<'a> {
     fn end_with(&mut self, lanes: Bits, ending: &Ending) {
         for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
             if let Some(slot) = self.slots[lane].take() {
-                self.finish(&slot, lane, self.time(lane), ending.clone());
+                self.finish(slot, lane, self.time(lane), ending.clone());
             }
         }
         self.part.fresh = self.part.fresh.and(lanes.not());
@@ -434,10 +450,11 @@ impl<'a> Run<'a> {
         self.reports.sort_by_key(|(index, _)| *index);
         let mut reports: Vec<Report> =
             self.reports.into_iter().chain(following).map(|(_, report)| report).collect();
-        let recorded = units.iter().filter(|unit| !unit.recorded.is_empty());
-        let all = recorded.chain(followers.iter().copied().flatten());
+        let reporting = units.iter().filter(|unit| unit.reports());
+        let all = reporting.chain(followers.iter().copied().flatten());
         if reports.len() < all.clone().count() {
-            let name = |unit: &Unit| (unit.copy, unit.bodies[unit.recorded.start]);
+            let first = |unit: &Unit| unit.bodies.get(unit.recorded.start).copied();
+            let name = |unit: &Unit| (unit.copy, unit.make_up, first(unit));
             let begun: BTreeSet<_> = reports.iter().map(|report| name(&report.unit)).collect();
             reports.extend(all.filter(|unit| !begun.contains(&name(unit))).map(|unit| not_begun(job, unit)));
         }

@@ -1,6 +1,7 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
 use super::super::unit::{self, Prepared, Unit};
+use super::events::{Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
@@ -8,7 +9,7 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
-use crate::ode::fixed::{self, Ended, Place, Recorder};
+use crate::ode::fixed::{self, Ended, Place, Recorder, Taken};
 use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
 use crate::ode::system::System;
@@ -66,8 +67,22 @@ fn lockstep(
         let place = fixed::place(t - t0, dt, Real::max(t.abs(), t0.abs()));
         Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
     });
+    let mut watches = Vec::new();
+    if job.watched() {
+        for (lane, unit) in prepared.iter().enumerate() {
+            match Watch::begin(job, unit, (state, lane), ticker) {
+                Ok(watch) => watches.push(watch),
+                Err(Error::Interrupted) => break,
+                Err(other) => return Err(other),
+            }
+        }
+    }
     let mut records = Records {
         job,
+        step: scale(dt, -unit_of_time),
+        between: None,
+        watched: watches.iter().any(Option::is_some),
+        watches,
         failed: vec![None; units.len()],
         running: units.len(),
         units: prepared,
@@ -88,6 +103,14 @@ fn lockstep(
 /// What has been recorded of units in lockstep.
 struct Records<'a> {
     job: &'a Job<'a>,
+    /// The step in the plan's units.
+    step: f64,
+    /// Room for states between nodes.
+    between: Option<State<Lanes>>,
+    /// Whether any unit has events.
+    watched: bool,
+    /// The events of each unit.
+    watches: Vec<Option<Box<Watch<'a>>>>,
     units: Vec<Prepared>,
     /// The output time at which a unit was no longer finite.
     failed: Vec<Option<usize>>,
@@ -122,6 +145,38 @@ impl Recorder<Lanes> for Records<'_> {
         Ok(())
     }
 
+    fn watches(&self) -> Option<usize> {
+        (self.watched && !self.job.times.is_empty()).then(|| self.job.times.len() - 1)
+    }
+
+    fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {
+        let Taken { node, present, past, stepper, system } = taken;
+        let here = self.step * node as f64;
+        let (span, after, back) = match past {
+            None => (Span { from: self.step * (node - 1) as f64, to: here }, present, self.step),
+            Some((past, state)) => (Span { from: here, to: here + past }, state, 0.0),
+        };
+        let between = self.between.get_or_insert_with(|| present.clone());
+        let mut inside =
+            Shadow { stepper, system, node, present, between, back, length: span.to - span.from };
+        let mut going = false;
+        for (lane, unit) in self.units.iter().enumerate() {
+            let watch = self.watches.get_mut(lane).and_then(Option::as_mut);
+            let stopped = watch.as_ref().is_some_and(|watch| watch.stopped);
+            if self.failed[lane].is_some() || stopped {
+                continue;
+            }
+            match watch {
+                Some(watch) => {
+                    watch.look(unit, span, (after, lane), &mut inside, ticker)?;
+                    going |= !watch.stopped;
+                }
+                None => going = true,
+            }
+        }
+        Ok(going)
+    }
+
     fn goes_on(&mut self, state: &State<Lanes>) -> bool {
         for (lane, unit) in self.units.iter().enumerate() {
             if self.failed[lane].is_none() && !unit.is_finite(state, lane) {
@@ -135,18 +190,51 @@ impl Recorder<Lanes> for Records<'_> {
 
 impl Records<'_> {
     /// The reports of a run that has come to `reached` at `time`; `short` says why, if that is not the end.
-    fn reports(&self, reached: &State<Lanes>, time: f64, short: &Ending, counts: Counts) -> Vec<Report> {
-        let (state, time, otherwise) = match &self.last {
+    fn reports(mut self, reached: &State<Lanes>, time: f64, short: &Ending, counts: Counts) -> Vec<Report> {
+        let last = self.last.take();
+        let (state, time, otherwise) = match &last {
             Some(last) => (last, self.job.end(), &Ending::Finished),
             None => (reached, time, short),
         };
-        let report = |(lane, unit)| {
+        self.watches.resize_with(self.units.len(), || None);
+        let watches = core::mem::take(&mut self.watches);
+        let report = |((lane, unit), watch): ((usize, &Prepared), Option<Box<Watch<'_>>>)| {
             let (rows, ending) = match self.failed[lane] {
                 Some(failed) => (failed, Ending::NotFinite),
                 None => (self.rows, otherwise.clone()),
             };
-            self.job.report(unit, state, lane, time, ending, rows, counts)
+            let mut report = self.job.report(unit, state, lane, time, ending, rows, counts);
+            if let Some(watch) = watch {
+                watch.tell(&mut report);
+            }
+            report
         };
-        self.units.iter().enumerate().map(report).collect()
+        self.units.iter().enumerate().zip(watches).map(report).collect()
+    }
+}
+
+/// The inside of a step, by shadow steps from the present node.
+struct Shadow<'r> {
+    stepper: &'r mut dyn Stepper<Lanes>,
+    system: &'r mut dyn System<Lanes>,
+    node: u64,
+    present: &'r State<Lanes>,
+    between: &'r mut State<Lanes>,
+    /// How far before the node the step begins.
+    back: f64,
+    length: f64,
+}
+
+impl Interpolant for Shadow<'_> {
+    fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        let past = if self.back == 0.0 { theta * self.length } else { (theta - 1.0) * self.back };
+        self.between.copy_from(self.present);
+        self.stepper.between(self.node, past, self.between, self.system, ticker)?;
+        Ok(self.between)
+    }
+
+    /// Has none: what a method of fixed steps says between nodes is a shadow step.
+    fn polynomial(&mut self, _: usize, _: usize, _: &mut Vec<[f64; 2]>, _: &mut Ticker<'_>) -> Result<()> {
+        Ok(())
     }
 }

@@ -1,7 +1,7 @@
 //! What became of a unit.
 
 use super::super::unit::{Prepared, Unit};
-use super::Job;
+use super::{Found, Job};
 use crate::numerics::lanes::Lanes;
 use crate::ode::state::State;
 use core::ops::AddAssign;
@@ -26,6 +26,8 @@ pub enum Ending {
     TooManySteps,
     /// The caller asked to stop.
     Interrupted,
+    /// An event ended the run.
+    Stopped,
 }
 
 /// What an integration cost.
@@ -62,6 +64,8 @@ pub struct Report {
     pub time: f64,
     /// Final positions and velocities of the recorded bodies.
     pub states: Vec<[[f64; 3]; 2]>,
+    /// The events found on the way.
+    pub found: Vec<Found>,
 }
 
 impl Job<'_> {
@@ -82,6 +86,6 @@ impl Job<'_> {
             let entry = unit.read(slot, state, lane, elapsed);
             states.push([entry.position, entry.velocity]);
         }
-        Report { unit: unit.unit.clone(), ending, rows, counts, time, states }
+        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, found: Vec::new() }
     }
 }

@@ -52,6 +52,14 @@ impl Plan {
             };
             row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
             let (over, inside) = self.threads;
+            if !self.events.is_empty() {
+                let where_found = if self.watches_apart() {
+                    "on the steps of the bodies looked at, which are also integrated together where they are not coupled"
+                } else {
+                    "on the steps of the bodies looked at"
+                };
+                row("events", self.events.len().to_string(), where_found.to_owned());
+            }
             row(
                 "threads",
                 over.max(inside).to_string(),
@@ -137,7 +145,9 @@ impl Plan {
             if self.method.adaptive() && self.outputs_between == 0 {
                 skip("dense output", "no time before the end is asked for".to_owned());
             }
-            skip("event location", "no events are asked for".to_owned());
+            if self.events.is_empty() {
+                skip("event location", "no events are asked for".to_owned());
+            }
         }
         for column in columns() {
             if !self.record.iter().any(|name| name == column) {
@@ -149,6 +159,7 @@ impl Plan {
 
     fn describe_solution(&self) -> (String, String) {
         let integration = match self.method.scheme {
+            Scheme::Embedded(_) if !self.events.is_empty() => "events are looked for step by step",
             Scheme::Embedded(_) => "no closed form applies, or a method was named",
             _ => "the method was named",
         };

@@ -31,13 +31,21 @@ pub(super) fn gather(
     for report in reports {
         let member = part.member(report.unit.copy);
         let outcome = &mut outcomes[member];
-        if outcome.ending == Ending::Finished && report.ending != Ending::Finished {
+        let time = time_of(report, request, t0);
+        let earlier = (time - t0).abs() < (outcome.time - t0).abs();
+        // Of a copy that an event stops, nothing counts that would have come later.
+        let replaces = match (&outcome.ending, &report.ending) {
+            (_, Ending::Finished) => false,
+            (Ending::Finished, _) => true,
+            (Ending::Stopped, _) | (_, Ending::Stopped) => earlier,
+            _ => false,
+        };
+        if replaces {
             outcome.ending = report.ending.clone();
         }
         outcome.rows = outcome.rows.min(report.rows);
         outcome.counts += report.counts;
-        let time = time_of(report, request, t0);
-        if (time - t0).abs() < (outcome.time - t0).abs() {
+        if earlier {
             outcome.time = time;
         }
         put(part, report, reached);
@@ -141,6 +149,7 @@ fn again(
         atol: request.atol,
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: u64::MAX,
+        watches: false,
         writer: &writer,
     };
     let units: Vec<Unit> = apart.iter().map(|report| report.unit.clone()).collect();

@@ -25,8 +25,13 @@ impl Run<'_> {
     ///
     /// # Errors
     /// When the caller asks to stop.
-    pub(super) fn record_start(&self, slot: &mut Slot, lane: usize, ticker: &mut Ticker<'_>) -> Result<()> {
-        if slot.unit.unit.recorded.is_empty() {
+    pub(super) fn record_start(
+        &self,
+        slot: &mut Slot<'_>,
+        lane: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        if !slot.unit.unit.reports() {
             slot.next_output = self.outputs.len();
         }
         while slot.next_output < self.outputs.len() && self.outputs[slot.next_output] == 0.0 {
@@ -38,7 +43,7 @@ impl Run<'_> {
     }
 
     /// Records the outputs that the step has passed, before it is committed; the continuous extension may be `ready`
-    /// and charged.
+    /// and charged. Gives the lanes that have paid for it; it is then ready.
     ///
     /// # Errors
     /// When the caller asks to stop.
@@ -47,12 +52,12 @@ impl Run<'_> {
         outcome: &Outcome<Lanes>,
         mut ready: bool,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
+    ) -> Result<Bits> {
         let mut charged = if ready { outcome.accepted } else { Bits(0) };
         loop {
             let round = self.round(outcome);
             if !round.due.any() {
-                return Ok(());
+                return Ok(charged);
             }
             if round.inside.any() {
                 let Self { trial, state, between, forces, .. } = self;

@@ -1,0 +1,337 @@
+"""Events: what is looked for on the way of a run, and the table of what was found.
+
+`distance`, `plane`, `apsis` and `energy` are compiled; any other function of time, positions and velocities may be
+given as it is, or by `function` with a direction and an end. Events are located on the solution between the steps and
+change no bit of a run; one that is ``terminal`` ends it.
+
+A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
+step and turns, it is followed down, so that two zeros in one step are found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array, number, positive, whole_number
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Event", "EventTable", "apsis", "distance", "energy", "function", "plane"]
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Event:
+    """Something to look for. Made by the functions of `visviva.events`.
+
+    Attributes
+    ----------
+    kind : str
+    parameters : tuple of (str, object)
+    direction : int
+        1 for zeros passed upwards in time (also in a run backwards), -1 downwards, 0 both.
+    terminal : int
+        The run ends with the zero of this number; 0 if it does not.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.events.apsis(1, 0, direction=1).kind
+    'apsis'
+    """
+
+    kind: str
+    parameters: tuple[tuple[str, Any], ...]
+    direction: int
+    terminal: int
+
+    def _to_core(self) -> dict[str, Any]:
+        return {
+            "kind": self.kind,
+            **dict(self.parameters),
+            "direction": float(self.direction),
+            "last": self.terminal or None,
+        }
+
+
+def _made(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
+    way = number("direction", direction)
+    last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
+    return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)
+
+
+def _body(name: str, value: object) -> int:
+    return whole_number(name, value, low=0)
+
+
+def _point(name: str, value: object) -> tuple[float, float, float]:
+    x, y, z = float_array(name, value, (3,)).tolist()
+    return x, y, z
+
+
+@known_keywords
+def distance(first: int, second: int, *, below: float, direction: int = -1, terminal: bool | int = False) -> Event:
+    """Two bodies come nearer to each other than a distance.
+
+    Parameters
+    ----------
+    first, second : int
+        Indices of the bodies.
+    below : float
+        The distance, above 0.
+    direction : int, optional
+        -1 where they come nearer, 1 where they part again, 0 for both.
+    terminal : bool or int, optional
+        Whether the run ends there, or with the zero of which number.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name; whether the scene has the bodies is looked at when it is run.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> len(scene.run(t=20.0, events=[vv.events.distance(0, 1, below=0.8)]).events)
+    3
+    """
+    length = positive("below", below)
+    i, j = _body("first", first), _body("second", second)
+    if i == j:
+        raise InvalidInput("second", f"expected two bodies, got {i} twice")
+    return _made("distance", direction, terminal, first=i, second=j, distance=length)
+
+
+@known_keywords
+def plane(
+    point: ArrayLike, normal: ArrayLike, *, body: int = 0, direction: int = 0, terminal: bool | int = False
+) -> Event:
+    """A body passes a plane.
+
+    Parameters
+    ----------
+    point, normal : array_like, shape (3,)
+        A point of the plane, and its normal, of any length.
+    body : int, optional
+        Index of the body.
+    direction : int, optional
+        1 where the body passes the way of the normal in time, -1 against it, 0 for both.
+    terminal : bool or int, optional
+        As of `distance`.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> out = scene.run(t=20.0, events=[vv.events.plane([0, 0, 0], [0, 1, 0], body=1, direction=-1)])
+    >>> bool(abs(out.events.position[:, 1, 1]).max() < 1e-12)
+    True
+    """
+    through, perpendicular = _point("point", point), _point("normal", normal)
+    if not any(perpendicular):
+        raise InvalidInput("normal", "expected a vector other than 0")
+    return _made("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
+
+
+@known_keywords
+def apsis(body: int, about: int | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
+    """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
+
+    Parameters
+    ----------
+    body : int
+        Index of the body.
+    about : int or array_like, shape (3,)
+        Index of the other body, or the point.
+    direction : int, optional
+        1 for pericenters, -1 for apocenters, 0 for both, in runs forwards and backwards.
+    terminal : bool or int, optional
+        As of `distance`.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0)]).events)
+    6
+    """
+    whose = _body("body", body)
+    if np.ndim(about) == 0:
+        focus: Any = _body("about", about)
+        if focus == whose:
+            raise InvalidInput("about", f"expected another body, got {focus} twice")
+    else:
+        focus = _point("about", about)
+    return _made("apsis", direction, terminal, body=whose, about=focus)
+
+
+@known_keywords
+def energy(value: float, *, direction: int = 0, terminal: bool | int = False) -> Event:
+    """The energy of all bodies passes a value: of use where a force takes or gives energy.
+
+    Parameters
+    ----------
+    value : float
+        The energy.
+    direction, terminal : optional
+        As of `plane` and `distance`: 1 where the energy rises in time.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.events.energy(-0.5).parameters
+    (('value', -0.5),)
+    """
+    return _made("energy", direction, terminal, value=number("value", value))
+
+
+@known_keywords
+def function(
+    call: Callable[[float, NDArray[np.float64], NDArray[np.float64]], float],
+    *,
+    direction: int = 0,
+    terminal: bool | int = False,
+) -> Event:
+    """A function of one's own passes zero.
+
+    It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
+    times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them.
+
+    Parameters
+    ----------
+    call : callable
+    direction, terminal : optional
+        As of `plane` and `distance`.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> def height(t, position, velocity):
+    ...     return position[1, 1] - position[0, 1]
+    >>> len(scene.run(t=20.0, events=[height]).events)
+    6
+    """
+    if not callable(call):
+        raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
+    return _made("function", direction, terminal, function=call)
+
+
+def to_core(given: object) -> list[dict[str, Any]]:
+    """What the core is told of ``events=``."""
+    if isinstance(given, Event) or callable(given):
+        given = [given]
+    if not isinstance(given, Sequence):
+        raise InvalidInput("events", f"expected a list of events, got {type(given).__name__}")
+    told = []
+    for index, event in enumerate(given):
+        if isinstance(event, Event):
+            told.append(event._to_core())
+        elif callable(event):
+            way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
+            told.append(function(event, direction=way, terminal=last)._to_core())
+        else:
+            raise InvalidInput(
+                "events",
+                "expected one of visviva.events or a function f(t, position, velocity), "
+                f"got events[{index}] = {event!r}",
+            )
+    return told
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False)
+class EventTable:
+    """The events of a run, in the order of the motion; of an ensemble, copy after copy.
+
+    Attributes
+    ----------
+    which : ndarray of int64, shape (K,)
+        Index in the ``events`` that were asked for.
+    t : ndarray, shape (K,)
+    position, velocity : ndarray, shape (K, N, 3)
+        The state there. Bodies that are integrated apart from those that the event looks at are NaN: non-interacting
+        ones, and massless ones beside an adaptive method.
+    member : ndarray of int64, shape (K,)
+        The copy of an ensemble; 0 of a single run.
+
+    Indexing with a slice or an array gives a smaller table; `of` that of one event.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> table = scene.run(t=20.0, events=[vv.events.apsis(1, 0), vv.events.distance(0, 1, below=0.8)]).events
+    >>> table.which.tolist(), table.of(1).t.shape, table.position.shape
+    ([0, 1, 0, 0, 1, 0, 0, 1, 0], (3,), (9, 2, 3))
+    """
+
+    which: NDArray[np.int64]
+    t: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    member: NDArray[np.int64]
+
+    @classmethod
+    def _from_core(cls, found: dict[str, NDArray[Any]]) -> EventTable:
+        for array in found.values():
+            array.setflags(write=False)
+        return cls(**{name: found[name] for name in cls.__slots__})
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __repr__(self) -> str:
+        return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
+
+    def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
+        if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
+            raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
+        return EventTable._from_core({name: getattr(self, name)[chosen] for name in self.__slots__})
+
+    def __iter__(self) -> Iterator[Any]:
+        raise TypeError("an EventTable is read by its columns: which, t, position, velocity, member")
+
+    def of(self, which: int) -> EventTable:
+        """The lines of one event.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0, direction=1)]).events.of(0))
+        3
+        """
+        return self[self.which == whole_number("which", which)]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

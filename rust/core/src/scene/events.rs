@@ -1,0 +1,330 @@
+//! Events: functions of time and state whose zeros are looked for on the way of a run.
+//!
+//! The one idea: an event looks at some bodies, by how they move about the origin of their unit, so that no digit of a
+//! difference is lost; it never steers. Where the zeros are sought is [`integrate`](super::integrate)'s `events`.
+//!
+//! Directions are those of increasing time, also in a run backwards: a pericenter stays one.
+
+use super::Scene;
+use super::frame::{Moved, Origin, restored};
+use super::plan::Groups;
+use crate::conservation::columns::{State, column};
+use crate::error::{Error, Result};
+use crate::forces::bodies::PreciseBodies;
+use crate::parallel::Ticker;
+use crate::words::{number, numbers};
+use core::fmt;
+use std::sync::Arc;
+
+/// A function of time, positions and velocities, the numbers of one body after those of another.
+pub type Function = dyn Fn(f64, &[f64], &[f64]) -> Result<f64> + Send + Sync;
+
+/// About what a body has its apsides.
+#[derive(Clone, Debug)]
+pub enum Focus {
+    /// Another body.
+    Body(usize),
+    /// A point at rest.
+    Point([f64; 3]),
+}
+
+/// What is looked at.
+#[derive(Clone)]
+pub enum What {
+    /// Two bodies are so far apart.
+    Distance {
+        /// Which.
+        bodies: (usize, usize),
+        /// How far.
+        length: f64,
+    },
+    /// A body is in a plane.
+    Plane {
+        /// Which.
+        body: usize,
+        /// A point of the plane.
+        point: [f64; 3],
+        /// Its normal, of length 1.
+        normal: [f64; 3],
+    },
+    /// The distance is stationary: r·v = 0, from below at the pericenter.
+    Apsis {
+        /// Whose.
+        body: usize,
+        /// From what.
+        about: Focus,
+    },
+    /// The energy of all bodies has this value.
+    Energy(f64),
+    /// Somebody else's function is zero.
+    Function(Arc<Function>),
+}
+
+impl fmt::Debug for What {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Distance { bodies, length } => write!(formatter, "Distance({bodies:?}, {length:?})"),
+            Self::Plane { body, point, normal } => write!(formatter, "Plane({body}, {point:?}, {normal:?})"),
+            Self::Apsis { body, about } => write!(formatter, "Apsis({body}, {about:?})"),
+            Self::Energy(value) => write!(formatter, "Energy({value:?})"),
+            Self::Function(_) => write!(formatter, "Function"),
+        }
+    }
+}
+
+/// An event: what is looked at, and which of its zeros count.
+#[derive(Clone, Debug)]
+pub struct Event {
+    /// What is looked at.
+    pub what: What,
+    /// Only zeros passed upwards in time (positive) or downwards (negative); 0 for both.
+    pub direction: f64,
+    /// The run ends with the zero of this number.
+    pub last: Option<u64>,
+}
+
+/// How a body moves about the origin of its unit, in the scene's units.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Moving {
+    /// Its position.
+    pub position: [f64; 3],
+    /// What that leaves out.
+    pub position_rest: [f64; 3],
+    /// Its velocity.
+    pub velocity: [f64; 3],
+    /// What that leaves out.
+    pub velocity_rest: [f64; 3],
+}
+
+/// Bodies at one time.
+#[derive(Clone, Copy)]
+pub struct View<'a> {
+    /// Those that are looked at.
+    pub bodies: &'a [Moving],
+    /// The origin that they move about.
+    pub origin: Origin,
+    /// Time since the start.
+    pub elapsed: f64,
+}
+
+impl View<'_> {
+    /// Distance vector and relative velocity of two of the bodies.
+    fn relative(&self, i: usize, j: usize) -> ([f64; 3], [f64; 3]) {
+        let (a, b) = (&self.bodies[i], &self.bodies[j]);
+        (
+            core::array::from_fn(|c| {
+                (a.position[c] - b.position[c]) + (a.position_rest[c] - b.position_rest[c])
+            }),
+            core::array::from_fn(|c| {
+                (a.velocity[c] - b.velocity[c]) + (a.velocity_rest[c] - b.velocity_rest[c])
+            }),
+        )
+    }
+
+    /// Distance vector from a point at rest, and velocity.
+    fn about_point(&self, i: usize, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
+        let state = self.state(i, &self.origin.at(self.elapsed));
+        (
+            core::array::from_fn(|c| (state[0][c].0 - point[c]) + state[0][c].1),
+            core::array::from_fn(|c| state[1][c].0 + state[1][c].1),
+        )
+    }
+
+    /// Position and velocity about the origin of the scene, each with what it leaves out.
+    fn state(&self, i: usize, Moved { position, velocity }: &Moved) -> [[(f64, f64); 3]; 2] {
+        let body = &self.bodies[i];
+        [
+            core::array::from_fn(|c| restored(position[c], (body.position[c], body.position_rest[c]))),
+            core::array::from_fn(|c| restored(velocity[c], (body.velocity[c], body.velocity_rest[c]))),
+        ]
+    }
+}
+
+/// What functions of whole states need beside the bodies that move.
+pub struct Surroundings<'a> {
+    /// The scene.
+    pub scene: &'a Scene,
+    /// Which copy of it.
+    pub copy: usize,
+    /// Which bodies of the copy those of the view are.
+    pub bodies: &'a [usize],
+    /// Whether only some bodies of the copy are there, all those that have a mass among them.
+    pub massive: bool,
+}
+
+fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+impl Event {
+    /// The bodies that it looks at; `None` is all of them.
+    fn looks_at(&self) -> Option<Vec<usize>> {
+        match &self.what {
+            What::Distance { bodies: (i, j), .. } => Some(vec![*i, *j]),
+            What::Plane { body, .. } | What::Apsis { body, about: Focus::Point(_) } => Some(vec![*body]),
+            What::Apsis { body, about: Focus::Body(other) } => Some(vec![*body, *other]),
+            What::Energy(_) | What::Function(_) => None,
+        }
+    }
+
+    /// The bodies that it looks at, `active` being those that others depend on.
+    pub fn bodies(&self, groups: &Groups, particles: usize, active: &[usize]) -> Vec<usize> {
+        self.looks_at().unwrap_or_else(|| match self.what {
+            // Massless bodies have no energy.
+            What::Energy(_) if *groups == Groups::All && !active.is_empty() => active.to_vec(),
+            _ => (0..particles).collect(),
+        })
+    }
+
+    /// Whether its value takes a call that only the caller's thread may make.
+    pub fn calls(&self) -> bool {
+        matches!(self.what, What::Function(_))
+    }
+
+    /// Its value. The bodies that it looks at are at these places in the view.
+    ///
+    /// # Errors
+    /// Those of a function; [`Error::Interrupted`].
+    pub fn value(
+        &self,
+        view: &View<'_>,
+        places: &[usize],
+        around: &Surroundings<'_>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        Ok(match &self.what {
+            What::Distance { length, .. } => {
+                // A parabola in time for bodies that move uniformly: a short approach on a long step is not lost.
+                let (distance, _) = view.relative(places[0], places[1]);
+                let distance = distance.map(|x| x / length);
+                dot(distance, distance) - 1.0
+            }
+            What::Plane { point, normal, .. } => dot(*normal, view.about_point(places[0], *point).0),
+            What::Apsis { about, .. } => {
+                let (distance, velocity) = Self::orbit(about, view, places);
+                dot(distance, velocity)
+            }
+            What::Energy(level) => energy(view, around, ticker)? - level,
+            What::Function(function) => {
+                let particles = around.scene.particles;
+                let (mut position, mut velocity) = (vec![0.0; 3 * particles], vec![0.0; 3 * particles]);
+                let origin = view.origin.at(view.elapsed);
+                for (place, &body) in around.bodies.iter().enumerate() {
+                    let [x, v] = view.state(place, &origin);
+                    for c in 0..3 {
+                        (position[3 * body + c], velocity[3 * body + c]) = (x[c].0, v[c].0);
+                    }
+                }
+                function(around.scene.t0 + view.elapsed, &position, &velocity)?
+            }
+        })
+    }
+
+    /// Below what its value is zero for all that its arithmetic can tell.
+    pub fn rounding(&self, view: &View<'_>, places: &[usize]) -> f64 {
+        let size = |x: [f64; 3]| dot(x, x).sqrt();
+        8.0 * f64::EPSILON
+            * match &self.what {
+                What::Distance { .. } => 1.0,
+                What::Plane { point, .. } => size(*point) + size(view.about_point(places[0], *point).0),
+                What::Apsis { about, .. } => {
+                    let (distance, velocity) = Self::orbit(about, view, places);
+                    size(distance) * size(velocity)
+                }
+                What::Energy(level) => level.abs(),
+                What::Function(_) => 0.0,
+            }
+    }
+
+    fn orbit(about: &Focus, view: &View<'_>, places: &[usize]) -> ([f64; 3], [f64; 3]) {
+        match about {
+            Focus::Body(_) => view.relative(places[0], places[1]),
+            Focus::Point(point) => view.about_point(places[0], *point),
+        }
+    }
+
+    /// The rates of its value at both ends of a step `h`, where they follow from the states there.
+    pub fn rates(&self, ends: [&View<'_>; 2], h: f64, places: &[usize]) -> Option<[f64; 2]> {
+        match &self.what {
+            What::Distance { length, .. } => Some(ends.map(|view| {
+                let (distance, velocity) = view.relative(places[0], places[1]);
+                2.0 * dot(distance.map(|x| x / length), velocity.map(|x| x / length))
+            })),
+            What::Plane { point, normal, .. } => {
+                Some(ends.map(|view| dot(*normal, view.about_point(places[0], *point).1)))
+            }
+            What::Apsis { about, .. } => {
+                let [(x0, v0), (x1, v1)] = ends.map(|view| Self::orbit(about, view, places));
+                // Accelerations of the cubic through both ends.
+                let mean = |c: usize| 6.0 * (x1[c] - x0[c]) / h;
+                let start = core::array::from_fn(|c| (mean(c) - 4.0 * v0[c] - 2.0 * v1[c]) / h);
+                let end = core::array::from_fn(|c| (2.0 * v0[c] + 4.0 * v1[c] - mean(c)) / h);
+                Some([dot(v0, v0) + dot(x0, start), dot(v1, v1) + dot(x1, end)])
+            }
+            What::Energy(_) | What::Function(_) => None,
+        }
+    }
+
+    /// Refuses what cannot be looked at.
+    fn check(&self, index: usize, particles: usize) -> Result<()> {
+        let refused = |message: String| Err(Error::invalid("events", format!("events[{index}]: {message}")));
+        for body in self.looks_at().unwrap_or_default() {
+            if body >= particles {
+                return refused(match particles {
+                    0 => format!("expected bodies of the scene, got {body}, and the scene has none"),
+                    _ => format!("expected bodies from 0 to {}, got {body}", particles - 1),
+                });
+            }
+        }
+        if let Some([i, j]) = self.looks_at().as_deref()
+            && i == j
+        {
+            return refused(format!("expected two bodies, got {i} twice"));
+        }
+        let finite = |point: &[f64; 3]| point.iter().all(|x| x.is_finite());
+        match &self.what {
+            What::Distance { length, .. } if !(*length > 0.0 && length.is_finite()) => {
+                refused(format!("expected a distance above 0, got {}", number(*length)))
+            }
+            What::Plane { point, normal, .. }
+                if !(finite(point) && finite(normal) && dot(*normal, *normal) > 0.0) =>
+            {
+                refused(format!(
+                    "expected a finite point and a finite normal other than 0, got {} and {}",
+                    numbers(point),
+                    numbers(normal)
+                ))
+            }
+            What::Apsis { about: Focus::Point(point), .. } if !finite(point) => {
+                refused(format!("expected a finite point, got {}", numbers(point)))
+            }
+            What::Energy(level) if !level.is_finite() => {
+                refused(format!("expected a finite energy, got {}", number(*level)))
+            }
+            _ if self.last == Some(0) => refused("expected terminal of at least 1, got 0".to_owned()),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// Refuses events that cannot be looked for.
+///
+/// # Errors
+/// By name, with what was expected and what came.
+pub fn check(events: &[Event], particles: usize) -> Result<()> {
+    events.iter().enumerate().try_for_each(|(index, event)| event.check(index, particles))
+}
+
+fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {
+    let mut bodies = PreciseBodies::default();
+    bodies.clear(if around.massive { view.bodies.len() } else { around.scene.particles });
+    let masses = around.scene.masses(around.copy);
+    let origin = view.origin.at(view.elapsed);
+    for (place, &body) in around.bodies.iter().enumerate() {
+        let [position, velocity] = view.state(place, &origin).map(|x| [x.map(|x| x.0), x.map(|x| x.1)]);
+        bodies.set(if around.massive { place } else { body }, masses[body], position, velocity);
+    }
+    bodies.settle();
+    let mut state = State::new(&around.scene.forces, &bodies, [0.0; 3], 1, ticker);
+    Ok(state.value(column("events", "energy")?)?[0])
+}

@@ -1,0 +1,90 @@
+//! The events that the units found, put together: one table, copy after copy, in the order of the motion.
+
+use super::super::columns::Missing;
+use super::super::integrate::{Ending, Report};
+use super::super::request::Request;
+use super::{Outcome, Part};
+
+/// A line of the table.
+#[derive(Clone, Copy, Debug)]
+struct Line {
+    copy: usize,
+    which: usize,
+    t: f64,
+    /// Where its states begin.
+    states: usize,
+}
+
+/// The events of a run.
+#[derive(Clone, Debug, Default)]
+pub struct Events {
+    lines: Vec<Line>,
+    /// Position and velocity of every particle, event after event; NaN of those that are integrated apart.
+    states: Vec<[[f64; 3]; 2]>,
+}
+
+impl Events {
+    /// Adds what the units of a part found up to the end of their copy.
+    pub(super) fn gather(&mut self, part: &Part<'_>, reports: &[Report], outcomes: &[Outcome]) {
+        let t0 = part.scene.t0;
+        for report in reports {
+            let copy = part.member(report.unit.copy);
+            let end = (outcomes[copy].time - t0).abs();
+            // What a unit found beyond the last state of its copy is true, unless an event ended the motion there.
+            let stopped = outcomes[copy].ending == Ending::Stopped;
+            for found in report.found.iter().filter(|found| !stopped || (found.t - t0).abs() <= end) {
+                let states = self.states.len();
+                self.states.resize(states + part.scene.particles, [[f64::NAN; 3]; 2]);
+                for (&state, &body) in found.states.iter().zip(&*report.unit.bodies) {
+                    self.states[states + body] = state;
+                }
+                self.lines.push(Line { copy, which: found.which, t: found.t, states });
+            }
+        }
+    }
+
+    /// Brings the table into order.
+    pub(super) fn sort(&mut self, direction: f64) {
+        self.lines.sort_by(|a, b| {
+            let later = (direction * a.t).total_cmp(&(direction * b.t));
+            a.copy.cmp(&b.copy).then(later).then(a.which.cmp(&b.which))
+        });
+    }
+
+    /// How many there are.
+    pub fn len(&self) -> usize {
+        self.lines.len()
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.lines.is_empty()
+    }
+
+    /// The copy, the event and the time of each.
+    pub fn lines(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        self.lines.iter().map(|line| (line.copy, line.which, line.t))
+    }
+
+    /// The positions (0) or velocities (1) of all particles at each.
+    pub fn states(&self, of: usize, particles: usize) -> Vec<f64> {
+        let lines = self.lines.iter();
+        lines
+            .flat_map(|line| &self.states[line.states..line.states + particles])
+            .flat_map(|state| state[of])
+            .collect()
+    }
+}
+
+/// The rows beyond the event that stopped a copy, of all its particles.
+pub(super) fn cut(part: &Part<'_>, request: &Request, outcomes: &[Outcome]) -> Vec<Missing> {
+    let copies = (0..part.scene.copies).map(|copy| part.member(copy));
+    let stopped = copies.filter(|&copy| outcomes[copy].ending == Ending::Stopped);
+    stopped
+        .filter(|&copy| outcomes[copy].rows < request.times.len())
+        .flat_map(|copy| {
+            let from_time = outcomes[copy].rows;
+            (0..part.scene.particles).map(move |particle| Missing { copy, from_time, particle })
+        })
+        .collect()
+}

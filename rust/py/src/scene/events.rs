@@ -1,0 +1,100 @@
+//! Events as Python describes them, and Python functions among them.
+//!
+//! A function is called with the GIL held, on the thread that called `run`. What it raises ends the run and is raised again,
+//! the same object.
+
+use crate::arrays::moved;
+use crate::errors::raised;
+use crate::gate::attached;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::{Arc, Mutex, PoisonError};
+use visviva_core::scene::events::{Event, Focus, What};
+use visviva_core::{Error, Result};
+
+/// What a Python function among the events has raised.
+#[derive(Clone, Default)]
+pub(super) struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+impl Raised {
+    fn with<T>(&self, action: impl FnOnce(&mut Option<PyErr>) -> T) -> T {
+        action(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
+    }
+
+    /// The exception, once.
+    pub(super) fn take(&self) -> Option<PyErr> {
+        self.with(Option::take)
+    }
+}
+
+/// The events that are described by these dictionaries.
+///
+/// # Errors
+/// `InvalidInput` for an unknown kind; `KeyError` and `TypeError` for what `visviva.events` does not write.
+pub(super) fn events(
+    descriptions: &[Bound<'_, PyDict>],
+    particles: usize,
+    raised: &Raised,
+) -> PyResult<Vec<Event>> {
+    descriptions.iter().map(|description| event(description, particles, raised)).collect()
+}
+
+fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised) -> PyResult<Event> {
+    let item = |name: &str| description.as_any().get_item(name);
+    let kind: String = item("kind")?.extract()?;
+    let what = match kind.as_str() {
+        "distance" => What::Distance {
+            bodies: (item("first")?.extract()?, item("second")?.extract()?),
+            length: item("distance")?.extract()?,
+        },
+        "plane" => {
+            let normal: [f64; 3] = item("normal")?.extract()?;
+            // First by the largest, so that no square leaves the range.
+            let largest = normal.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+            let direction = normal.map(|x| x / largest);
+            let length = direction.iter().map(|x| x * x).sum::<f64>().sqrt();
+            What::Plane {
+                body: item("body")?.extract()?,
+                point: item("point")?.extract()?,
+                normal: direction.map(|x| x / length),
+            }
+        }
+        "apsis" => {
+            let about = item("about")?;
+            let about = match about.extract::<usize>() {
+                Ok(body) => Focus::Body(body),
+                Err(_) => Focus::Point(about.extract()?),
+            };
+            What::Apsis { body: item("body")?.extract()?, about }
+        }
+        "energy" => What::Energy(item("value")?.extract()?),
+        "function" => function(item("function")?.unbind(), particles, exceptions.clone()),
+        other => {
+            let message = format!("expected one of visviva.events, got the kind {other}");
+            return Err(raised(description.py(), Error::invalid("events", message)));
+        }
+    };
+    Ok(Event { what, direction: item("direction")?.extract()?, last: item("last")?.extract()? })
+}
+
+fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
+    let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
+        if exceptions.with(|exception| exception.is_some()) {
+            return Err(Error::Interrupted);
+        }
+        let called: PyResult<f64> = attached(|py| {
+            let shape = [particles, 3];
+            let position = moved(py, position.to_vec(), &shape)?;
+            let velocity = moved(py, velocity.to_vec(), &shape)?;
+            function.call1(py, (t, position, velocity))?.extract::<f64>(py)
+        });
+        match called {
+            Ok(value) => Ok(value),
+            Err(exception) => {
+                exceptions.with(|place| *place = Some(exception));
+                Err(Error::Interrupted)
+            }
+        }
+    };
+    What::Function(Arc::new(call))
+}
