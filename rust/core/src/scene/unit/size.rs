@@ -42,7 +42,9 @@ impl Prepared {
         let length = match (speed > 0.0, field > 0.0) {
             (true, true) => passed.min(speed * speed / field),
             (true, false) => passed,
-            (false, _) => 0.5 * field * span * span,
+            (false, true) => 0.5 * field * span * span,
+            // What moves with the reference and is slowed down has the reference's own path.
+            (false, false) => distance(self.reference.drift, [0.0; 3]) * span,
         };
         // Where nothing ever moves any length will do.
         if length > 0.0 && length.is_finite() { length } else { 1.0 }
