@@ -245,7 +245,7 @@ def function(
     return _made("function", direction, terminal, function=call)
 
 
-def to_core(given: object) -> list[dict[str, Any]]:
+def to_core(given: Any) -> list[dict[str, Any]]:
     """What the core is told of ``events=``."""
     if isinstance(given, Event) or callable(given):
         given = [given]
