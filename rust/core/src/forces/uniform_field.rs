@@ -5,7 +5,6 @@ use super::context::Context;
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
-use crate::numerics::element::{Element, Shape};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::points::distance;
 use crate::numerics::scaled::Scaled;
@@ -44,7 +43,8 @@ impl ForceTerm for Uniform {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        Box::new(UniformField::new(context.shape, context.units.take_vector(self.g, ACCELERATION)))
+        let g = context.units.take_vector(self.g, ACCELERATION);
+        Box::new(Kernel { acceleration: g.iter().flat_map(|&g| context.per_body(|_, _| g)).collect() })
     }
     fn potential_and_virial(
         &self,
@@ -78,26 +78,21 @@ impl ForceTerm for Uniform {
     }
 }
 
-/// The acceleration `g` on every particle.
-#[derive(Debug)]
-pub struct UniformField<S> {
-    shape: Shape,
-    g: [S; 3],
+/// The acceleration `g` on every particle; lanes without one stay at rest, as the error of a step is measured over all.
+struct Kernel {
+    acceleration: Vec<Lanes>,
 }
 
-impl<S: Element> UniformField<S> {
-    /// From the acceleration.
-    pub fn new(shape: Shape, g: [f64; 3]) -> Self {
-        Self { shape, g: g.map(S::splat) }
-    }
-}
-
-impl<S: Element> Force<S> for UniformField<S> {
-    fn apply(&mut self, _: &Phase<'_, S>, a: &mut [S], first: bool, _: &mut Ticker<'_>) -> Result<()> {
-        for (component, a) in a.chunks_exact_mut(self.shape.rows.max(1)).enumerate() {
-            for a in a {
-                *a = if first { self.g[component] } else { *a + self.g[component] };
-            }
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        _: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        for (a, &g) in a.iter_mut().zip(&self.acceleration) {
+            *a = if first { g } else { *a + g };
         }
         Ok(())
     }
