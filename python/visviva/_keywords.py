@@ -101,8 +101,8 @@ def frozen(target: type[_T]) -> type[_T]:
             advice = "make a new one instead" + did_you_mean(name, known)
         raise FrozenAttribute(name, f"{article(word)} is frozen; {advice}")
 
-    target.__setattr__ = refused  # type: ignore[method-assign]
-    target.__delattr__ = refused  # type: ignore[method-assign]
+    for name in ("__setattr__", "__delattr__"):
+        setattr(target, name, refused)
     return target
 
 

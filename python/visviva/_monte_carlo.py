@@ -421,10 +421,10 @@ def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float
     return [(name.encode(errors="replace").decode(), edges) for name, edges in pairs]
 
 
-def _edges_or_bins(name: str, given: object) -> int | NDArray[np.float64]:
+def _edges_or_bins(name: str, given: Any) -> int | NDArray[np.float64]:
     if isinstance(given, int | np.integer) and not isinstance(given, bool):
         return whole_number(name, given, 1, 2**16)
-    if np.ndim(given) == 0:  # type: ignore[arg-type]
+    if np.ndim(given) == 0:
         raise InvalidInput(name, f"expected edges or a number of bins, got {given!r}; pass a list of edges, or an int")
     return float_array(name, given, (None,))
 

@@ -254,12 +254,12 @@ class EnsembleTrajectory(Recorded):
         return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
 
 
-def _chosen(index: object, count: int) -> int | slice:
+def _chosen(index: Any, count: int) -> int | slice:
     """An index as it came if it is a slice, and else as a whole number from 0."""
     if isinstance(index, slice):
         return index
     try:
-        number = whole(index)  # type: ignore[arg-type]
+        number = whole(index)
     except TypeError:
         raise InvalidInput("index", f"expected a whole number or a slice, got {index!r}") from None
     if not -count <= number < count:

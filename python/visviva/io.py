@@ -155,9 +155,9 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     return run
 
 
-def _named(path: object) -> str:
+def _named(path: Any) -> str:
     try:
-        name = os.fspath(path)  # type: ignore[call-overload]
+        name = os.fspath(path)
     except TypeError:
         raise InvalidInput("path", f"expected the path of a file, got {type(path).__name__}") from None
     return os.fsdecode(name)

@@ -157,7 +157,7 @@ def asked_by(
                 raise
             return method(self, made)
 
-        asked.__signature__ = shown  # type: ignore[attr-defined]
+        vars(asked)["__signature__"] = shown
         asked.__annotations__ = {parameter.name: parameter.annotation for parameter in asked_for} | {
             "return": shown.return_annotation
         }

@@ -79,4 +79,22 @@ KEPT: list[tuple[str, Recipe]] = [
             outputs=1,
         ),
     ),
+    # Lanes without a body fell in a uniform field and entered the error of a step.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            bodies=2,
+            forces=(("CentralField", 0), ("Gravity", 0), ("UniformField", 0)),
+            seed=0,
+            members=3,
+            own=("position",),
+        ),
+    ),
+    # A lone massive body that drag slows down had the unit of length for a size.
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(
+            bodies=4, massless=3, forces=(("Gravity", 0), ("LinearDrag", 0)), seed=0, tame=False, steps=1, decades=5
+        ),
+    ),
 ]
