@@ -85,9 +85,10 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             bodies=2,
             forces=(("CentralField", 0), ("Gravity", 0), ("UniformField", 0)),
-            seed=0,
+            tame=False,
             members=3,
-            own=("position",),
+            steps=1,
+            decades=5,
         ),
     ),
     # A lone massive body that drag slows down had the unit of length for a size.
