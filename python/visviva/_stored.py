@@ -123,7 +123,9 @@ def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
             f"the file has format version {header['version']}, this visviva reads up to {VERSION}; use a newer visviva"
         )
     _check_header(header)
-    _check_arrays(arrays, header["ensemble"])
+    # Files of before definitions were kept have none.
+    looked_for = len(header["events"]) if "events" in header else np.inf
+    _check_arrays(arrays, header["ensemble"], looked_for)
     return header, arrays
 
 
@@ -164,6 +166,10 @@ def _check_header(header: dict[str, Any]) -> None:
     _check_keys("header", header, _HEADER)
     if not all(isinstance(force, dict) and isinstance(force.get("kind"), str) for force in header["forces"]):
         raise Damaged("the header of the file has a force without a kind")
+    if "events" in header:
+        _check_keys("header", header, {"events": list})
+        if not all(isinstance(event, dict) and isinstance(event.get("kind"), str) for event in header["events"]):
+            raise Damaged("the header of the file has an event without a kind")
     _check_keys("account of what the run cost", header["stats"], _STATS)
     _check_keys("plan", header["plan"], _PLAN)
     for name, length in (("rows", 3), ("skipped", 2)):
@@ -172,7 +178,7 @@ def _check_header(header: dict[str, Any]) -> None:
                 raise Damaged(f"the plan of the file has a line in {name!r} that is not {length} texts")
 
 
-def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool) -> None:
+def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool, looked_for: float) -> None:
     lengths: dict[str, int] = {}
     for name, (dtype, axes) in _ARRAYS.items():
         if name not in arrays:
@@ -186,6 +192,9 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool) -> None:
         copies = arrays["events/member"]
         if ((copies < 0) | (copies >= lengths["B"])).any():
             raise Damaged("the file has an event of a copy that there is not")
+        which = arrays["events/which"]
+        if ((which < 0) | (which >= looked_for)).any():
+            raise Damaged("the file has an event that was not looked for")
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if group == "columns" and member:

@@ -53,9 +53,12 @@ class Event:
     terminal: int
 
     def _to_core(self) -> dict[str, Any]:
+        told = dict(self.parameters)
+        if "name" in told:
+            raise InvalidInput("events", f"of the function {told['name']!r} a run keeps its name alone; give it again")
         return {
             "kind": self.kind,
-            **dict(self.parameters),
+            **told,
             "direction": float(self.direction),
             "last": self.terminal or None,
         }
@@ -267,6 +270,34 @@ def to_core(given: Any) -> list[dict[str, Any]]:
     return told
 
 
+def described(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """What a result and its file keep of the events that the core was told of: of a function its name."""
+    return [
+        {**event, "function": None, "name": str(getattr(event["function"], "__qualname__", type(event["function"])))}
+        if event["kind"] == "function"
+        else event
+        for event in told
+    ]
+
+
+def from_description(kept: dict[str, Any]) -> Event:
+    """The event that `described` wrote, judged anew: it may come from a file."""
+    how: dict[str, Any] = {"direction": kept["direction"], "terminal": kept["last"] or False}
+    match kept["kind"]:
+        case "distance":
+            return distance(kept["first"], kept["second"], below=kept["distance"], **how)
+        case "plane":
+            return plane(kept["point"], kept["normal"], body=kept["body"], **how)
+        case "apsis":
+            return apsis(kept["body"], kept["about"], **how)
+        case "energy":
+            return energy(kept["value"], **how)
+        case "function":
+            return _made("function", name=str(kept["name"]), **how)
+        case kind:
+            raise InvalidInput("events", f"expected an event that visviva knows, got the kind {kind!r}")
+
+
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
 class EventTable:
@@ -282,6 +313,8 @@ class EventTable:
         ones, and massless ones beside an adaptive method.
     member : ndarray of int64, shape (K,)
         The copy of an ensemble; 0 of a single run.
+    definitions : tuple of Event
+        What was looked for, by `which`. Of a function its name alone, as of what is saved.
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
 
@@ -299,12 +332,13 @@ class EventTable:
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     member: NDArray[np.int64]
+    definitions: tuple[Event, ...]
 
     @classmethod
-    def _from_core(cls, found: dict[str, NDArray[Any]]) -> EventTable:
+    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> EventTable:
         for array in found.values():
             array.setflags(write=False)
-        return cls(**{name: found[name] for name in cls.__slots__})
+        return cls(**found, definitions=definitions)
 
     def __len__(self) -> int:
         return len(self.t)
@@ -315,7 +349,8 @@ class EventTable:
     def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
             raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
-        return EventTable._from_core({name: getattr(self, name)[chosen] for name in self.__slots__})
+        columns = {name: getattr(self, name)[chosen] for name in self.__slots__ if name != "definitions"}
+        return EventTable._from_core(columns, self.definitions)
 
     def __iter__(self) -> Iterator[Any]:
         raise TypeError("an EventTable is read by its columns: which, t, position, velocity, member")

@@ -2,7 +2,7 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, and ``events/<name>`` of a run with events. Every
+``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header. Every
 later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
@@ -66,6 +66,8 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         "stats": result["stats"],
         "plan": result["plan"],
     }
+    if "looked_for" in result:
+        header["events"] = result["looked_for"]
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
     arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
@@ -137,7 +139,7 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     result: dict[str, Any] = {group: {} for group in GROUPS}
     result |= {"t": arrays["t"], "status": arrays["status"], "stats": header["stats"], "plan": header["plan"]}
     if any(name.startswith("events/") for name in arrays):
-        result["events"] = {}
+        result |= {"events": {}, "looked_for": header.get("events", [])}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if member:
@@ -151,7 +153,7 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
         run = EnsembleTrajectory(copies, result)
     else:
         run = Trajectory(scene, result)
-    _ = run.stats, run.plan, run.status
+    _ = run.stats, run.plan, run.status, "events" in result and run.events
     return run
 
 

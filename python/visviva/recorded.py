@@ -169,9 +169,11 @@ class Recorded(ABC):
         """
         if "events" not in self._result:
             raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
-        from visviva.events import EventTable
+        from visviva.events import EventTable, from_description
 
-        return EventTable._from_core(self._result["events"])
+        # Files of before they were kept have none.
+        definitions = tuple(map(from_description, self._result.get("looked_for", ())))
+        return EventTable._from_core(self._result["events"], definitions)
 
     @property
     def stats(self) -> Stats:

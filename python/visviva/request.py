@@ -179,6 +179,10 @@ def execute(
 
         with callback(request.progress) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
+    if asked["events"]:
+        from visviva.events import described
+
+        result["looked_for"] = described(asked["events"])
     made = make(result)
     if request.dt is not None:
         judge(result, ensemble=ensemble)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from law_book import law
 from recipe import COLUMNS, Case, Recipe, Refused
-from running import TIERS, Bits, differences, execute, outcome, worker
+from running import TIERS, Bits, differences, events, execute, outcome, worker
 
 import visviva as vv
 
@@ -85,7 +85,7 @@ def what_is_ok_is_finite(recipe: Recipe) -> None:
                 assert np.isfinite(values).all(), f"status OK, but {name} is not finite"
     if not ended and case.alone:
         assert np.isfinite(result.final.particles.position).all()
-        assert len(result.t) == len(case.t)
+        assert len(result.t) == len(case.t) or result.status == vv.Status.STOPPED
 
 
 @law
@@ -112,6 +112,8 @@ def a_member_is_as_if_alone(recipe: Recipe) -> None:
             assert same, f"member {index} of {len(scenes)}: other {name} than alone"
             assert np.isnan(mine[rows:]).all()
         cost = {name: int(values[index]) for name, values in result.per_trajectory.items()}
+        other = differences(events(result[index], case.how), events(alone, case.how))
+        assert not other, f"member {index} of {len(scenes)}: other {', '.join(other)} than alone"
         own_cost = {name: getattr(alone.stats, name) for name in cost if hasattr(alone.stats, name)}
         assert own_cost == {name: cost[name] for name in own_cost}, f"member {index}: {cost}, alone {own_cost}"
 
@@ -146,10 +148,10 @@ def other_outputs_change_no_bit(recipe: Recipe) -> None:
     case = recipe.case()
     full = _ran(case)
     end = outcome(case.start, case.t[-1:], case.how)
-    of = ("ended", "status", "final t0", "final position", "final velocity")
+    of = ("ended", "status", *(name for name in full if name.startswith(("final", "events"))))
     _same(full, end, "the end alone", of=tuple(name for name in of if name in full))
     result, ended = execute(case.start, case.t, case.how)
-    if ended or (not case.alone and result.status.any()):
+    if ended or np.any(result.status):
         return
     for every in (2, 3):
         times = sorted({*case.t[::every], case.t[-1]}, reverse=recipe.backward)
@@ -174,9 +176,12 @@ def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
         loaded = vv.load(path)
     for name in result.recorded:
         assert getattr(loaded, name).tobytes() == getattr(result, name).tobytes(), f"{name} is not what was saved"
+    assert not differences(events(loaded, case.how), events(result, case.how)), "events are not what was saved"
+    if case.how.get("events"):
+        assert loaded.events.definitions == case.how["events"]
     assert str(loaded.plan) == str(result.plan)
     assert loaded.stats == result.stats
-    if ended or (not case.alone and result.status.any()):
+    if ended or np.any(result.status):
         return
     on = tuple(2.0 * t - case.members()[0].t0 for t in case.t[-1:])
     if not np.isfinite(on).all():
@@ -190,7 +195,7 @@ def final_is_the_last_state(recipe: Recipe) -> None:
     result, ended = execute(case.start, case.t, {**case.how, "record": ("position", "velocity")})
     if result is None:
         raise Refused(ended)
-    if ended or (not case.alone and result.status.any()):
+    if ended or np.any(result.status):
         return
     end = result.final
     if case.alone:
@@ -229,7 +234,7 @@ def no_step_is_longer_than_max_step(recipe: Recipe) -> None:
     result, ended = execute(case.start, case.t, {**case.how, "max_step": longest})
     if result is None:
         raise Refused(ended)
-    if ended or result.plan.closed_form or (not case.alone and result.status.any()):
+    if ended or result.plan.closed_form or np.any(result.status):
         return
     steps = [result.stats.steps] if case.alone else result.per_trajectory["steps"]
     # A last step may be a rounding longer than the rest of the way.
@@ -245,21 +250,27 @@ def massless_bodies_do_not_touch_the_massive(recipe: Recipe) -> None:
     (scene,) = case.members()
     bodies = scene.particles
     massive = bodies.mass > 0.0
+    how = {**_without_events(case.how), "record": ("position", "velocity")}
     if massive.all() or not massive.any() or recipe.method == "auto":
         raise Refused("no massless bodies, or other bodies may have a closed form")
-    result, ended = execute(scene, case.t, {**case.how, "record": ("position", "velocity")})
+    result, ended = execute(scene, case.t, how)
     alone = vv.Scene(
         vv.Particles(bodies.mass[massive], bodies.position[massive], bodies.velocity[massive]),
         *scene.forces,
         t0=scene.t0,
     )
-    few, few_ended = execute(alone, case.t, {**case.how, "record": ("position", "velocity")})
+    few, few_ended = execute(alone, case.t, how)
     if result is None or few is None:
         raise Refused(ended or few_ended)
     rows = min(len(result.t), len(few.t))
     for name in ("position", "velocity"):
         same = getattr(result, name)[:rows, massive].tobytes() == getattr(few, name)[:rows].tobytes()
         assert same, f"other {name} of the massive bodies"
+
+
+def _without_events(how: dict[str, Any]) -> dict[str, Any]:
+    """Those name bodies and places, which would have to be changed with the scene."""
+    return {name: value for name, value in how.items() if name != "events"}
 
 
 def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: float = 1.0) -> Case:
@@ -271,13 +282,14 @@ def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: fl
     if not case.alone:
         stacked = {n: np.stack([getattr(s.particles, n) for s in scenes]) for n in ("mass", "position", "velocity")}
         start = scenes[0].ensemble(**stacked)
-    how = {**case.how} | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
+    how = case.how | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
     return Case(start, tuple(t * time for t in case.t), how)
 
 
 def _both(here: Case, there: Case) -> tuple[Any, Any]:
     (first, ended), (second, other) = (
-        execute(case.start, case.t, {**case.how, "record": ("position", "velocity")}) for case in (here, there)
+        execute(case.start, case.t, {**_without_events(case.how), "record": ("position", "velocity")})
+        for case in (here, there)
     )
     if first is None:
         raise Refused(ended)

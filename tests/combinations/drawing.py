@@ -3,7 +3,8 @@
 Everything is asked of the package, so that a force or potential joins by being registered. A parameter of a kind that
 is not known here fails by name: it must be drawn by some test before it can be trusted.
 
-A force is drawn from (name, seed, bodies): small, printable, the same everywhere.
+A force is drawn from (name, seed, bodies): small, printable, the same everywhere. An event is drawn from (name, seed)
+and the scene that it is looked for in, where some of them should be found.
 """
 
 from __future__ import annotations
@@ -11,6 +12,8 @@ from __future__ import annotations
 import inspect
 import random
 from typing import Any
+
+import numpy as np
 
 import visviva as vv
 from visviva import _core
@@ -27,6 +30,8 @@ def force_classes() -> dict[str, type[Any]]:
 FORCES = force_classes()
 POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
 METHODS = {method.name: method for method in vv.methods()}
+# A function of one's own is no value that a recipe could hold.
+EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function"})
 
 
 def declared(cls: type[Any]) -> list[dict[str, Any]]:
@@ -132,3 +137,32 @@ def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
         if tame or parameter["default"] is None or draw.random.random() < 0.5:
             arguments[parameter["name"]] = value
     return FORCES[name](**arguments)
+
+
+def event(name: str, seed: int, scene: vv.Scene, span: float) -> vv.events.Event:
+    """The event of that name and seed: of bodies of the scene, at a value that they may well pass in the span."""
+    draw = random.Random(repr((name, seed)))
+    bodies = scene.particles
+    first = draw.randrange(max(len(bodies), 1))
+    # Without a second body it is one that the scene has not: refused by name.
+    second = (first + 1 + draw.randrange(max(len(bodies) - 1, 1))) % max(len(bodies), 2)
+    share = draw.random()
+    how: dict[str, Any] = {"direction": draw.choice([-1, 0, 0, 1])}
+    if name == "distance":
+        pair = [index % max(len(bodies), 1) for index in (first, second)]
+        apart, closing = (np.subtract(*array[pair]) for array in (bodies.position, bodies.velocity))
+        length = float(np.linalg.norm(apart + share * span * closing))
+        return vv.events.distance(first, second, below=length or 1.0, **how)
+    if name == "plane":
+        through = bodies.position[first] + share * span * bodies.velocity[first]
+        normal = [draw.choice([0.0, 1.0, draw.uniform(-1.0, 1.0)]) for _ in range(3)]
+        return vv.events.plane(through, normal if any(normal) else [1.0, 0.0, 0.0], body=first, **how)
+    if name == "apsis":
+        focus = second if draw.random() < 0.5 else bodies.position[first] + share * span
+        return vv.events.apsis(first, focus, **how)
+    if name == "energy":
+        try:
+            return vv.events.energy(scene.invariants().energy * (1.0 + 1e-3 * (share - 0.5)), **how)
+        except vv.InvalidInput:
+            return vv.events.energy(share, **how)
+    raise NotImplementedError(f"tests/combinations/drawing.py cannot draw the event {name!r} yet")

@@ -1,4 +1,4 @@
-"""Where laws are listed: `bit_laws` and `accuracy_laws` write them down, and `stated_laws` has all of them."""
+"""Where laws are listed: `bit_laws`, `event_laws`, `accuracy_laws` write them down, `stated_laws` has all of them."""
 
 from __future__ import annotations
 

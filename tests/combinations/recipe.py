@@ -9,11 +9,11 @@ those, too, are asked of it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import FORCES, METHODS, force
+from drawing import EVENTS, FORCES, METHODS, event, force
 from hypothesis import strategies as st
 
 import visviva as vv
@@ -54,6 +54,8 @@ class Recipe:
     decades: int = 9  # the tolerance of an adaptive method, 10^-decades
     outputs: int = 0
     columns: tuple[str, ...] = ("position", "velocity")
+    events: tuple[tuple[str, int], ...] = ()
+    terminal: int = 0  # the zero of the first of them with which the run ends; 0: none
     t0: float = 0.0
     backward: bool = False
 
@@ -163,6 +165,9 @@ def _case(recipe: Recipe) -> Case:
         how |= {"rtol": 10.0**-recipe.decades, "max_steps": MAX_STEPS}
     else:
         how["dt"] = step
+    if recipe.events:
+        looked_for = [event(name, seed, scene, sign * end) for name, seed in recipe.events]
+        how["events"] = (replace(looked_for[0], terminal=recipe.terminal), *looked_for[1:])
     return Case(start, tuple(scene.t0 + sign * time for time in times), how)
 
 
@@ -186,6 +191,10 @@ def _ensemble(recipe: Recipe, scene: vv.Scene) -> vv.EnsembleScene:
 
 def _some(*weighted: tuple[int, st.SearchStrategy[Any]]) -> st.SearchStrategy[Any]:
     return st.one_of(*[strategy for weight, strategy in weighted for _ in range(weight)])
+
+
+def _events() -> st.SearchStrategy[Any]:
+    return st.lists(st.tuples(st.sampled_from(EVENTS), st.integers(0, 99)), min_size=1, max_size=3).map(tuple)
 
 
 @st.composite
@@ -221,6 +230,8 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         decades=draw(st.integers(5, 12)),
         outputs=draw(st.integers(0, 6)),
         columns=tuple(draw(st.lists(st.sampled_from(COLUMNS), unique=True, min_size=1))),
+        events=draw(_some((3, st.just(())), (1, _events()))),
+        terminal=draw(_some((2, st.just(0)), (1, st.integers(1, 2)))),
         t0=draw(_some((2, st.just(0.0)), (1, st.floats(-100.0, 100.0)))),
         backward=draw(_some((2, st.just(False)), (1, st.just(True)))),
     )

@@ -42,7 +42,7 @@ def outcome(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> Bits:
     if result is None:
         return {"ended": ended}
     columns = {name: getattr(result, name) for name in result.recorded}
-    found = _bits(t=result.t, **columns)
+    found = _bits(t=result.t, **columns) | events(result, how)
     if isinstance(start, vv.Scene):
         found |= {"ended": ended, **_bits(status=np.int8(result.status)), **final(result)}
         found["steps"] = f"{result.stats.steps} {result.stats.rejected} {result.stats.evaluations}"
@@ -50,6 +50,14 @@ def outcome(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> Bits:
         found |= _bits(status=result.status, **result.per_trajectory)
         found["ended"] = ended
     return found
+
+
+def events(result: Any, how: dict[str, Any]) -> Bits:
+    """The table of what was found, if anything was looked for."""
+    if not how.get("events"):
+        return {}
+    columns = {name: getattr(result.events, name) for name in ("which", "t", "position", "velocity", "member")}
+    return {f"events {name}": value for name, value in _bits(**columns).items()}
 
 
 def final(result: Any) -> Bits:

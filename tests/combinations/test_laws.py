@@ -13,10 +13,10 @@ import pytest
 from hypothesis import HealthCheck, given, settings
 
 sys.path.insert(0, str(Path(__file__).parent))
-from drawing import FORCES, METHODS, POTENTIALS, force
+from drawing import EVENTS, FORCES, METHODS, POTENTIALS, force
 from kept import KEPT
 from recipe import Recipe, Refused, recipes
-from running import close_workers
+from running import close_workers, execute
 from stated_laws import LAWS
 
 # Of each law; the search profile asks for more. 300 of each take about a minute and a half of one core.
@@ -60,6 +60,19 @@ def test_every_registered_potential_is_drawn() -> None:
     drawn = [force(name, seed, 9, tame=True) for name in FORCES for seed in range(40 * len(POTENTIALS))]
     used = {type(one.potential).__name__ for one in drawn if hasattr(one, "potential")}
     assert used == set(POTENTIALS)
+
+
+def test_every_event_is_drawn_and_found() -> None:
+    found = dict.fromkeys(EVENTS, 0)
+    for seed in range(60):
+        forces = (("Gravity", seed), ("LinearDrag", seed))  # which takes energy
+        events = tuple((name, seed) for name in EVENTS)
+        case = Recipe(bodies=3, forces=forces, seed=seed, events=events, steps=4).case()
+        result, _ = execute(case.start, case.t, case.how)
+        for name, event in zip(EVENTS, case.how["events"], strict=True):
+            assert event.kind == name
+            found[name] += len(result.events.of(EVENTS.index(name)))
+    assert all(found.values()), found
 
 
 def test_every_law_judges_and_every_method_is_judged() -> None:

@@ -1,6 +1,7 @@
 """Saved runs: everything comes back, whole files only, every earlier version loads."""
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -116,3 +117,66 @@ def test_the_file_of_version_1_loads() -> None:
     # The numbers in the file are those of a run today, to the tolerance 1e-12 of both.
     today = scene().run(t=out.t, method="dop853", rtol=1e-12)
     assert np.allclose(today.position, out.position, rtol=0, atol=1e-10)
+
+
+def height(t: float, position: np.ndarray, velocity: np.ndarray) -> float:
+    return float(position[1, 2])
+
+
+@pytest.mark.parametrize("members", [0, 3])
+def test_events_come_back_with_what_was_looked_for(tmp_path: Path, members: int) -> None:
+    looked_for = [
+        vv.events.apsis(1, 0, direction=1),
+        vv.events.apsis(1, [0.5, 0.0, 1e-3]),
+        vv.events.distance(0, 1, below=0.9, terminal=7),
+        vv.events.plane([0.0, 0.25, 0.0], [0.0, 1.0, 3.0], body=1, direction=-1),
+        vv.events.energy(-0.1),
+        height,
+    ]
+    start = scene()
+    run = start.ensemble(position=np.repeat(start.particles.position[None], members, axis=0)) if members else start
+    out = run.run(t=4.0, events=looked_for)
+    assert len(out.events) > 0
+    assert out.events.definitions[:5] == tuple(looked_for[:5])
+    assert dict(out.events.definitions[5].parameters) == {"name": "height"}
+    out.save(tmp_path / "run.npz")
+    for again in (vv.load(tmp_path / "run.npz"), pickle.loads(pickle.dumps(out))):
+        assert again.events.definitions == out.events.definitions
+        for name in ("which", "t", "position", "velocity", "member"):
+            assert np.array_equal(getattr(again.events, name), getattr(out.events, name), equal_nan=True)
+        one = again[1] if isinstance(again, vv.EnsembleTrajectory) else again
+        assert one.events.definitions == out.events.definitions
+        # They may be looked for again.
+        assert len(one.final.run(t=9.0, events=one.events.definitions[:5]).events) > 0
+        with pytest.raises(vv.InvalidInput, match=r"events: of the function 'height' a run keeps its name alone"):
+            one.final.run(t=9.0, events=one.events.definitions)
+
+
+def test_a_file_without_definitions_loads(tmp_path: Path) -> None:
+    """As files were written before definitions were kept."""
+    scene().run(t=4.0, events=[vv.events.apsis(1, 0)]).save(tmp_path / "run.npz")
+    with np.load(tmp_path / "run.npz") as file:
+        arrays = dict(file)
+    header = json.loads(arrays.pop("header").tobytes())
+    del header["events"]
+    np.savez(tmp_path / "old.npz", header=np.frombuffer(json.dumps(header).encode(), np.uint8), **arrays)
+    old = vv.load(tmp_path / "old.npz")
+    assert len(old.events) > 0
+    assert old.events.definitions == ()
+
+
+@pytest.mark.parametrize(
+    "damage",
+    [
+        {"events": 3},
+        {"events": [1]},
+        {"events": []},
+        {"events": [{"kind": "comet"}]},
+        {"events": [{"kind": "apsis"}]},
+        {"events": [{"kind": "energy", "value": "x", "direction": 0, "last": None}]},
+    ],
+)
+def test_damaged_definitions_are_refused_when_loaded(tmp_path: Path, damage: dict[str, object]) -> None:
+    scene().run(t=4.0, events=[vv.events.apsis(1, 0)]).save(tmp_path / "run.npz")
+    with pytest.raises(vv.InvalidInput, match="path: "):
+        vv.load(rewrite(tmp_path / "run.npz", **damage))

@@ -1,0 +1,173 @@
+"""Laws of events: they change no bit of a run, each found one is a zero, and a terminal one only cuts.
+
+That threads, tiers and other members change no bit of the table either is asked by `bit_laws`, of recipes with events.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from drawing import EVENTS
+from law_book import EPSILON, law
+from recipe import COLUMNS, Case, Recipe, Refused
+from running import differences, events, execute, outcome
+
+import visviva as vv
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+
+def _watched(recipe: Recipe) -> Recipe:
+    """The recipe, with events if it has none."""
+    count = len(EVENTS)
+    some = tuple((EVENTS[(recipe.seed + i) % count], recipe.seed % 97 + i) for i in range(2))
+    return recipe if recipe.events else replace(recipe, events=some)
+
+
+def _with(case: Case, **changes: Any) -> dict[str, Any]:
+    """How the case is run, its events with other directions or ends."""
+    return {**case.how, "events": tuple(replace(event, **changes) for event in case.how["events"])}
+
+
+def _ran(case: Case, how: dict[str, Any]) -> Any:
+    result, ended = execute(case.start, case.t, how)
+    if result is None:
+        raise Refused(ended)
+    return result
+
+
+@law
+def events_change_no_bit_of_the_run(recipe: Recipe) -> None:
+    case = _watched(recipe).case()
+    plain = {name: value for name, value in case.how.items() if name != "events"}
+    without = _ran(case, plain)
+    if (np.atleast_1d(without.stats.evaluations if case.alone else without.per_trajectory["evaluations"]) == 0).any():
+        raise Refused("closed forms, which are not used to look for events")
+    found, expected = (outcome(case.start, case.t, how) for how in (_with(case, terminal=0), plain))
+    if str(found["ended"]).startswith("refused"):
+        raise Refused(found["ended"])
+    # What it costs is another matter: bodies that are looked at together are integrated together, besides.
+    told = ("t", "status", "ended", *COLUMNS, "final t0", "final position", "final velocity")
+    other = differences(found, expected, of=tuple(name for name in told if name in expected))
+    assert not other, f"with events other {', '.join(other)}"
+
+
+def _size(vectors: NDArray[np.float64]) -> float:
+    return float(np.abs(vectors).max(initial=0.0))
+
+
+def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float, float]:
+    """The event's function of a state, and below what it is zero to round-off.
+
+    Coordinates are rounded once, and by what bodies move in a rounding of the step, which the run's span bounds.
+    """
+    told = dict(event.parameters)
+    x, v = scene.particles.position, scene.particles.velocity
+    if event.kind == "energy":
+        bodies, a = scene.particles, scene.acceleration()
+        near = EPSILON * (_size(x) + span * _size(v))
+        mass, invariants = bodies.mass, scene.invariants()
+        kinetic = 0.5 * float((mass[:, None] * v * v).sum())
+        scale = kinetic + abs(invariants.energy - kinetic) + abs(told["value"])
+        work = float((mass * np.linalg.norm(a, axis=1)).sum()) * near
+        boost = float(mass.sum()) * _size(v) * EPSILON * (_size(v) + span * _size(a))
+        return invariants.energy - told["value"], 64 * (EPSILON * scale + 3 * (work + boost))
+    if event.kind == "plane":
+        normal = np.array(told["normal"])
+        body, point = told["body"], np.array(told["point"])
+        near = EPSILON * (_size(x[body]) + _size(point) + span * _size(v[body]))
+        return float((x[body] - point) @ normal), 64 * near * _size(normal)
+    if event.kind == "distance":
+        i, j = told["first"], told["second"]
+        near = EPSILON * (_size(x[[i, j]]) + told["distance"] + span * _size(v[[i, j]]))
+        return float(np.linalg.norm(x[i] - x[j])) - told["distance"], 64 * near
+    body, about = told["body"], told["about"]
+    named = isinstance(about, int)
+    r, u = (x[body] - x[about], v[body] - v[about]) if named else (x[body] - np.array(about), v[body])
+    places = x[[body, about]] if named else np.stack([x[body], np.array(about)])
+    speeds = v[[body, about]] if named else v[[body]]
+    a = scene.acceleration()
+    near = EPSILON * (_size(places) + span * _size(speeds))
+    boost = EPSILON * (_size(speeds) + span * _size(a))
+    return float(r @ u), 64 * 3 * (near * _size(u) + boost * _size(r))
+
+
+@law
+def a_located_event_is_a_zero_at_its_state(recipe: Recipe) -> None:
+    case = _watched(replace(recipe, tame=True)).case()
+    result = _ran(case, case.how)
+    table, scenes = result.events, case.members()
+    span = abs(case.t[-1] - scenes[0].t0)
+    for which, t, x, v, member in zip(*(getattr(table, name) for name in table.__slots__[:5]), strict=True):
+        known = np.isfinite(x).all(axis=1)
+        start, event = scenes[member], case.how["events"][which]
+        assert min(start.t0, case.t[-1]) <= t <= max(start.t0, case.t[-1]), f"an event at {t}, beyond the run"
+        # Those that are integrated apart from what is looked at are where they started: no event here looks at them.
+        bodies = start.particles
+        place, velocity = np.where(known[:, None], [x, v], [bodies.position, bodies.velocity])
+        if event.kind == "energy" and not known[start.particles.mass > 0.0].all():
+            raise AssertionError("an energy of bodies that are not told")
+        value, allowed = _value(event, start.with_state(place, velocity, float(t)), span)
+        assert abs(value) <= allowed, f"{event.kind}: {value:.1e} at the located state, {allowed:.1e} allowed"
+
+
+@law
+def a_terminal_event_only_cuts(recipe: Recipe) -> None:
+    """Up to its end the run and the table are those without an end, and the end is the event."""
+    recipe = _watched(recipe)
+    recipe = replace(recipe, terminal=recipe.terminal or 1)
+    case = recipe.case()
+    stopped, whole = _ran(case, case.how), _ran(case, _with(case, terminal=0))
+    # Bodies that do not depend on each other have their own steps, and for the event those of all.
+    together = "also integrated together" not in str(stopped.plan)
+    sign = -1.0 if recipe.backward else 1.0
+    pairs = [(stopped, whole)] if case.alone else [(stopped[i], whole[i]) for i in range(len(case.members()))]
+    for cut, full in pairs:
+        table = cut.events
+        count = int((table.which == 0).sum())
+        if cut.status != vv.Status.STOPPED:
+            assert cut.status == full.status
+            assert cut.status or count < recipe.terminal, "the run went on"
+            assert not differences(events(cut, case.how), events(full, case.how)), "another table without an end"
+            continue
+        assert count == recipe.terminal, f"{count} zeros, the end was to be that of number {recipe.terminal}"
+        assert (table.t[-1], table.which[-1]) == (cut.final.t0, 0)
+        for name in ("which", "t", "position", "velocity"):
+            first = getattr(full.events, name)[: len(table)]
+            assert np.array_equal(getattr(table, name), first, equal_nan=True), f"other {name} before the end"
+        end = cut.final.particles
+        known = np.isfinite(table.position[-1]).all(axis=1)
+        for name in ("position", "velocity"):
+            same = np.array_equal(getattr(end, name)[known], getattr(table, name)[-1][known])
+            assert same or not together, f"{name} of final is not that of the event"
+        rows = sum(sign * t <= sign * table.t[-1] for t in full.t)
+        assert not case.alone or len(cut.t) == rows, f"{len(cut.t)} rows up to the end, of {rows}"
+        for name in cut.recorded:
+            before, after = np.split(getattr(cut, name), [rows])
+            same = before.tobytes() == np.ascontiguousarray(getattr(full, name)[:rows]).tobytes()
+            assert same, f"other {name} before the end"
+            assert np.isnan(after).all(), f"{name} beyond the end"
+
+
+@law
+def a_stopped_run_ends_where_the_whole_run_passes(recipe: Recipe) -> None:
+    """`final` is the state that the run without an end has at that time, to round-off."""
+    recipe = _watched(replace(recipe, tame=True, members=0))
+    recipe = replace(recipe, terminal=recipe.terminal or 1)
+    case = recipe.case()
+    stopped = _ran(case, case.how)
+    if stopped.status != vv.Status.STOPPED:
+        raise Refused("no end on the way")
+    start, end = case.members()[0], stopped.final
+    read = replace(case, t=tuple(dict.fromkeys([end.t0, case.t[-1]])))
+    whole = _ran(read, _with(case, terminal=0) | {"record": ("position", "velocity")})
+    x, v, a = end.particles.position, end.particles.velocity, end.acceleration()
+    # The time of the event is rounded once, and the step on which it lies is read twice.
+    late = EPSILON * (abs(start.t0) + 2 * abs(end.t0 - start.t0))
+    for name, size, rate in (("position", _size(x), _size(v)), ("velocity", _size(v), _size(a))):
+        apart = _size(getattr(whole, name)[0] - getattr(end.particles, name))
+        allowed = 64 * (EPSILON * size + late * rate)
+        assert apart <= allowed, f"{name} of final is {apart:.1e} off, {allowed:.1e} allowed"
