@@ -208,6 +208,58 @@ def test_the_energy_of_bodies_far_away_does_not_drift_by_their_rounding(count: i
     assert drift[1] <= drift[0] + 1e-14
 
 
+PUSHES: dict[str, tuple[Any, ...]] = {
+    "drive": (vv.DrivenForce([1.0, 0.5, -0.25], frequency=3.0),),
+    "drag": (vv.LinearDrag(tau=0.5),),
+    "magnetic field": (vv.UniformMagneticField([0.5, -1.0, 3.0], charge=1.0),),
+    "drive, drag and field": (vv.DrivenForce([1.0, 0.0, 0.0], frequency=3.0), vv.LinearDrag(tau=2.0), FIELD),
+    "gravity and a drive": (SOFT, vv.DrivenForce([1.0, 0.5, -0.25], frequency=3.0)),
+    "gravity and drag": (SOFT, vv.LinearDrag(tau=0.5)),
+    "springs and a field": (vv.Spring(0, 1, k=2.0, length=0.5), vv.UniformMagneticField([0.0, 0.0, 3.0], charge=1.0)),
+}
+
+
+@pytest.mark.parametrize("forces", PUSHES.values(), ids=PUSHES)
+@pytest.mark.parametrize("method", ["dop853", "dormand_prince54", "rk4"])
+def test_forces_that_depend_on_no_place_act_alike_far_away(method: str, forces: tuple[Any, ...]) -> None:
+    """The origin goes with the bodies: as many steps, and what they moved by, to a rounding of where they are."""
+    there = vv.Scene(vv.Particles(*(getattr(scattered(4), name) for name in ("mass", "position", "velocity"))), *forces)
+    there = there.shifted(position=[1e9, -2e9, 5e8])
+    # Where they are after a rounding, brought back without one.
+    here = there.shifted(position=[-1e9, 2e9, -5e8])
+    run: dict[str, Any] = {"t": 2.0, "method": method} | ({"rtol": 1e-12} if method != "rk4" else {"dt": 1 / 512})
+    far, near = there.run(**run), here.run(**run)
+    moved = [out.position[-1] - out.position[0] for out in (far, near)]
+    # A tolerance of 1e-12 of lengths about 1 kept in some hundred steps, the fourth order of 1/512, and one rounding.
+    assert np.abs(moved[0] - moved[1]).max() <= 1e-9 + 4e-16 * 2e9
+    assert np.abs(far.velocity - near.velocity).max() <= 1e-9
+    assert abs(far.stats.steps - near.stats.steps) <= 0.1 * near.stats.steps + 2
+
+
+@pytest.mark.parametrize("rate", [1.0, 50.0])
+def test_the_steps_of_a_gyrating_charge_do_not_grow_with_the_length_of_the_run(rate: float) -> None:
+    """Its size is the radius of its path, not the way that it goes: ten times the time, ten times the steps."""
+    body = vv.Particles([1.0], [[7e8, 0.0, 0.0]], [[rate, 0.0, 0.0]])
+    charge = vv.Scene(body, vv.UniformMagneticField([0.0, 0.0, rate], charge=1.0))
+    short, long = (charge.run(t=time / rate, method="dop853", rtol=1e-9).stats.steps for time in (20.0, 200.0))
+    assert 9 * short <= long <= 11 * short
+
+
+@pytest.mark.parametrize("far", [0.0, 1e9])
+def test_a_driven_body_swings_as_it_should_however_far(far: float) -> None:
+    """x = x0 + (v0 - F/mω sin φ) t + F/mω² (cos φ - cos(ωt + φ)) under the force F cos(ωt + φ)."""
+    force, frequency, phase, end = 2.0, 3.0, 0.5, 40.0
+    body = vv.Particles([4.0], [[far, 0.0, 0.0]], [[0.25, 0.0, 0.0]])
+    out = vv.Scene(body, vv.DrivenForce([force, 0.0, 0.0], frequency=frequency, phase=phase)).run(
+        t=end, method="dop853", rtol=1e-12, max_steps=2000
+    )
+    swing = force / 4.0 / frequency**2
+    drift = 0.25 - swing * frequency * np.sin(phase)
+    expected = drift * end + swing * (np.cos(phase) - np.cos(frequency * end + phase))
+    # Some hundred steps, each to 1e-12 of the swing, and one rounding of the place.
+    assert abs(out.position[-1, 0, 0] - out.position[0, 0, 0] - expected) < 1e-10 + 3e-16 * far
+
+
 @pytest.mark.parametrize("powers", [(-332, 332, -166), (-332, 332, -332), (330, -330, 330), (0, -540, 0), (0, 500, 0)])
 def test_energies_are_right_in_any_units_in_which_they_are_numbers(powers: tuple[int, int, int]) -> None:
     length, mass, time = (2.0**power for power in powers)
@@ -239,6 +291,32 @@ def test_a_step_that_falls_to_zero_far_from_any_encounter_is_not_called_one(why:
         pytest.fail(str(error))
     except vv.Error:
         pass
+
+
+@pytest.mark.parametrize("method", [method.name for method in METHODS if method.adaptive])
+@pytest.mark.parametrize("end", [1.0, 1e8, -1e50, 1e70])
+def test_where_any_error_is_allowed_the_run_is_one_step(method: str, end: float) -> None:
+    out = vv.Scene(scattered(12), vv.Gravity(1.0)).run(t=end, method=method, atol=1e308)
+    assert (out.status, out.stats.steps) == (vv.Status.OK, 1)
+    assert np.isfinite(out.position).all()
+    halved = vv.Scene(scattered(12), vv.Gravity(1.0)).run(t=end, method=method, atol=1e308, max_step=abs(end) / 2)
+    assert (halved.status, halved.stats.steps) == (vv.Status.OK, 2)
+
+
+def test_steps_that_leave_the_range_of_numbers_are_told_of_as_such() -> None:
+    """Allowed an error of 1e150, bodies move by 1e160 and more, and the square of that is no number."""
+    with pytest.raises(vv.ConvergenceError, match=r"beyond float64 \(lower them, or set max_step\)") as caught:
+        vv.Scene(scattered(12), vv.Gravity(1.0)).run(t=1e100, method="dop853", atol=1e150)
+    # It did not fail before it began.
+    assert caught.value.trajectory.final.t0 > 1e70
+
+
+@pytest.mark.parametrize("mass", [[1e300, 1e300], [1e300, 0.0], [1e300, 0.0, 0.0], [0.0, 1e300]])
+def test_a_product_beyond_numbers_is_refused_with_both_its_factors(mass: list[float]) -> None:
+    scene = vv.Scene(vv.Particles(mass, np.eye(3)[: len(mass)]), vv.Gravity(1e10))
+    with pytest.raises(vv.InvalidInput, match=r"^mass: .*G = 10000000000\.0 and a mass of 1e\+300") as caught:
+        scene.run(t=1e-200)
+    assert caught.value.argument == "mass"
 
 
 def test_an_absolute_tolerance_of_zero_advances_with_a_body_at_the_center_of_mass() -> None:

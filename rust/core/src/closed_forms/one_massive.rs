@@ -4,6 +4,7 @@ use super::fixed_center::Orbit;
 use super::parabola::Parabola;
 use super::{ClosedForm, ExactState, Path, Paths};
 use crate::error::{Error, Result};
+use crate::nbody::two_body::check_parameter;
 use crate::numerics::double_double::DoubleDouble;
 
 /// Kepler orbits about a body.
@@ -22,6 +23,7 @@ pub static FORM: ClosedForm = ClosedForm {
         };
         let state = |i: usize| (member.position[i], member.velocity[i]);
         let mu = constant * member.mass[center];
+        check_parameter(mu, constant, member.mass[center])?;
         Paths::motion(member, ticker, |i| -> Result<About> {
             let (position, velocity) = state(center);
             Ok(if i == center {

@@ -90,6 +90,9 @@ impl ForceTerm for DrivenForce {
     fn needs(&self) -> Needs {
         Needs { time: true, ..Needs::default() }
     }
+    fn translation_invariant(&self) -> bool {
+        true
+    }
     fn keeps_plane(&self) -> bool {
         self.amplitude[2] == 0.0
     }
@@ -97,6 +100,9 @@ impl ForceTerm for DrivenForce {
         let largest =
             units.take_vector(self.amplitude, FORCE).into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         bodies.iter().map(|&(_, mass, _)| largest / mass).fold(0.0, f64::max)
+    }
+    fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        units.take(self.frequency, FREQUENCY).abs()
     }
 }
 

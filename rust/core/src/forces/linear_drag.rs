@@ -11,6 +11,7 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Parameter};
 use crate::tiered;
+use crate::units::Units;
 use std::sync::Arc;
 
 /// What it declares about itself.
@@ -52,8 +53,14 @@ impl ForceTerm for LinearDrag {
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
     }
+    fn translation_invariant(&self) -> bool {
+        true
+    }
     fn keeps_plane(&self) -> bool {
         true
+    }
+    fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        1.0 / units.take(self.tau, [0, 0, 1])
     }
     fn as_linear_drag(&self) -> Option<f64> {
         Some(self.tau)

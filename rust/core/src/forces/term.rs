@@ -168,6 +168,18 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING
     }
+    /// Whether it looks at differences of places at most: bodies that are shifted as a whole feel the same.
+    fn translation_invariant(&self) -> bool {
+        self.between() || self.as_uniform().is_some()
+    }
+    /// Whether it is the same for bodies that move uniformly as a whole, besides.
+    fn galilean_invariant(&self) -> bool {
+        self.between() || (self.translation_invariant() && !self.needs().velocities())
+    }
+    /// Whether it acts between bodies, action being reaction.
+    fn between(&self) -> bool {
+        self.coupling() != Coupling::None && self.conserves().momentum
+    }
     /// Whether bodies that move in the plane z = 0 stay there.
     fn keeps_plane(&self) -> bool {
         false
@@ -187,6 +199,11 @@ pub trait ForceTerm: Debug + Send + Sync {
     /// The largest acceleration that it gives to one of some bodies at rest, by which a step is chosen if nothing else
     /// tells: their places in the scene, masses and positions in those units.
     fn strongest(&self, _: &[(usize, f64, [f64; 3])], _: Units) -> f64 {
+        0.0
+    }
+    /// The largest rate at which it slows down or turns such a body, or changes in time: nothing it does to a body by itself
+    /// takes longer than one over it.
+    fn rate(&self, _: &[(usize, f64, [f64; 3])], _: Units) -> f64 {
         0.0
     }
     /// What its kernel leaves out, and why.

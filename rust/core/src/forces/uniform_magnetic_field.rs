@@ -16,6 +16,7 @@ use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
 use crate::tiered;
+use crate::units::Units;
 use std::sync::Arc;
 
 /// The exponents of length, mass and time in charge times field.
@@ -96,8 +97,20 @@ impl ForceTerm for UniformMagneticField {
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }
+    fn translation_invariant(&self) -> bool {
+        true
+    }
     fn keeps_plane(&self) -> bool {
         self.field[0] == 0.0 && self.field[1] == 0.0
+    }
+    /// The cyclotron frequency.
+    fn rate(&self, bodies: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        let field = distance(units.take_vector(self.field, FIELD), [0.0; 3]);
+        let of = |&(body, mass, _): &(usize, f64, [f64; 3])| match self.charge(body) {
+            0.0 => 0.0,
+            charge => charge.abs() / mass * field,
+        };
+        bodies.iter().map(of).fold(0.0, f64::max)
     }
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         Some(MagneticField { field: self.field, charge: &self.charge })

@@ -31,6 +31,24 @@ pub struct TwoBody {
     relative: KeplerOrbit,
 }
 
+/// Refuses a gravitational parameter beyond float64, naming both of its factors.
+///
+/// # Errors
+/// By the name of the mass.
+pub fn check_parameter(mu: f64, gravitational_constant: f64, mass: f64) -> Result<()> {
+    if mu.is_finite() {
+        return Ok(());
+    }
+    Err(Error::invalid(
+        "mass",
+        format!(
+            "expected units in which G times the masses is within the range of float64, got G = {} and a mass of {}",
+            number(gravitational_constant),
+            number(mass)
+        ),
+    ))
+}
+
 impl TwoBody {
     /// From Newton's constant, two masses and two states at the epoch.
     ///
@@ -56,17 +74,7 @@ impl TwoBody {
         let strong = exponent(gravitational_constant);
         let strength = DoubleDouble::from(scale(gravitational_constant, -strong)) * total;
         let mu = scale(strength.to_f64(), unit + strong);
-        if !mu.is_finite() {
-            return Err(Error::invalid(
-                "mass",
-                format!(
-                    "expected units in which G times the masses is within the range of float64, got G = {} and a mass \
-                     of {}",
-                    number(gravitational_constant),
-                    number(scale(masses[0].max(masses[1]), unit))
-                ),
-            ));
-        }
+        check_parameter(mu, gravitational_constant, scale(masses[0].max(masses[1]), unit))?;
         let [(r1, v1), (r2, v2)] = states;
         for (name, one, other) in [("position", r1, r2), ("velocity", v1, v2)] {
             let apart = one - other;

@@ -8,7 +8,7 @@
 use super::Embedded;
 use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
-use super::passes::errors::PairTerm;
+use super::passes::errors::{HUGE, PairTerm};
 use super::passes::stages::{Positions, Term, Weighted};
 use super::passes::updates::Replace;
 use super::runge_kutta::{Stages, coupling};
@@ -211,8 +211,9 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let bend = self.change(&difference, time / trial);
         let of_q = if second_order { self.change(&first, time) } else { bend };
         let curvature2 = norm.sizes(state, state, clock.elapsed, &[of_q, bend])[0];
-        // Both sizes in units of that time, so that the choice does not depend on the unit of time.
-        let largest = (slope2 * time * time).max(curvature2 * time * time);
+        // Both sizes in units of that time, so that the choice does not depend on the unit of time. Where they are beyond
+        // measure the first step is still above zero: trials make it what it must be.
+        let largest = (slope2 * time * time).max(curvature2 * time * time).min(S::splat(HUGE));
         let by_order = time * root(S::splat(1e-4) / largest, &self.rule);
         let by_order = S::select(largest.less_equal(S::zero()), longest, by_order);
         let h = by_order.min(time).min(longest);

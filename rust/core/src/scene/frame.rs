@@ -1,15 +1,15 @@
 //! The units and the origin in which a scene is integrated.
 //!
 //! Lengths, times and masses are divided by powers of two near the scene's own, which is exact and keeps
-//! 1e±100 units from overflowing. Bodies between which forces act but on which nothing else does, unless it
-//! accelerates all of them alike, are integrated about their center of mass, and fall with it: the differences that
-//! matter keep their digits, however far the whole may go.
+//! 1e±100 units from overflowing. Bodies on which no force acts that tells one place from another are integrated about
+//! their center of mass: a lone body about its own place, a coupled group about one origin. If no force tells
+//! velocities apart either, the origin moves with them, and falls with what accelerates all of them alike. So the
+//! differences that matter keep their digits, however far the whole may be or go.
 
 pub use crate::units::Units;
 
 use super::Scene;
 use crate::forces::ForceTerm;
-use crate::forces::term::Coupling;
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::real::Real;
@@ -52,11 +52,47 @@ impl Units {
     }
 }
 
-/// Whether the forces act between bodies, and on all of them alike.
-pub fn closed(forces: &[Arc<dyn ForceTerm>]) -> bool {
-    let between =
-        |force: &Arc<dyn ForceTerm>| force.coupling() != Coupling::None && force.conserves().momentum;
-    forces.iter().any(between) && forces.iter().all(|force| between(force) || force.as_uniform().is_some())
+/// About what bodies may be integrated, the forces on them being what they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Frame {
+    /// The origin of the scene: some force tells one place from another.
+    Given,
+    /// Any point at rest.
+    AtRest,
+    /// Any point that moves uniformly, or with the acceleration that all have alike: velocities are not told apart, either.
+    Falling([f64; 3]),
+}
+
+impl Frame {
+    /// What these forces allow.
+    pub fn of(forces: &[Arc<dyn ForceTerm>]) -> Self {
+        if !forces.iter().all(|force| force.translation_invariant()) {
+            return Self::Given;
+        }
+        if !forces.iter().all(|force| force.galilean_invariant()) {
+            return Self::AtRest;
+        }
+        let mut fall = [0.0; 3];
+        for g in forces.iter().filter_map(|force| force.as_uniform()) {
+            for c in 0..3 {
+                fall[c] += g[c];
+            }
+        }
+        Self::Falling(fall)
+    }
+
+    /// The origin for some bodies of a copy.
+    pub fn origin(self, scene: &Scene, copy: usize, bodies: impl Iterator<Item = usize> + Clone) -> Origin {
+        let mass = scene.masses(copy);
+        let center = || mean(mass, scene.positions(copy), bodies.clone());
+        match self {
+            Self::Given => Origin::default(),
+            Self::AtRest => Origin { center: center(), ..Origin::default() },
+            Self::Falling(fall) => {
+                Origin { center: center(), drift: mean(mass, scene.velocities(copy), bodies.clone()), fall }
+            }
+        }
+    }
 }
 
 /// Where the origin of the integration lies, and how it moves.
@@ -88,18 +124,6 @@ impl Moved {
 const NEAR: f64 = 8.881_784_197_001_252e-16; // 2^-50
 
 impl Origin {
-    /// The origin for a copy of a scene whose forces are [`closed`].
-    pub fn of(scene: &Scene, copy: usize, forces: &[Arc<dyn ForceTerm>]) -> Self {
-        let mass = scene.masses(copy);
-        let mut fall = [0.0; 3];
-        for g in forces.iter().filter_map(|force| force.as_uniform()) {
-            for c in 0..3 {
-                fall[c] += g[c];
-            }
-        }
-        Self { center: mean(mass, scene.positions(copy)), drift: mean(mass, scene.velocities(copy)), fall }
-    }
-
     /// Whether it is anywhere but at rest in the origin of the scene.
     pub fn is_elsewhere(&self) -> bool {
         *self != Self::default()
@@ -133,23 +157,23 @@ pub fn restored<S: Real>(origin: (S, S), relative: (S, S)) -> (S, S) {
     (value, rest - (value - sum))
 }
 
-/// The mass-weighted mean of the points, or zero where it is as good as that.
-fn mean(mass: &[f64], points: &[[f64; 3]]) -> [f64; 3] {
-    let total: f64 = mass.iter().sum();
-    let count = points.len() as f64;
+/// The mass-weighted mean of the points of some bodies, or zero where it is as good as that.
+fn mean(mass: &[f64], points: &[[f64; 3]], bodies: impl Iterator<Item = usize> + Clone) -> [f64; 3] {
+    let total: f64 = bodies.clone().map(|i| mass[i]).sum();
+    let count = bodies.clone().count() as f64;
     // Masses are divided first, so that 1e300-kilogram stars do not overflow the sum.
     let weight = |i: usize| if total > 0.0 { mass[i] / total } else { 1.0 / count };
     let mut mean = [0.0; 3];
-    for (i, point) in points.iter().enumerate() {
+    for i in bodies.clone() {
         let weight = weight(i);
         for c in 0..3 {
-            mean[c] += weight * point[c];
+            mean[c] += weight * points[i][c];
         }
     }
     let mut extent = 0.0_f64;
-    for point in points {
+    for i in bodies {
         for c in 0..3 {
-            extent = extent.max((point[c] - mean[c]).abs());
+            extent = extent.max((points[i][c] - mean[c]).abs());
         }
     }
     let distance = mean.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));

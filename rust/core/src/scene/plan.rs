@@ -12,7 +12,7 @@ pub use solutions::{Solutions, member};
 use super::Scene;
 use super::closed_form::rows_per_chunk;
 use super::events::Event;
-use super::frame::{Origin, Units, closed};
+use super::frame::{Frame, Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
@@ -62,8 +62,8 @@ pub struct Plan {
     pub planar: bool,
     /// Units of the integration.
     pub units: Units,
-    /// Its origin, for each copy.
-    pub origins: Vec<Origin>,
+    /// About what bodies are integrated.
+    pub frame: Frame,
     /// Forces that accelerate all alike, which the origin's motion takes out.
     pub alike: usize,
     /// The time from the start to the end.
@@ -113,14 +113,13 @@ impl Plan {
         let solutions =
             if closed_forms { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
-        let closed = solutions.integrates() && closed(&forces);
-        let origin = |copy| if closed { Origin::of(scene, copy, &forces) } else { Origin::default() };
-        let origins: Vec<Origin> = (0..scene.copies).map(origin).collect();
+        let frame = if solutions.integrates() { Frame::of(&forces) } else { Frame::Given };
         // What accelerates all alike moves the origin, and nothing relative to it.
-        let alike =
-            if closed { forces.iter().filter(|force| force.as_uniform().is_some()).count() } else { 0 };
+        let falls = matches!(frame, Frame::Falling(_));
+        let count = forces.len();
         let forces: Vec<_> =
-            forces.into_iter().filter(|force| !closed || force.as_uniform().is_none()).collect();
+            forces.into_iter().filter(|force| !falls || force.as_uniform().is_none()).collect();
+        let alike = count - forces.len();
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && serves(method, active.len());
@@ -139,12 +138,12 @@ impl Plan {
             planar,
             alike,
             span: (request.times[request.times.len() - 1] - scene.t0).abs(),
-            units: Units::of(scene, 0, &origins[0]),
+            units: units(scene, 0, frame, &groups),
             forces,
             groups,
             active,
             passive,
-            origins,
+            frame,
             relative,
             layout,
             guided: false,
@@ -159,6 +158,20 @@ impl Plan {
         plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
         Ok(plan)
+    }
+
+    /// The units for a copy by itself.
+    pub fn units_of(&self, scene: &Scene, copy: usize) -> Units {
+        units(scene, copy, self.frame, &self.groups)
+    }
+
+    /// The origin for a unit: all that are coupled have one.
+    pub fn origin_of(&self, scene: &Scene, unit: &Unit) -> Origin {
+        let bodies = match self.groups {
+            Groups::All if !self.active.is_empty() => &self.active,
+            _ => &*unit.bodies,
+        };
+        self.frame.origin(scene, unit.copy, bodies.iter().copied())
     }
 
     fn share_threads(&self, request: &Request) -> (usize, usize) {
@@ -294,6 +307,14 @@ impl Plan {
         };
         self.forces.iter().map(of).sum()
     }
+}
+
+/// The units for a copy.
+fn units(scene: &Scene, copy: usize, frame: Frame, groups: &Groups) -> Units {
+    // Bodies by themselves have no size about their own places.
+    let frame =
+        if matches!(frame, Frame::Falling(_)) && *groups != Groups::Single { frame } else { Frame::Given };
+    Units::of(scene, copy, &frame.origin(scene, copy, 0..scene.particles))
 }
 
 /// Refuses a method that cannot take what a force looks at.

@@ -97,7 +97,7 @@ impl Prepared {
     /// Brings a unit of a scene into the plan's units.
     pub fn new(plan: &Plan, scene: &Scene, unit: Unit) -> Self {
         let units = plan.units;
-        let origin = plan.origins[unit.copy];
+        let origin = plan.origin_of(scene, &unit);
         let layout = plan.layout_of(&unit);
         let (masses, positions, velocities) =
             (scene.masses(unit.copy), scene.positions(unit.copy), scene.velocities(unit.copy));

@@ -154,7 +154,8 @@ fn failure(outcome: &Outcome) -> Option<Error> {
         }
         Ending::NoStep => Some(Error::Convergence {
             message: "the step size fell to zero, and no bodies are close: the tolerances ask for more than a step can \
-                      give; raise rtol or atol"
+                      give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
+                      them, or set max_step)"
                 .to_owned(),
             time,
         }),

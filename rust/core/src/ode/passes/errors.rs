@@ -27,7 +27,7 @@ fn view_terms<S, V: View<S>>(terms: &[PairTerm<S>]) -> &[PairTerm<V>] {
 const UNLIMITED: f64 = 1e150;
 
 /// Beyond this a squared error is as good as infinite; NaN counts as infinite too.
-const HUGE: f64 = 1e300;
+pub const HUGE: f64 = 1e300;
 
 /// The largest of the squared scaled errors `|h Σ weight·k|² / (atol + rtol·|y - reference|)²` of the rows, for two sets of
 /// weights at once; each row is a vector of one to four components.

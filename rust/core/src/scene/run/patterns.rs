@@ -15,8 +15,7 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan) -> Option<Vec<(Vec<usize>, Sc
         return None;
     }
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
-    let units: Vec<Units> =
-        (0..scene.copies).map(|copy| Units::of(scene, copy, &plan.origins[copy])).collect();
+    let units: Vec<Units> = (0..scene.copies).map(|copy| plan.units_of(scene, copy)).collect();
     let alike = |copy: usize| units[copy] == units[0] && pattern(copy).eq(pattern(0));
     if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
         return None;

@@ -34,18 +34,16 @@ impl Prepared {
         self.size = (length, if velocity > 0.0 { velocity } else { slow });
     }
 
-    /// A length for a body that is where distances are measured from: the radius of its path, or what it passes or falls in
-    /// the time of the run. By nothing but the body and the run, lest its steps depend on others.
+    /// A length for a body that is where distances are measured from: what it passes and falls before the forces on it
+    /// change, in the time of the run at most. By nothing but the body and the run, lest its steps depend on others.
     fn path(&self, plan: &Plan, speed: f64, field: f64) -> f64 {
         let span = self.units.take(plan.span, [0, 0, 1]);
-        let passed = speed * span;
-        let length = match (speed > 0.0, field > 0.0) {
-            (true, true) => passed.min(speed * speed / field),
-            (true, false) => passed,
-            (false, true) => 0.5 * field * span * span,
-            // What moves with the reference and is slowed down has the reference's own path.
-            (false, false) => distance(self.reference.drift, [0.0; 3]) * span,
-        };
+        let bodies = self.bodies();
+        let rate = plan.forces.iter().map(|force| force.rate(&bodies, self.units)).fold(0.0, f64::max);
+        let time = if rate * span > 1.0 { 1.0 / rate } else { span };
+        // What moves with the reference and is slowed down or turned has the reference's own path.
+        let speed = if speed > 0.0 || field > 0.0 { speed } else { distance(self.reference.drift, [0.0; 3]) };
+        let length = time * (speed + 0.5 * field * time);
         // Where nothing ever moves any length will do.
         if length > 0.0 && length.is_finite() { length } else { 1.0 }
     }
@@ -94,8 +92,13 @@ impl Prepared {
 
     /// The largest acceleration that a force gives to a body of the unit, at rest where it is.
     fn field_strength(&self, plan: &Plan) -> f64 {
-        let bodies = self.unit.bodies.iter().zip(&self.mass).zip(&self.position);
-        let bodies: Vec<_> = bodies.map(|((&body, &mass), &position)| (body, mass, position)).collect();
+        let bodies = self.bodies();
         plan.forces.iter().map(|force| force.strongest(&bodies, self.units)).fold(0.0, f64::max)
+    }
+
+    /// Place in the scene, mass and position of each body.
+    fn bodies(&self) -> Vec<(usize, f64, [f64; 3])> {
+        let bodies = self.unit.bodies.iter().zip(&self.mass).zip(&self.position);
+        bodies.map(|((&body, &mass), &position)| (body, mass, position)).collect()
     }
 }
