@@ -156,8 +156,8 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
 def a_stopped_run_ends_where_the_whole_run_passes(recipe: Recipe) -> None:
     """`final` is the state that the run without an end has at that time, to round-off.
 
-    Of methods that choose their steps: between nodes others take a shadow step from the node at hand, which is before the
-    time or behind it, and errs as one step does.
+    Of methods that choose their steps: between nodes others take a shadow step from the node at hand, before the time
+    or behind it, which errs as one step does.
     """
     if (method := METHODS.get(recipe.method)) and not method.adaptive:
         raise Refused("shadow steps")
