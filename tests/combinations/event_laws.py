@@ -121,11 +121,9 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
     recipe = replace(recipe, terminal=recipe.terminal or 1)
     case = recipe.case()
     stopped, whole = _ran(case, case.how), _ran(case, _with(case, terminal=0))
-    # Bodies that do not depend on each other have their own steps, and for the event those of all.
-    together = "also integrated together" not in str(stopped.plan)
     sign = -1.0 if recipe.backward else 1.0
     pairs = [(stopped, whole)] if case.alone else [(stopped[i], whole[i]) for i in range(len(case.members()))]
-    for cut, full in pairs:
+    for scene, (cut, full) in zip(case.members(), pairs, strict=True):
         table = cut.events
         count = int((table.which == 0).sum())
         if cut.status != vv.Status.STOPPED:
@@ -138,6 +136,8 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
         for name in ("which", "t", "position", "velocity"):
             first = getattr(full.events, name)[: len(table)]
             assert np.array_equal(getattr(table, name), first, equal_nan=True), f"other {name} before the end"
+        # Bodies that do not depend on each other have their own steps, and for the event those of all.
+        together = "also integrated together" not in str(scene.plan(t=list(case.t), **case.how))
         end = cut.final.particles
         known = np.isfinite(table.position[-1]).all(axis=1)
         for name in ("position", "velocity"):
