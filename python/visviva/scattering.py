@@ -14,7 +14,8 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import did_you_mean, known_keywords
-from visviva._monte_carlo import Beam, CrossSection, MonteCarlo, Tally, monte_carlo
+from visviva._monte_carlo import monte_carlo
+from visviva._tally import Beam, CrossSection, MonteCarlo, Tally
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
 
