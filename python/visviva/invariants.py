@@ -142,7 +142,8 @@ def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
         kinetic_energy=float(sums["kinetic_energy"][0]),
         potential_energy=float(sums["potential_energy"][0]),
         energy=float(sums["energy"][0]),
-        center_of_mass_kinetic_energy=fsum(momentum * momentum) / (2.0 * total),
+        # Its square may overflow where the energy does not.
+        center_of_mass_kinetic_energy=fsum(momentum * (momentum / total)) / 2.0,
         internal_kinetic_energy=float(internal["kinetic_energy"][0]),
         virial=float(sums["virial"][0]),
     )

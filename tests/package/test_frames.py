@@ -123,3 +123,13 @@ def test_massless_bodies_have_no_center() -> None:
         scene.center_of_mass_frame()
     with pytest.raises(vv.InvalidInput, match="total mass is zero"):
         scene.invariants()
+
+
+def test_kinetic_energies_add_where_squares_of_momenta_overflow() -> None:
+    """T = T_cm + T_internal (König), in units in which P² is beyond double precision and T is not."""
+    heavy = CLUSTER.rescaled(mass=2.0**600)
+    here, plain = heavy.invariants(), CLUSTER.invariants()
+    assert here.center_of_mass_kinetic_energy == plain.center_of_mass_kinetic_energy * 2.0**600
+    # Three sums of some ten roundings each.
+    together = here.center_of_mass_kinetic_energy + here.internal_kinetic_energy
+    assert together == pytest.approx(here.kinetic_energy, rel=4e-15)

@@ -87,29 +87,11 @@ BETWEEN = [0.0, 0.1, 0.137, 0.5, 0.503, 0.77]  # on nodes of a step of 0.01 and 
 # Gravity, every method.
 
 
-@scene("rk4: six softened bodies, outputs on and between nodes")
-def _() -> Arrays:
-    return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method="rk4", dt=0.01))
+for name in ("rk4", "leapfrog", "yoshida4", "kahan_li8", "stormer13"):
 
-
-@scene("leapfrog: six softened bodies, outputs on and between nodes")
-def _() -> Arrays:
-    return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method="leapfrog", dt=0.01))
-
-
-@scene("yoshida4: six softened bodies, outputs on and between nodes")
-def _() -> Arrays:
-    return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method="yoshida4", dt=0.01))
-
-
-@scene("kahan_li8: six softened bodies, outputs on and between nodes")
-def _() -> Arrays:
-    return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method="kahan_li8", dt=0.01))
-
-
-@scene("stormer13: six softened bodies, outputs on and between nodes")
-def _() -> Arrays:
-    return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method="stormer13", dt=0.01))
+    @scene(f"{name}: six softened bodies, outputs on and between nodes")
+    def _(method: str = name) -> Arrays:
+        return states(vv.Scene(centered(6, 1), SOFT).run(t=BETWEEN, method=method, dt=0.01))
 
 
 @scene("dop853: six softened bodies, dense output")
