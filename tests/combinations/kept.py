@@ -98,4 +98,50 @@ KEPT: list[tuple[str, Recipe]] = [
             bodies=4, massless=3, forces=(("Gravity", 0), ("LinearDrag", 0)), seed=0, tame=False, steps=1, decades=5
         ),
     ),
+    # One massive body was held to another error where massless ones felt it.
+    (
+        "massless_bodies_do_not_touch_the_massive",
+        Recipe(method="dop853", bodies=15, massless=14, forces=(("LinearDrag", 49), ("Gravity", 1)), steps=8),
+    ),
+    # The acceleration of a scene lost digits about its center of mass.
+    (
+        "forces_add",
+        Recipe(
+            bodies=5, forces=(("PairPotential", 61), ("DrivenForce", 53)), seed=550, tame=False, planar=True, steps=4
+        ),
+    ),
+    # The energy of a pair was formed in units in which its strength has two digits.
+    (
+        "declared_invariants_hold",
+        Recipe(bodies=5, forces=(("PairPotential", 24),), units=(-310, -162, -13), steps=4, outputs=1),
+    ),
+    # Bodies that went on where another one of their member had failed were still in the rows beyond.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            method="bogacki_shampine32",
+            bodies=5,
+            forces=(("CentralField", 29),),
+            tame=False,
+            steps=4,
+            decades=12,
+            outputs=1,
+        ),
+    ),
+    # A slow, large member with strong springs: its first step was beyond measure in its own unit of time.
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(
+            bodies=9,
+            forces=(("PairPotential", 25), ("Spring", 80)),
+            tame=False,
+            members=3,
+            wild_member=True,
+            steps=4,
+        ),
+    ),
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(forces=(("PairPotential", 25), ("Spring", 80)), tame=False, members=1, wild_member=True, steps=4),
+    ),
 ]

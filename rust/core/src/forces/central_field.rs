@@ -12,9 +12,9 @@ use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
-use crate::potentials::Potential;
 use crate::potentials::kernels::Around;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::potentials::{Potential, near_one};
 use crate::units::Units;
 use crate::words::numbers;
 use std::sync::Arc;
@@ -67,19 +67,19 @@ impl ForceTerm for CentralField {
     ) -> Result<(Scaled, Scaled)> {
         let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
         let units = bodies.units;
+        let (potential, unit) = near_one(&self.potential, units.length);
         for body in 0..bodies.len() {
             let place = bodies.vector(Of::Position, body);
             let d: Vector =
                 core::array::from_fn(|c| place[c] - DoubleDouble::from(scale(self.center[c], -units.length)));
             let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-            let distance = Scaled::new(r, units.length).to_double_double();
-            let (value, force) = self.potential.precise(distance);
-            energy = energy.plus(Scaled::new(value, 0));
+            let (value, force) = potential.precise(r);
+            energy = energy.plus(Scaled::new(value, unit));
             // At the center of what is not singular there is no pull.
             if r.to_f64() != 0.0 {
                 // The pull along d, and what of it the place sees.
                 let along = d[0] * place[0] + d[1] * place[1] + d[2] * place[2];
-                let pull = Scaled::new(force, units.length);
+                let pull = Scaled::new(force, unit);
                 work = work.plus(pull.by(Scaled::new(along, 0).over(Scaled::new(r, 0))));
             }
             ticker.tick()?;

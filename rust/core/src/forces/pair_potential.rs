@@ -18,9 +18,9 @@ use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::{Ticker, for_chunks};
-use crate::potentials::Potential;
 use crate::potentials::kernels::Pairs;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::potentials::{Potential, near_one};
 use crate::words::numbers;
 use std::sync::Arc;
 
@@ -90,15 +90,16 @@ impl ForceTerm for PairPotential {
         ticker: &mut Ticker<'_>,
     ) -> Result<(Scaled, Scaled)> {
         let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
+        let (potential, unit) = near_one(&self.potential, bodies.units.length);
         for i in 0..bodies.len() {
             let from = bodies.vector(Of::Position, i);
             for j in i + 1..bodies.len() {
                 let to = bodies.vector(Of::Position, j);
                 let d: Vector = core::array::from_fn(|c| to[c] - from[c]);
                 let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-                let r = Scaled::new(r, bodies.units.length).to_double_double();
-                energy = energy.plus(Scaled::new(self.potential.precise(r).0, 0));
-                work = work.plus(Scaled::new(self.potential.precise(r).1 * r, 0));
+                let (value, force) = potential.precise(r);
+                energy = energy.plus(Scaled::new(value, unit));
+                work = work.plus(Scaled::new(force * r, unit));
             }
             ticker.tick()?;
         }

@@ -14,11 +14,16 @@ use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
+use crate::numerics::power_of_two::exponent;
 use crate::units::Units;
 use core::fmt::Debug;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
 use parameters::{Declaration, Value};
 use std::sync::Arc;
+
+/// A strength of more than 2^FAR or less than 2^-FAR is [brought near one](Potential::near_one): its products with what
+/// is near one are far from the ends of the range then, errors and all.
+const FAR: i32 = 300;
 
 /// What a potential declares about itself.
 pub type PotentialDeclaration = Declaration<dyn Potential>;
@@ -66,6 +71,9 @@ pub trait Potential: Debug + Send + Sync {
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble);
     /// The same potential in other units.
     fn scaled(&self, units: Units) -> Arc<dyn Potential>;
+    /// The same potential in that unit of length and one of energy in which its strength is near one, and the exponent of
+    /// that unit of energy; nothing if the units of the scene will do.
+    fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)>;
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
@@ -76,6 +84,11 @@ pub trait Potential: Debug + Send + Sync {
     fn between_few(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes]);
     /// Adds the forces between the bodies of a row and those after them, to forces that begin at another row.
     fn between_rows(&self, pairs: &Pairs, q: &[Lanes], force: &mut [Lanes], place: (usize, usize));
+}
+
+/// The potential for precise sums at distances in units of 2^length, and the exponent of the unit of their energies.
+pub fn near_one(potential: &Arc<dyn Potential>, length: i32) -> (Arc<dyn Potential>, i32) {
+    potential.near_one(length).unwrap_or_else(|| (Arc::clone(potential), 0))
 }
 
 /// A formula and the values it was made from.
@@ -113,6 +126,21 @@ impl<P: Formula> Potential for Held<P> {
     fn scaled(&self, units: Units) -> Arc<dyn Potential> {
         let values = P::DECLARATION.scaled(&self.values, units);
         Arc::new(Self { formula: P::new(&values), values })
+    }
+    fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)> {
+        let dimensions = P::DECLARATION.exponents(&self.values);
+        // The exponent of the unit of mass in which a strength is near one, while that of time stays.
+        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.number() {
+            strength if m != 0.0 && strength != 0.0 && strength.is_finite() => {
+                Some(((f64::from(exponent(strength)) - l * f64::from(length)) / m).round() as i32)
+            }
+            _ => None,
+        };
+        let mass = self.values.iter().zip(dimensions).find_map(near).unwrap_or(0);
+        if length == 0 && mass.abs() < FAR {
+            return None;
+        }
+        Some((self.scaled(Units { length, mass, time: 0 }), mass + 2 * length))
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         self.formula.inverse_distance_strength()

@@ -56,6 +56,25 @@ proptest! {
     }
 }
 
+/// Precise sums see strengths near one, whatever the units of the scene: the values differ by the power of two alone.
+#[test]
+fn a_strength_of_any_size_is_brought_near_one() {
+    let seeds = [1.25, 0.75, 1.5, 1.0];
+    for potential in all(&seeds) {
+        assert!(potential.near_one(0).is_none(), "{potential:?} is near one already");
+        let r = DoubleDouble::from(1.75);
+        let (value, force) = potential.precise(r);
+        for (length, energy) in [(0, -1000), (0, 900), (-310, 20), (150, -600)] {
+            let far = potential.scaled(Units { length, mass: energy - 2 * length, time: 0 });
+            let (near, unit) = far.near_one(-length).unwrap();
+            let (near_value, near_force) = near.precise(r);
+            let factor = 2.0f64.powi(unit + energy);
+            assert_eq!(value.to_f64(), near_value.to_f64() * factor, "{far:?}");
+            assert_eq!(force.to_f64(), near_force.to_f64() * factor, "{far:?}");
+        }
+    }
+}
+
 #[test]
 fn bad_parameters_are_refused_by_name() {
     for declaration in POTENTIALS {

@@ -1,6 +1,7 @@
 //! The acceleration of every particle of a scene at its time: the forces of a plan, evaluated once.
 
 use super::Scene;
+use super::frame::Frame;
 use super::layout::Layout;
 use super::plan::{Groups, Plan};
 use super::request::Request;
@@ -34,6 +35,11 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         // Whatever the layout of a run would be: this is one state of one unit.
         plan.layout = Layout::Packed;
     }
+    // One state needs no origin near it: positions as they are given have digits that those about another may lose.
+    let fall = match core::mem::replace(&mut plan.frame, Frame::Given) {
+        Frame::Falling(fall) => fall,
+        Frame::Given | Frame::AtRest => [0.0; 3],
+    };
     let mut result = vec![[0.0; 3]; scene.particles];
     for unit in plan.unit_list() {
         let prepared = Prepared::new(&plan, scene, unit);
@@ -52,7 +58,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
                 result[prepared.unit.bodies[slot]][c] = scale(value, -plan.units.acceleration());
             }
             for c in 0..3 {
-                result[prepared.unit.bodies[slot]][c] += prepared.origin.fall[c];
+                result[prepared.unit.bodies[slot]][c] += fall[c];
             }
         }
     }

@@ -4,7 +4,7 @@
 //! its member and its time: where the parts are cut changes no bit.
 
 use super::Scene;
-use super::columns::{Entry, Missing, Writer};
+use super::columns::{Entry, Writer};
 use super::plan::{Plan, member};
 use crate::closed_forms::{ExactState, Motion};
 use crate::error::{Error, Result};
@@ -31,15 +31,6 @@ pub struct Report {
     pub beyond: bool,
     /// The states of the last row; empty if there is none.
     pub states: Vec<[[f64; 3]; 2]>,
-}
-
-impl Report {
-    /// What is not there of the member at this place.
-    pub fn missing(&self, copy: usize, scene: &Scene, times: usize) -> impl Iterator<Item = Missing> {
-        let from_time = self.rows;
-        let particles = if from_time < times { 0..scene.particles } else { 0..0 };
-        particles.map(move |particle| Missing { copy, from_time, particle })
-    }
 }
 
 /// Some rows of a member that follow each other.

@@ -22,14 +22,18 @@ const COARSE: i32 = 64;
 /// The largest multiple of which 2 to the power of it is a number.
 const LARGEST: i32 = 1023 / COARSE * COARSE;
 
+/// The unit of time is shorter than the time in which a scene moves by its size by 2 to the power of this at most: squares
+/// of its velocities must not vanish.
+const LONGEST: i32 = 256;
+
 /// The nearest multiple.
 fn coarse(exponent: i32) -> i32 {
     (exponent + COARSE / 2).div_euclid(COARSE) * COARSE
 }
 
 impl Units {
-    /// Units near the own sizes of a copy of a scene.
-    pub fn of(scene: &Scene, copy: usize, origin: &Origin) -> Self {
+    /// Units near the own sizes of a copy of a scene, for a run over that span of time.
+    pub fn of(scene: &Scene, copy: usize, origin: &Origin, span: f64) -> Self {
         let mut size = 0.0_f64;
         let mut speed = 0.0_f64;
         for (x, v) in scene.positions(copy).iter().zip(scene.velocities(copy)) {
@@ -45,7 +49,11 @@ impl Units {
         let massive = masses.iter().any(|&mass| mass > 0.0);
         let given =
             scene.forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
-        let time = given.unwrap_or(if speed > 0.0 { length - exponent(speed) } else { 0 });
+        let crossing = (speed > 0.0).then(|| length - exponent(speed));
+        let time = given.or(crossing).unwrap_or(0);
+        // In a run that is much shorter an acceleration that matters is beyond measure in that time: the run's own is taken.
+        let least = crossing.unwrap_or(time) - LONGEST;
+        let time = if span > 0.0 { exponent(span).max(least).min(time) } else { time };
         // One factor then takes a length or a velocity back to the scene's units: it must be a number, which 2^1024 is not.
         let length = coarse(length).clamp(-LARGEST, LARGEST);
         Self { length, time: coarse(time).clamp(length - 1000, length + 1000), mass: coarse(mass) }

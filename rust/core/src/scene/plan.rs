@@ -130,6 +130,7 @@ impl Plan {
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
         let layout = if batched { Layout::Batched } else { Layout::Packed };
+        let span = (request.times[request.times.len() - 1] - scene.t0).abs();
         let mut plan = Self {
             method,
             dt,
@@ -137,8 +138,8 @@ impl Plan {
             solutions,
             planar,
             alike,
-            span: (request.times[request.times.len() - 1] - scene.t0).abs(),
-            units: units(scene, 0, frame, &groups),
+            span,
+            units: units(scene, 0, frame, &groups, span),
             forces,
             groups,
             active,
@@ -162,7 +163,7 @@ impl Plan {
 
     /// The units for a copy by itself.
     pub fn units_of(&self, scene: &Scene, copy: usize) -> Units {
-        units(scene, copy, self.frame, &self.groups)
+        units(scene, copy, self.frame, &self.groups, self.span)
     }
 
     /// The origin for a unit: all that are coupled have one.
@@ -309,12 +310,12 @@ impl Plan {
     }
 }
 
-/// The units for a copy.
-fn units(scene: &Scene, copy: usize, frame: Frame, groups: &Groups) -> Units {
+/// The units for a copy, in a run over that span of time.
+fn units(scene: &Scene, copy: usize, frame: Frame, groups: &Groups, span: f64) -> Units {
     // Bodies by themselves have no size about their own places.
     let frame =
         if matches!(frame, Frame::Falling(_)) && *groups != Groups::Single { frame } else { Frame::Given };
-    Units::of(scene, copy, &frame.origin(scene, copy, 0..scene.particles))
+    Units::of(scene, copy, &frame.origin(scene, copy, 0..scene.particles), span)
 }
 
 /// Refuses a method that cannot take what a force looks at.

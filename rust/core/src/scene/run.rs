@@ -170,7 +170,6 @@ fn run_part(
     if !plan.solutions.integrates() {
         let writer = columns.writer(scene, part.members, 1);
         let reports = closed_form::run(scene, plan, &request.times, &writer, ticker)?;
-        let mut missing = Vec::new();
         for (copy, report) in reports.iter().enumerate() {
             let member = part.member(copy);
             let places = member * scene.particles..(member + 1) * scene.particles;
@@ -179,9 +178,8 @@ fn run_part(
                 reached.velocity[place] = velocity;
             }
             outcomes[member].stop(report, request, scene.t0);
-            missing.extend(report.missing(member, scene, request.times.len()));
         }
-        return Ok(missing);
+        return Ok(unreached(part, request, outcomes));
     }
     check_units(part)?;
     let writer = columns.writer(scene, part.members, plan.threads.1);
@@ -197,23 +195,22 @@ fn run_part(
         writer: &writer,
     };
     let reports = integrate::run(&job, ticker)?;
-    let mut missing: Vec<Missing> = reports
-        .iter()
-        .filter(|report| report.rows < request.times.len())
-        .flat_map(|report| {
-            let unit = &report.unit;
-            unit.recorded.clone().map(|slot| Missing {
-                copy: part.member(unit.copy),
-                from_time: report.rows,
-                particle: unit.bodies[slot],
-            })
-        })
-        .collect();
     gather(part, request, &reports, columns, outcomes, reached, ticker)?;
     events.gather(part, &reports, outcomes);
-    missing.extend(events::cut(part, request, outcomes));
     resolved::look(part, request, outcomes, reached, ticker)?;
-    Ok(missing)
+    Ok(unreached(part, request, outcomes))
+}
+
+/// The rows beyond the end of a copy that ended early, of all its particles: there is no state of the whole.
+fn unreached(part: &Part<'_>, request: &Request, outcomes: &[Outcome]) -> Vec<Missing> {
+    let copies = (0..part.scene.copies).map(|copy| part.member(copy));
+    copies
+        .filter(|&copy| outcomes[copy].rows < request.times.len())
+        .flat_map(|copy| {
+            let from_time = outcomes[copy].rows;
+            (0..part.scene.particles).map(move |particle| Missing { copy, from_time, particle })
+        })
+        .collect()
 }
 
 /// That each particle is recorded from one unit: what lets threads write side by side.

@@ -1,8 +1,6 @@
 //! The events that the units found, put together: one table, copy after copy, in the order of the motion.
 
-use super::super::columns::Missing;
 use super::super::integrate::{Ending, Report};
-use super::super::request::Request;
 use super::{Outcome, Part};
 
 /// A line of the table.
@@ -74,17 +72,4 @@ impl Events {
             .flat_map(|state| state[of])
             .collect()
     }
-}
-
-/// The rows beyond the event that stopped a copy, of all its particles.
-pub(super) fn cut(part: &Part<'_>, request: &Request, outcomes: &[Outcome]) -> Vec<Missing> {
-    let copies = (0..part.scene.copies).map(|copy| part.member(copy));
-    let stopped = copies.filter(|&copy| outcomes[copy].ending == Ending::Stopped);
-    stopped
-        .filter(|&copy| outcomes[copy].rows < request.times.len())
-        .flat_map(|copy| {
-            let from_time = outcomes[copy].rows;
-            (0..part.scene.particles).map(move |particle| Missing { copy, from_time, particle })
-        })
-        .collect()
 }

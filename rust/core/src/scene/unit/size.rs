@@ -24,7 +24,7 @@ impl Prepared {
             self.path(plan, speed, field)
         };
         // The speed of a circular orbit there: a system at rest has a velocity scale too.
-        let total: f64 = self.strength.iter().map(|x| x.abs()).sum();
+        let total: f64 = if self.is_lone() { 0.0 } else { self.strength.iter().map(|x| x.abs()).sum() };
         let orbital = (total / extent.max(length)).sqrt();
         let velocity = speed.max(orbital);
         // A body at rest in a field gets its scale from the fall over that length; one that nothing moves, from the run.
@@ -48,12 +48,20 @@ impl Prepared {
         if length > 0.0 && length.is_finite() { length } else { 1.0 }
     }
 
-    /// A fixed center if there is one, else the centre of mass.
+    /// Whether it is one body: what it does to others that are massless is no measure of its own motion.
+    fn is_lone(&self) -> bool {
+        self.position.len() == 1
+    }
+
+    /// A fixed center if there is one, else the centre of mass of several bodies.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
         let center = plan.forces.iter().find_map(|force| force.center());
         if let Some(center) = center {
             reference.center = self.units.take_vector(center, [1, 0, 0]);
+            return reference;
+        }
+        if self.is_lone() {
             return reference;
         }
         let total: f64 = self.strength.iter().sum();
