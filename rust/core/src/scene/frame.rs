@@ -4,7 +4,8 @@
 //! 1e±100 units from overflowing. Bodies on which no force acts that tells one place from another are integrated about
 //! their center of mass: a lone body about its own place, a coupled group about one origin. If no force tells
 //! velocities apart either, the origin moves with them, and falls with what accelerates all of them alike. So the
-//! differences that matter keep their digits, however far the whole may be or go.
+//! differences that matter keep their digits, however far the whole may be or go. A center that is far from most bodies
+//! would cost them their digits: then a point is taken that is near them.
 
 pub use crate::units::Units;
 
@@ -92,12 +93,14 @@ impl Frame {
     /// The origin for some bodies of a copy.
     pub fn origin(self, scene: &Scene, copy: usize, bodies: impl Iterator<Item = usize> + Clone) -> Origin {
         let mass = scene.masses(copy);
-        let center = || mean(mass, scene.positions(copy), bodies.clone());
+        let (places, velocities) = (scene.positions(copy), scene.velocities(copy));
+        let center = || center(mean(mass, places, bodies.clone()), bodies.clone().map(|i| places[i]));
         match self {
             Self::Given => Origin::default(),
             Self::AtRest => Origin { center: center(), ..Origin::default() },
             Self::Falling(fall) => {
-                Origin { center: center(), drift: mean(mass, scene.velocities(copy), bodies.clone()), fall }
+                let mean = mean(mass, velocities, bodies.clone());
+                Origin { center: center(), drift: drift(mean, bodies.clone().map(|i| velocities[i])), fall }
             }
         }
     }
@@ -127,9 +130,6 @@ impl Moved {
     /// The origin of the scene.
     pub const NOWHERE: Self = Self { position: [(0.0, 0.0); 3], velocity: [(0.0, 0.0); 3] };
 }
-
-/// Below this share of the extent a center is where it should be, up to rounding, and is left there.
-const NEAR: f64 = 8.881_784_197_001_252e-16; // 2^-50
 
 impl Origin {
     /// Whether it is anywhere but at rest in the origin of the scene.
@@ -165,6 +165,9 @@ pub fn restored<S: Real>(origin: (S, S), relative: (S, S)) -> (S, S) {
     (value, rest - (value - sum))
 }
 
+/// Below this share of the extent a center is where it should be, up to rounding, and is left there.
+const NEAR: f64 = 8.881_784_197_001_252e-16; // 2^-50
+
 /// The mass-weighted mean of the points of some bodies, or zero where it is as good as that.
 fn mean(mass: &[f64], points: &[[f64; 3]], bodies: impl Iterator<Item = usize> + Clone) -> [f64; 3] {
     let total: f64 = bodies.clone().map(|i| mass[i]).sum();
@@ -178,12 +181,61 @@ fn mean(mass: &[f64], points: &[[f64; 3]], bodies: impl Iterator<Item = usize> +
             mean[c] += weight * points[i][c];
         }
     }
-    let mut extent = 0.0_f64;
-    for i in bodies {
-        for c in 0..3 {
-            extent = extent.max((points[i][c] - mean[c]).abs());
-        }
-    }
-    let distance = mean.iter().fold(0.0_f64, |largest, x| largest.max(x.abs()));
+    let extent = bodies.fold(0.0, |extent: f64, i| extent.max(apart(points[i], mean)));
+    let distance = apart(mean, [0.0; 3]);
     if distance.is_finite() && distance > NEAR * extent { mean } else { [0.0; 3] }
+}
+
+/// What places are measured from: their mean, or zero, or one of them, whichever spares the most.
+pub fn center(mean: [f64; 3], places: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
+    let step = places.clone().count().div_ceil(TRIED).max(1);
+    let others = core::iter::once([0.0; 3]).chain(places.clone().step_by(step));
+    sparing(mean, places, others)
+}
+
+/// How what they are measured from moves: with their mean velocity, or not at all. With no body: it turns, and the others
+/// would leave it.
+pub fn drift(mean: [f64; 3], velocities: impl Iterator<Item = [f64; 3]> + Clone) -> [f64; 3] {
+    sparing(mean, velocities, core::iter::once([0.0; 3]))
+}
+
+/// The largest of the distances in each coordinate.
+fn apart(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).fold(0.0, |largest, c| largest.max((a[c] - b[c]).abs()))
+}
+
+/// So many binary digits each body has to keep more, on average, for another point to be better than the mean.
+const WORTH: i64 = 4;
+/// So many bodies, at most, are tried as the point.
+const TRIED: usize = 64;
+
+/// The mean of some points; or another one that is worth it, if the mean is far from most of them: the difference of two
+/// coordinates about a point has no more digits than the larger has beyond it. Two points lose nothing about any.
+fn sparing(
+    mean: [f64; 3],
+    points: impl Iterator<Item = [f64; 3]> + Clone,
+    others: impl Iterator<Item = [f64; 3]>,
+) -> [f64; 3] {
+    let count = points.clone().count() as i64;
+    if count < 3 {
+        return mean;
+    }
+    // Whole numbers: the choice is the same in every unit and mirror. The nearest counts as the next one: it is told apart
+    // from no other by what it keeps.
+    let places = |center: [f64; 3]| -> i64 {
+        let (mut sum, mut nearest) = (0, [i64::MAX; 2]);
+        for x in points.clone() {
+            let distance = apart(x, center);
+            let place = i64::from(if distance > 0.0 { exponent(distance) } else { -2000 });
+            sum += place;
+            nearest =
+                if place < nearest[0] { [place, nearest[0]] } else { [nearest[0], nearest[1].min(place)] };
+        }
+        sum - nearest[0] + nearest[1]
+    };
+    let of_mean = places(mean);
+    match others.map(|center| (places(center), center)).min_by_key(|&(places, _)| places) {
+        Some((fewest, center)) if of_mean - fewest > WORTH * count => center,
+        _ => mean,
+    }
 }

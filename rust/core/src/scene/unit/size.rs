@@ -1,6 +1,7 @@
 //! What the errors of an adaptive step are measured against: the place, the drift and the size of a unit.
 
 use super::super::distance;
+use super::super::frame;
 use super::{Origin, Plan, Prepared};
 
 /// Above this many bodies the smallest separation is estimated from the mean density instead.
@@ -53,7 +54,7 @@ impl Prepared {
         self.position.len() == 1
     }
 
-    /// A fixed center if there is one, else the centre of mass of several bodies.
+    /// A fixed center if there is one, else the centre of mass of several bodies, unless most of them are far from it.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
         let center = plan.forces.iter().find_map(|force| force.center());
@@ -74,6 +75,9 @@ impl Prepared {
                 reference.drift[c] += weight / total * self.velocity[i][c];
             }
         }
+        let massive = 0..weights.len();
+        reference.center = frame::center(reference.center, massive.clone().map(|i| self.position[i]));
+        reference.drift = frame::drift(reference.drift, massive.map(|i| self.velocity[i]));
         reference
     }
 
