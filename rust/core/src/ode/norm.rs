@@ -38,6 +38,9 @@ pub struct Norm<S> {
     pub blocks: Vec<Block<S>>,
     /// Whether the lanes are parts of one trajectory, and share a step.
     pub together: bool,
+    /// If there, sizes are measured from the mean of the vectors with these weights, row by row, wherever that may be, and
+    /// not from the references: what moves all alike is no size.
+    pub weights: Option<Vec<S>>,
     /// If there, the root mean square of all numbers of a system of the first order counts, and no vectors.
     pub mean: Option<RootMeanSquare<S>>,
 }
@@ -77,12 +80,12 @@ impl<S: Controlled> Norm<S> {
             Form::FirstOrder(_) => vec![block(false)],
             Form::SecondOrder(_) => vec![block(false), block(true)],
         };
-        Self { rtol, blocks, together, mean: None }
+        Self { rtol, blocks, together, weights: None, mean: None }
     }
 
     /// The root mean square of all numbers of a system of the first order, each scaled by its own tolerances.
     pub fn root_mean_square(mean: RootMeanSquare<S>) -> Self {
-        Self { rtol: S::zero(), blocks: vec![], together: false, mean: Some(mean) }
+        Self { rtol: S::zero(), blocks: vec![], together: false, weights: None, mean: Some(mean) }
     }
 
     /// The larger squared scaled size of the changes, for each of the two sets of weights: of the coordinates (or of all
@@ -108,7 +111,15 @@ impl<S: Controlled> Norm<S> {
                 (true, true) => state.v(),
             };
             let change = changes[usize::from(block.velocity)];
-            let place: [S; 4] = core::array::from_fn(|c| block.reference[c] + block.drift[c] * elapsed);
+            let place: [S; 4] = core::array::from_fn(|c| match &self.weights {
+                Some(weights) if c < block.shape.components => {
+                    let rows = &y[block.start + c * block.shape.rows..];
+                    let mean =
+                        weights.iter().zip(rows).fold(S::zero(), |sum, (&w, &y)| w.multiply_add(y, sum));
+                    if self.together { mean.sum_of_lanes() } else { mean }
+                }
+                _ => block.reference[c] + block.drift[c] * elapsed,
+            });
             let sizes = S::pass(LargestErrors {
                 shape: block.shape,
                 y: &y[block.start..],
@@ -150,6 +161,19 @@ mod tests {
         // Roots are rough, to four digits.
         assert!((first - (2.5_f64 / 1.75).powi(2)).abs() < 1e-3, "{first}");
         assert!((second - (25.0_f64 / 1.75).powi(2)).abs() < 1e-1, "{second}");
+    }
+
+    #[test]
+    fn what_moves_all_alike_is_no_size() {
+        let shape = Shape { rows: 2, components: 1 };
+        let mut norm = Norm::new(shape, Form::FirstOrder(2), 0.25, false);
+        norm.weights = Some(vec![0.75, 0.25]);
+        // Four apart: 1 and 3 from their mean, wherever that is.
+        for far in [0.0, 1e6] {
+            let y = [far - 1.0, far + 3.0];
+            let [size, _] = sizes(&norm, &y, &y, &[1.0, 1.0], 0.5);
+            assert!((size - 4.0).abs() < 1e-3, "{size}");
+        }
     }
 
     #[test]

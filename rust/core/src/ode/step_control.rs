@@ -157,6 +157,9 @@ pub trait Controlled: Element {
     /// The largest of the lanes, in every lane.
     #[must_use]
     fn largest_lane(self) -> Self;
+    /// The sum of the lanes, in every lane.
+    #[must_use]
+    fn sum_of_lanes(self) -> Self;
 }
 
 macro_rules! controlled {
@@ -169,6 +172,9 @@ macro_rules! controlled {
                 clock.settle(running, size2, rule)
             }
             fn largest_lane(self) -> Self {
+                self
+            }
+            fn sum_of_lanes(self) -> Self {
                 self
             }
         }
@@ -222,6 +228,9 @@ impl Controlled for Lanes {
         let larger = |x: f64, y: f64| if x > y { x } else { y };
         let (low, high) = (larger(larger(a, b), larger(c, d)), larger(larger(e, f), larger(g, h)));
         Self::splat(larger(low, high))
+    }
+    fn sum_of_lanes(self) -> Self {
+        Self::splat(self.0.iter().sum())
     }
 }
 
