@@ -16,6 +16,11 @@ _WANTED = 1e-3
 """What the step that is named aims at."""
 
 
+_UNRESOLVED = 0.1
+"""An energy error from which no asymptotic law can be read."""
+
+_LOW_ORDER = 4
+
 _PACKAGE = str(Path(__file__).parent)
 
 
@@ -35,14 +40,24 @@ def judge(result: dict[str, Any], *, ensemble: bool) -> None:
         dt, span = result["dt_beyond"]
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
-    copy, error, dt, order = result.get("energy_error", (0, 0.0, 0.0, 1))
+    copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
     if error <= _TOLERATED:
         return
-    # The error goes as dt to the power of the order, if not quite yet where it is this large: half of that step.
-    step = 0.5 * dt * (_WANTED / error) ** (1.0 / order)
     whose = f"in copy {copy}, " if ensemble else ""
-    message = (
-        f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: a step of dt = {dt:g} does not "
-        f"resolve this motion; try dt = {float(f'{step:.0e}'):g}, or an adaptive method (dop853)"
-    )
+    advice = _advice(result, error, dt, order)
+    message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+
+
+def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) -> str:
+    if dt is None:
+        return "the tolerance does not resolve this motion; try a smaller rtol (the default is 1e-9)"
+    # The error goes as dt to the power of the order, if not quite yet where it is this large: half of that step. Where
+    # it has grown to the energy itself it tells little: then as for a low order.
+    power = 1.0 / (order if error < _UNRESOLVED else min(order, _LOW_ORDER))
+    longest = min(dt, result.get("dt_beyond", (dt, dt))[1])
+    named = f"dt = {float(f'{0.5 * longest * (_WANTED / error) ** power:.0e}'):g}"
+    told = f"a step of dt = {dt:g} does not resolve this motion; "
+    if error < _UNRESOLVED:
+        return f"{told}try {named}, or an adaptive method (dop853)"
+    return f"{told}try an adaptive method (dop853), which finds the steps that close bodies take, or at most {named}"

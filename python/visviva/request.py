@@ -184,8 +184,7 @@ def execute(
 
         result["looked_for"] = described(asked["events"])
     made = make(result)
-    if request.dt is not None:
-        judge(result, ensemble=ensemble)
+    judge(result, ensemble=ensemble)
     error = result["error"]
     if error is not None:
         raise _exception(error, made)

@@ -125,8 +125,9 @@ pub(super) fn output_dict<'py>(
     }
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());
-    if let (Some((copy, error)), Some(dt)) = (worst.max_by(|a, b| a.1.total_cmp(&b.1)), output.plan.dt) {
-        dict.set_item("energy_error", (copy, error, dt.abs(), output.plan.method.order))?;
+    if let Some((copy, error)) = worst.max_by(|a, b| a.1.total_cmp(&b.1)) {
+        let step = output.plan.dt.map(f64::abs);
+        dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
     }
     let error = if ensemble { None } else { failure(&outcomes[0]) };
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;

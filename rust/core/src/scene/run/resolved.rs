@@ -1,4 +1,4 @@
-//! Whether fixed steps have resolved anything: the energy at the end against that at the start.
+//! Whether a run has resolved anything: the energy at the end against that at the start.
 //!
 //! Looked at where it costs next to nothing beside the run, so that a result that is wrong by orders of magnitude does
 //! not go out without a word.
@@ -33,7 +33,7 @@ pub(super) fn look(
 ) -> Result<()> {
     let (scene, plan) = (part.scene, part.plan);
     let conserved = conserved_by(&scene.forces, &scene.bodies()).energy;
-    if !conserved || plan.method.adaptive() || plan.active.len() > MOST || request.times.is_empty() {
+    if !conserved || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
     let pairs = plan.pairs_per_evaluation();
