@@ -72,6 +72,11 @@ class Potential(Declared):
         ndarray
             Of the shape of ``r``.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            If a distance is negative or no number.
+
         Examples
         --------
         >>> import visviva as vv
@@ -104,6 +109,8 @@ class Potential(Declared):
 
     def _evaluate(self, r: ArrayLike, which: int) -> NDArray[np.float64]:
         distances = float_array("r", r, None)
+        if distances.size and not distances.min() >= 0.0:
+            raise InvalidInput("r", f"expected distances, numbers of at least 0, got {float(distances.min())!r}")
         results = _core.potential(self._to_core(), distances.ravel())
         return results[which].reshape(distances.shape)
 

@@ -105,7 +105,8 @@ class Recorded(ABC):
         if name not in self._columns:
             found = self._found(name)
             found.setflags(write=False)
-            self._columns[name] = found
+            # A view: of it nobody can make a writable array again.
+            self._columns[name] = found.view()
         return self._columns[name]
 
     @property

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva import forces as force_classes
 from visviva._arrays import float_array, in_range, number
 from visviva._keywords import known_keywords
 from visviva._text import article
@@ -80,9 +81,8 @@ class Scene(Runnable[Trajectory]):
         for part in all_parts:
             if not isinstance(part, Particles | Force):
                 came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
-                raise InvalidInput(
-                    "parts", f"expected Particles and forces (Gravity, UniformField, CentralField), got {came}"
-                )
+                known = ", ".join(name for name in force_classes.__all__ if name != "Force")
+                raise InvalidInput("parts", f"expected Particles and forces ({known}), got {came}")
         if len(found) != 1:
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")

@@ -77,3 +77,13 @@ def test_the_stubs_are_what_the_registry_says() -> None:
 def test_an_unknown_name_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match="coulomb"):
         potentials.potential_by_name("columb", [1.0])
+
+
+@pytest.mark.parametrize("r", [-1.0, [1.0, -0.5], np.nan])
+def test_a_distance_is_not_negative(r: object) -> None:
+    """r³ of a Lennard-Jones potential has an answer for −1, exp(−r) of Yukawa's another."""
+    for potential in (potentials.Coulomb(1.0), potentials.Yukawa(1.0, 1.0), potentials.LennardJones(1.0, 1.0)):
+        for asked in (potential.value, potential.force, potential.curvature):
+            with pytest.raises(vv.InvalidInput) as caught:
+                asked(r)
+            assert caught.value.argument == "r"

@@ -55,3 +55,11 @@ def test_the_arrays_that_were_given_stay_writeable() -> None:
     mass, position = np.ones((2, 3)), COPIES.position.copy()
     SCENE.ensemble(mass=mass, position=position)
     mass[0], position[0] = 2.0, 0.0
+
+
+@pytest.mark.parametrize("start", [SCENE, COPIES], ids=["scene", "ensemble"])
+def test_a_column_cannot_be_made_writable(start: vv.Scene | vv.EnsembleScene) -> None:
+    out = start.run([0.0, 0.5, 1.0], record=COLUMNS)
+    for name in COLUMNS:
+        with pytest.raises(ValueError, match="WRITEABLE"):
+            getattr(out, name).setflags(write=True)
