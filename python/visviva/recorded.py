@@ -10,6 +10,8 @@ from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from visviva._keywords import frozen, known_keywords
 from visviva.errors import InvalidInput
 from visviva.plan import Plan
@@ -17,7 +19,6 @@ from visviva.plan import Plan
 if TYPE_CHECKING:
     from os import PathLike
 
-    import numpy as np
     from numpy.typing import NDArray
 
     from visviva.events import EventTable
@@ -105,8 +106,8 @@ class Recorded(ABC):
         if name not in self._columns:
             found = self._found(name)
             found.setflags(write=False)
-            # A view: of it nobody can make a writable array again.
-            self._columns[name] = found.view()
+            # Seen through a read-only buffer: of that nobody can make a writable array again.
+            self._columns[name] = np.asarray(found.data.toreadonly()) if found.size else found
         return self._columns[name]
 
     @property
