@@ -4,11 +4,13 @@
 //! there is one unit at a time, in all lanes. Massless bodies go through each step of the massive ones in the same way,
 //! before those are moved on ([`followers`]).
 
+mod ending;
 mod events;
 mod followers;
 mod guide;
 mod measure;
 mod outputs;
+mod part;
 mod stuck;
 
 use super::super::layout::Layout;
@@ -31,7 +33,7 @@ use core::iter::Enumerate;
 use core::slice;
 use followers::{Followers, Span};
 use guide::{Guided, Path};
-use std::collections::BTreeSet;
+use part::Part;
 use std::sync::Arc;
 
 /// Units of progress of a unit: thousandths of its time.
@@ -131,23 +133,6 @@ struct Run<'a> {
     followers: Option<Followers<'a>>,
     /// What of the time of each lane the clock counts: all of it, or a step of those that it follows.
     part: Part,
-}
-
-/// A part of the elapsed time, lane by lane, through which units are taken.
-struct Part {
-    /// Where it begins, and where it ends.
-    from: Lanes,
-    to: Lanes,
-    /// How long it is.
-    length: Lanes,
-    /// Whether it is the last.
-    last: Bits,
-    /// The lanes that have come to its end, though it is not the last.
-    arrived: Bits,
-    /// Units that have not begun.
-    fresh: Bits,
-    /// What distances are measured from at the start of the run.
-    reference: [Lanes; 4],
 }
 
 impl<'a> Run<'a> {
@@ -321,151 +306,4 @@ impl<'a> Run<'a> {
         let Self { trial, state, clock, forces, norm, .. } = self;
         trial.start(fresh, forces.system(), state, clock, norm, ticker)
     }
-
-    /// Takes the units through a step of those that they follow.
-    ///
-    /// # Errors
-    /// When the caller asks to stop.
-    fn through(&mut self, span: &Span, ticker: &mut Ticker<'_>) -> Result<()> {
-        let (lanes, part) = (span.lanes, &mut self.part);
-        part.from = Lanes::select(lanes, span.from, part.from);
-        part.to = Lanes::select(lanes, span.to, part.to);
-        part.length = Lanes::select(lanes, span.path.h, part.length);
-        part.last = part.last.and(lanes.not()).or(span.last.and(lanes));
-        part.arrived = part.arrived.and(lanes.not());
-        self.clock.recount(lanes, part.length);
-        for block in self.norm.blocks.iter_mut().filter(|block| !block.velocity) {
-            for c in 0..block.reference.len() {
-                block.reference[c] = part.reference[c] + block.drift[c] * part.from;
-            }
-        }
-        let mut fresh = part.fresh.and(lanes);
-        part.fresh = part.fresh.and(lanes.not());
-        if let Forces::Along(guided) = &mut self.forces {
-            guided.follow(&span.path, self.part.from);
-        }
-        loop {
-            let running = self.running().and(lanes).and(self.part.arrived.not());
-            if !running.any() {
-                return Ok(());
-            }
-            self.advance(core::mem::replace(&mut fresh, Bits(0)), running, ticker)?;
-        }
-    }
-
-    /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
-    fn settle(&mut self, lane: usize, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) {
-        let (end, elapsed) = (self.end(), self.elapsed(lane));
-        let Some(slot) = self.slots[lane].as_mut() else { return };
-        // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
-        // taken when it is kept.
-        slot.counts.evaluations += self.cost.tried;
-        if outcome.accepted.lane(lane) {
-            slot.counts.steps += 1;
-            slot.counts.evaluations += self.cost.kept;
-            let done = (elapsed / end * PROGRESS_PER_UNIT as f64) as u64;
-            if slot.unit.unit.reports() {
-                ticker.advance(done.saturating_sub(slot.progress));
-            }
-            slot.progress = done.max(slot.progress);
-        } else {
-            slot.counts.rejected += 1;
-        }
-        let stopped = slot.watch.as_ref().is_some_and(|watch| watch.stopped);
-        let ending = if outcome.finished.lane(lane) && self.part.last.lane(lane) {
-            Ending::Finished
-        } else if outcome.finished.lane(lane) {
-            self.part.arrived = self.part.arrived.or(self.layout.mask(lane));
-            return;
-        } else if outcome.stuck.lane(lane) {
-            let massive = match &mut self.forces {
-                Forces::Along(guided) => guided.places(self.clock.elapsed.0[lane], lane),
-                Forces::Own(_) => Vec::new(),
-            };
-            stuck::why(self.job, &slot.unit, &self.state, (lane, elapsed), &massive)
-        } else if slot.counts.steps + slot.counts.rejected >= self.job.max_steps {
-            Ending::TooManySteps
-        } else if stopped {
-            // The events know better where.
-            Ending::Stopped
-        } else {
-            return;
-        };
-        let time = if ending == Ending::Finished { self.job.end() } else { self.time(lane) };
-        if let Some(slot) = self.slots[lane].take() {
-            self.finish(slot, lane, time, ending);
-        }
-    }
-
-    /// The elapsed time of the unit in a lane: at the end of a part the time that those have whom it follows.
-    fn elapsed(&self, lane: usize) -> f64 {
-        let Part { from, to, length, .. } = &self.part;
-        let elapsed = self.clock.elapsed.0[lane];
-        if elapsed == length.0[lane] { to.0[lane] } else { from.0[lane] + elapsed }
-    }
-
-    /// The time of the unit in a lane.
-    fn time(&self, lane: usize) -> f64 {
-        self.job.scene.t0 + scale(self.elapsed(lane), self.job.plan.units.time)
-    }
-
-    /// A unit has ended; those that follow it cannot go further.
-    fn finish(&mut self, slot: Slot<'a>, lane: usize, time: f64, ending: Ending) {
-        let (rows, counts) = (slot.next_output, slot.counts);
-        if let Some(followers) = &mut self.followers {
-            followers.end(lane, &ending);
-        }
-        if !slot.unit.unit.reports() {
-            return;
-        }
-        let mut report = self.job.report(&slot.unit, &self.state, lane, time, ending, rows, counts);
-        if let Some(watch) = slot.watch {
-            watch.tell(&mut report);
-        }
-        self.reports.push((slot.index, report));
-    }
-
-    /// The units in these lanes end, if they have not.
-    fn end_with(&mut self, lanes: Bits, ending: &Ending) {
-        for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
-            if let Some(slot) = self.slots[lane].take() {
-                self.finish(slot, lane, self.time(lane), ending.clone());
-            }
-        }
-        self.part.fresh = self.part.fresh.and(lanes.not());
-    }
-
-    /// The reports; a unit that is on its way was interrupted.
-    fn into_reports(mut self) -> Vec<(usize, Report)> {
-        self.end_with(Bits(0xff), &Ending::Interrupted);
-        self.reports
-    }
-
-    /// The reports of all these units and of those that follow them, also of the ones that were interrupted before they
-    /// began.
-    fn into_all_reports(mut self, units: &[Unit], followers: &[&[Unit]]) -> Vec<Report> {
-        let job = self.job;
-        self.end_with(Bits(0xff), &Ending::Interrupted);
-        let following = self.followers.take().into_iter().flat_map(Followers::reports);
-        self.reports.sort_by_key(|(index, _)| *index);
-        let mut reports: Vec<Report> =
-            self.reports.into_iter().chain(following).map(|(_, report)| report).collect();
-        let reporting = units.iter().filter(|unit| unit.reports());
-        let all = reporting.chain(followers.iter().copied().flatten());
-        if reports.len() < all.clone().count() {
-            let first = |unit: &Unit| unit.bodies.get(unit.recorded.start).copied();
-            let name = |unit: &Unit| (unit.copy, unit.make_up, first(unit));
-            let begun: BTreeSet<_> = reports.iter().map(|report| name(&report.unit)).collect();
-            reports.extend(all.filter(|unit| !begun.contains(&name(unit))).map(|unit| not_begun(job, unit)));
-        }
-        reports
-    }
-}
-
-/// The report of a unit that was interrupted before it began.
-fn not_begun(job: &Job<'_>, unit: &Unit) -> Report {
-    let prepared = job.prepare(unit);
-    let mut state = prepared.blank_state(1);
-    prepared.write(&mut state, 0);
-    job.report(&prepared, &state, 0, job.scene.t0, Ending::Interrupted, 0, Counts::default())
 }

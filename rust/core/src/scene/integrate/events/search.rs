@@ -1,0 +1,147 @@
+//! The zeros of one event in one step: the function is sampled along it; where it changes its sign, or comes near zero and
+//! turns, the zero is located on the solution itself.
+
+use super::super::super::unit::Prepared;
+use super::{Interpolant, Span, Watch};
+use crate::error::Result;
+use crate::ode::events::zero;
+use crate::parallel::Ticker;
+
+/// Where a step is sampled, as fractions of it: close to its ends to see which way the function leaves and comes.
+const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984375];
+
+/// Parts of a bracket in which a minimum lies come down by the golden section to 1e-8 of it, where a parabola has come
+/// down to round-off.
+const SECTIONS: usize = 40;
+
+/// A part of a step at whose ends a function has different signs.
+type Bracket = [(f64, f64); 2];
+
+/// The search for the zeros of one event in one step.
+pub(super) struct Search<'s, 'a> {
+    pub(super) watch: &'s mut Watch<'a>,
+    pub(super) unit: &'s Prepared,
+    pub(super) event: usize,
+    pub(super) span: Span,
+    pub(super) lane: usize,
+    pub(super) ends: [f64; 2],
+}
+
+/// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
+fn crosses(start: f64, end: f64) -> bool {
+    (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
+}
+
+impl Search<'_, '_> {
+    /// The zeros, as fractions of the step.
+    pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+        let mut points = vec![(0.0, self.ends[0])];
+        for theta in SAMPLES {
+            self.watch.place(self.unit.shape.components, self.span, theta);
+            points.push((theta, self.value_inside(theta, ticker)?));
+        }
+        points.push((1.0, self.ends[1]));
+        let mut brackets: Vec<Bracket> = Vec::new();
+        for pair in points.windows(2) {
+            if crosses(pair[0].1, pair[1].1) {
+                brackets.push([pair[0], pair[1]]);
+            }
+        }
+        for three in points.windows(3) {
+            if let &[left, middle, right] = three
+                && turns(left.1, middle.1, right.1)
+            {
+                brackets.extend(self.turn(left, middle, right, step, ticker)?);
+            }
+        }
+        let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
+        let mut zeros = Vec::new();
+        for bracket in brackets {
+            let Some([a, b]) = self.settled(bracket, step, ticker)? else { continue };
+            // Upwards along the run backwards is downwards in time.
+            let up = if a.1 < 0.0 { 1.0 } else { -1.0 };
+            if direction * up >= 0.0 {
+                zeros.push(zero([a, b], |theta| self.value_at(theta, step, ticker))?);
+            }
+        }
+        // Brackets that the solution does not confirm lead to one zero.
+        zeros.sort_by(f64::total_cmp);
+        zeros.dedup();
+        Ok(zeros)
+    }
+
+    /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
+    fn turn(
+        &mut self,
+        left: (f64, f64),
+        middle: (f64, f64),
+        right: (f64, f64),
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<Bracket>> {
+        let part = 0.381_966_011_250_105_15; // (3 - √5)/2
+        let (mut left, mut best, mut right, sign) = (left, middle, right, middle.1.signum());
+        for _ in 0..SECTIONS {
+            let longer = if right.0 - best.0 > best.0 - left.0 { right.0 } else { left.0 };
+            let theta = best.0 + part * (longer - best.0);
+            let point = (theta, self.value_at(theta, step, ticker)?);
+            if point.1 * sign <= 0.0 {
+                return Ok(vec![[left, point], [point, right]]);
+            }
+            let (inner, outer) = if point.1 * sign < best.1 * sign { (point, best) } else { (best, point) };
+            if outer.0 < inner.0 {
+                left = outer
+            } else {
+                right = outer
+            }
+            best = inner;
+        }
+        Ok(Vec::new())
+    }
+
+    /// A bracket with the values of the solution itself, where those of the cubic have led there; none if it has no
+    /// zero after all.
+    fn settled(
+        &mut self,
+        bracket: Bracket,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Option<Bracket>> {
+        let mut settled = bracket;
+        for (theta, value) in &mut settled {
+            *value = match *theta {
+                0.0 => self.ends[0],
+                1.0 => self.ends[1],
+                theta => self.value_at(theta, step, ticker)?,
+            };
+        }
+        if crosses(settled[0].1, settled[1].1) {
+            return Ok(Some(settled));
+        }
+        let whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
+        Ok(crosses(self.ends[0], self.ends[1]).then_some(whole))
+    }
+
+    /// On the polynomial, or on the solution where there is none.
+    fn value_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
+        if self.watch.terms.is_empty() {
+            self.watch.read_inside(self.unit, step.at(theta, ticker)?, self.lane);
+        } else {
+            self.watch.place(self.unit.shape.components, self.span, theta);
+        }
+        self.value_inside(theta, ticker)
+    }
+
+    fn value_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let view = self.watch.view(self.unit, &self.watch.inside, self.span.at(theta));
+        self.watch.value(self.unit, self.event, &view, ticker)
+    }
+}
+
+/// Whether a function of one sign comes so near zero between points around the middle one that it may pass it. Between
+/// points of a parabola it goes an eighth of the larger difference beyond the middle one, if they are evenly spaced.
+fn turns(left: f64, middle: f64, right: f64) -> bool {
+    let one_sign = (left > 0.0 && middle > 0.0 && right > 0.0) || (left < 0.0 && middle < 0.0 && right < 0.0);
+    let (left, middle, right) = (left.abs(), middle.abs(), right.abs());
+    one_sign && middle <= left && middle <= right && middle < left.max(right) - middle
+}
