@@ -54,7 +54,7 @@ fn apply<S: visviva_core::numerics::element::Element>(
 ) {
     let control = Control::default();
     let v = vec![S::zero(); q.len()];
-    force.apply(&Phase { t: S::zero(), q, v: &v }, a, first, &mut Ticker::quiet(&control)).unwrap();
+    force.apply(&Phase { t: &S::zero(), q, v: &v }, a, first, &mut Ticker::quiet(&control)).unwrap();
 }
 
 impl Bodies {

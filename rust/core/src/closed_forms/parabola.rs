@@ -33,13 +33,12 @@ impl Parabola {
 
 impl Path for Parabola {
     fn state(&self, elapsed: DoubleDouble) -> ExactState {
-        let near = self.moderate.filter(|_| exponent(elapsed.to_f64()).abs() < MODERATE);
+        let near = self.moderate.as_ref().filter(|_| exponent(elapsed.to_f64()).abs() < MODERATE);
         let states: [_; 3] = if let Some(acceleration) = near {
-            let half = elapsed.scale(0.5);
             core::array::from_fn(|c| {
                 let (x, v) = (DoubleDouble::from(self.position[c]), DoubleDouble::from(self.velocity[c]));
-                let a = acceleration[c];
-                (x + elapsed * (v + a * half), v + a * elapsed)
+                let gained = acceleration[c] * elapsed;
+                (x + elapsed * (v + gained.scale(0.5)), v + gained)
             })
         } else {
             let t = Scaled::new(elapsed, 0);

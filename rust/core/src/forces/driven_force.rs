@@ -117,10 +117,10 @@ struct Kernel {
 }
 
 #[inline(always)]
-fn kernel<V: Vector8>(force: &Kernel, t: Lanes, a: &mut [Lanes], first: bool) {
+fn kernel<V: Vector8>(force: &Kernel, t: &Lanes, a: &mut [Lanes], first: bool) {
     let Shape { rows, components } = force.shape;
     let (a, inverse_mass) = (V::view_mut(a), V::view(&force.inverse_mass));
-    let (turned, error) = two_product(V::splat(force.frequency), V::load(t));
+    let (turned, error) = two_product(V::splat(force.frequency), V::load(*t));
     let (high, rest) = two_sum(turned, V::splat(force.start.0));
     let (high, low) = two_sum(high, rest + (error + V::splat(force.start.1)));
     let wave = cosine(high, low);
@@ -135,7 +135,7 @@ fn kernel<V: Vector8>(force: &Kernel, t: Lanes, a: &mut [Lanes], first: bool) {
 }
 
 tiered! {
-    fn kernel_tier[][](force: &Kernel, t: Lanes, a: &mut [Lanes], first: bool) = kernel;
+    fn kernel_tier[][](force: &Kernel, t: &Lanes, a: &mut [Lanes], first: bool) = kernel;
 }
 
 impl Force<Lanes> for Kernel {

@@ -35,7 +35,7 @@ use gravity::closed::ClosedKernel;
 #[derive(Debug)]
 pub struct Phase<'a, S> {
     /// The time since the start of the run, for a force that [needs](Force::needs) it; for another it may be any.
-    pub t: S,
+    pub t: &'a S,
     /// Coordinates.
     pub q: &'a [S],
     /// Velocities, for a force that needs them; for another they may be of any time.
@@ -124,7 +124,7 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         self.forces.iter().any(|force| force.stops_midway())
     }
 
-    fn acceleration(&mut self, t: S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn acceleration(&mut self, t: &S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         if self.forces.is_empty() {
             a.fill(S::zero());
@@ -136,7 +136,7 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         Ok(())
     }
 
-    fn kick(&mut self, t: S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn kick(&mut self, t: &S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         let phase = Phase { t, q, v: &[] };
         let mut first = true;

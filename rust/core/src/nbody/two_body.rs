@@ -10,7 +10,7 @@ use super::constants::scaled;
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::words::{number, numbers};
 use nalgebra::Vector3;
 
@@ -26,6 +26,8 @@ pub struct TwoBody {
     initial: [State; 2],
     /// R and its velocity.
     center: ExactState,
+    /// Whether sizes of R and its velocity are moderate.
+    moderate: bool,
     /// m₂/M and −m₁/M.
     shares: [DoubleDouble; 2],
     relative: KeplerOrbit,
@@ -104,7 +106,9 @@ impl TwoBody {
                 scaled(DoubleDouble::from(from) - share * DoubleDouble::sum(one, -other), unit)
             })
         };
-        Ok(Self { initial: states, center: (center([r1, r2]), center([v1, v2])), shares, relative })
+        let center: ExactState = (center([r1, r2]), center([v1, v2]));
+        let moderate = [center.0, center.1].iter().flatten().all(|x| is_moderate(x.to_f64()));
+        Ok(Self { initial: states, center, moderate, shares, relative })
     }
 
     /// The states of both bodies at the time `t` since the epoch; `t = 0` gives the input bits.
@@ -121,6 +125,17 @@ impl TwoBody {
     pub fn unrounded(&self, elapsed: DoubleDouble) -> [ExactState; 2] {
         let (r, v) = self.relative.state(elapsed.to_f64());
         let (position, velocity) = &self.center;
+        if self.moderate && is_moderate(elapsed.to_f64()) && r.iter().chain(&v).all(|&x| is_moderate(x)) {
+            let still = DoubleDouble::default() * elapsed;
+            let reached: [_; 3] = core::array::from_fn(|c| position[c] + velocity[c] * elapsed);
+            let drift: [_; 3] = core::array::from_fn(|c| velocity[c] + still);
+            return self.shares.map(|share| {
+                (
+                    core::array::from_fn(|c| reached[c] + share * DoubleDouble::from(r[c])),
+                    core::array::from_fn(|c| drift[c] + share * DoubleDouble::from(v[c])),
+                )
+            });
+        }
         self.shares.map(|share| {
             (
                 core::array::from_fn(|c| moved(position[c], velocity[c], elapsed, share, r[c])),
@@ -156,6 +171,12 @@ fn moved(p: DoubleDouble, v: DoubleDouble, t: DoubleDouble, s: DoubleDouble, r: 
     let sum = (scaled(p, -unit) + way) + s * DoubleDouble::from(scale(r, -unit));
     let high = scale(sum.high(), unit);
     DoubleDouble::new(high, if high.is_finite() { scale(sum.low(), unit) } else { 0.0 })
+}
+
+/// Whether it is 0 or within the moderate powers of two.
+fn is_moderate(x: f64) -> bool {
+    let size = x.abs();
+    size == 0.0 || (size > power_of_two(-MODERATE) && size < power_of_two(MODERATE))
 }
 
 /// Powers of two within which no product of two numbers leaves the range, nor what it rounds away.

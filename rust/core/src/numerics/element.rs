@@ -49,6 +49,11 @@ pub trait View<S>: InverseCube {
     /// A mutable slice in memory.
     fn view_mut(values: &mut [S]) -> &mut [Self];
 
+    /// One in memory.
+    #[inline(always)]
+    fn view_one(value: &S) -> &Self {
+        &Self::view(core::slice::from_ref(value))[0]
+    }
     /// Two slices in memory.
     #[inline(always)]
     fn pair<'a>(values: Pair<'a, S>) -> Pair<'a, Self> {
@@ -61,8 +66,11 @@ pub trait View<S>: InverseCube {
     }
     /// A coefficient in memory.
     #[inline(always)]
-    fn scaled((high, low): Scaled<S>) -> Scaled<Self> {
-        (Self::load(high), Self::load(low))
+    fn scaled((high, low): &Scaled<S>) -> Scaled<Self>
+    where
+        S: Copy,
+    {
+        (Self::load(*high), Self::load(*low))
     }
     /// A mask of one is a mask of the other.
     fn mask(mask: S::Mask) -> Self::Mask
@@ -70,7 +78,8 @@ pub trait View<S>: InverseCube {
         S: Real;
 }
 
-/// A loop over arrays of `S`, with its arguments. `run` must be `#[inline(always)]`, as must all it calls, and have no
+/// A loop over arrays of `S`, with its arguments: lanes by reference, since a copy is made with narrower instructions than it
+/// is read with, and a processor then waits for it. `run` must be `#[inline(always)]`, as must all it calls, and have no
 /// closures: else it is compiled without the tier's instructions.
 pub trait Pass<S> {
     /// What it gives.

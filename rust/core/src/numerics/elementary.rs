@@ -22,14 +22,14 @@ pub(super) const INTEGER_SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 #[inline(always)]
 fn polynomial<S: Real, const N: usize>(x: S, coefficients: &[f64; N]) -> S {
     let square = x * x;
-    let chain = |parity: usize| {
-        let mut sum = S::zero();
-        for index in (0..N).rev().filter(|index| index % 2 == parity) {
-            sum = sum * square + S::splat(coefficients[index]);
-        }
-        sum
-    };
-    chain(0) + x * chain(1)
+    // No closures, which may be compiled without the tier's instructions.
+    let mut chains = [S::zero(); 2];
+    let mut index = N;
+    while index > 0 {
+        index -= 1;
+        chains[index % 2] = chains[index % 2] * square + S::splat(coefficients[index]);
+    }
+    chains[0] + x * chains[1]
 }
 
 /// The nearest integer, for |x| < 2^51.

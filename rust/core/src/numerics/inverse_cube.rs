@@ -31,7 +31,9 @@ const INVERSE_ROOT: [f64; 4] = [
 #[inline(always)]
 pub(crate) fn inverse_roots<S: Binary, const N: usize>(s: [S; N]) -> [S; N] {
     let one = S::one();
-    let [c0, c1, c2, c3] = INVERSE_ROOT.map(S::splat);
+    let [c0, c1, c2, c3] = INVERSE_ROOT;
+    // Not `map`, which may be compiled without the tier's instructions.
+    let (c0, c1, c2, c3) = (S::splat(c0), S::splat(c1), S::splat(c2), S::splat(c3));
     let guess = each!(i < N => s[i].inverse_root_guess());
     let product = each!(i < N => s[i] * guess[i]);
     let e = each!(i < N => product[i].multiply_subtract_from(guess[i], one));

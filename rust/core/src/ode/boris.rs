@@ -72,17 +72,17 @@ impl<S: Element> BorisStep<S> {
 
     fn advance(
         &mut self,
-        t: S,
+        node: u64,
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        for &Move { time, half_kick, turn, drift } in &self.moves {
-            if turn != 0.0 {
-                system.kick(t + time, state.q(), &mut self.acceleration, ticker)?;
+        for Move { time, half_kick, turn, drift } in &self.moves {
+            if *turn != 0.0 {
+                system.kick(&self.nodes.after(node, time), state.q(), &mut self.acceleration, ticker)?;
                 let (_, (v, rest)) = state.halves_mut();
                 S::pass(Advance { y: (&mut *v, &mut *rest), k: &self.acceleration, step: half_kick });
-                system.rotate(turn, (&mut *v, &mut *rest));
+                system.rotate(*turn, (&mut *v, &mut *rest));
                 S::pass(Advance { y: (v, rest), k: &self.acceleration, step: half_kick });
             }
             let (q, (v, _)) = state.halves_mut();
@@ -103,7 +103,7 @@ impl<S: Element> Stepper<S> for BorisStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
-        self.advance(self.nodes.time(node), state, system, ticker)?;
+        self.advance(node, state, system, ticker)?;
         Ok(1)
     }
 
@@ -116,7 +116,7 @@ impl<S: Element> Stepper<S> for BorisStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.set(past);
-        let outcome = self.advance(self.nodes.time(node), state, system, ticker);
+        let outcome = self.advance(node, state, system, ticker);
         self.set(self.h);
         outcome
     }

@@ -97,7 +97,7 @@ impl<S: Controlled> EmbeddedStep<S> {
     }
 
     /// The squared scaled error of the step.
-    fn error_size(&self, state: &State<S>, elapsed: S, h: S, norm: &Norm<S>) -> S {
+    fn error_size(&self, state: &State<S>, elapsed: &S, h: S, norm: &Norm<S>) -> S {
         let [first, second] = &self.errors;
         let changes = match self.stages.form() {
             Form::FirstOrder(_) => [self.change(first, h), self.change(second, h)],
@@ -127,7 +127,7 @@ impl<S: Controlled> EmbeddedStep<S> {
         let end_stage = self.end_stage();
         let term = |stage, weight| PairTerm { stage, weights: [weight, S::zero()] };
         let (slope, bend) = ([term(0, S::one())], [term(end_stage, S::one()), term(0, -S::one())]);
-        let size2 = |change: Change<'_, S>| norm.sizes(state, state, clock.elapsed, &[change, change])[0];
+        let size2 = |change: Change<'_, S>| norm.sizes(state, state, &clock.elapsed, &[change, change])[0];
         let rate = self.change(&slope, S::one());
         let numbers2 = size2(Change { k: state.all().0, ..rate });
         let rates2 = size2(rate);
@@ -140,9 +140,9 @@ impl<S: Controlled> EmbeddedStep<S> {
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         let euler =
             Row { fraction: S::one(), position: vec![], velocity: vec![Term { stage: 0, weight: S::one() }] };
-        let step = (clock.elapsed, &(trial * direction));
+        let step = (&clock.elapsed, &(trial * direction));
         self.stages.evaluate_at(end_stage, step, state, &euler, system, ticker)?;
-        let size2 = |change: Change<'_, S>| norm.sizes(state, state, clock.elapsed, &[change, change])[0];
+        let size2 = |change: Change<'_, S>| norm.sizes(state, state, &clock.elapsed, &[change, change])[0];
         let curvature2 = size2(self.change(&bend, S::one() / trial));
 
         let nothing = S::splat(1e-30);
@@ -173,7 +173,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let end_stage = self.end_stage();
-        self.stages.evaluate(end_stage, clock.elapsed, state, system, ticker)?;
+        self.stages.evaluate(end_stage, &clock.elapsed, state, system, ticker)?;
         self.begin_with_end(fresh);
         let chosen = S::zero().less(clock.h.abs());
         if chosen.or(fresh.not()).all() {
@@ -192,7 +192,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         // With a slope of zero any step will do; the span is then the step.
         let rate = self.change(&first, S::one());
         let slope = if second_order { Change { k: state.v(), ..rate } } else { rate };
-        let slope2 = norm.sizes(state, state, clock.elapsed, &[slope, rate])[0];
+        let slope2 = norm.sizes(state, state, &clock.elapsed, &[slope, rate])[0];
         let span = (clock.end - clock.elapsed).abs();
         let longest = span.min(self.rule.max_step);
         let still = slope2.less_equal(S::zero());
@@ -204,13 +204,13 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
         let euler =
             Row { fraction: S::one(), position: vec![], velocity: vec![Term { stage: 0, weight: S::one() }] };
-        let step = (clock.elapsed, &(trial * direction));
+        let step = (&clock.elapsed, &(trial * direction));
         self.stages.evaluate_at(end_stage, step, state, &euler, system, ticker)?;
         let difference = [alone(end_stage, S::one()), alone(0, -S::one())];
         // The slope of the coordinates changes by `trial·a`, every other slope by the difference of the derivatives.
         let bend = self.change(&difference, time / trial);
         let of_q = if second_order { self.change(&first, time) } else { bend };
-        let curvature2 = norm.sizes(state, state, clock.elapsed, &[of_q, bend])[0];
+        let curvature2 = norm.sizes(state, state, &clock.elapsed, &[of_q, bend])[0];
         // Both sizes in units of that time, so that the choice does not depend on the unit of time. Where they are beyond
         // measure the first step is still above zero: trials make it what it must be.
         let largest = (slope2 * time * time).max(curvature2 * time * time).min(S::splat(HUGE));
@@ -231,16 +231,16 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
-        self.stages.evaluate_rest((from, &h), state, system, ticker)?;
+        self.stages.evaluate_rest((&from, &h), state, system, ticker)?;
         self.stages.finish(state, &h, &mut self.next);
         let end_stage = self.end_stage();
         if self.end_in_estimate {
-            self.stages.evaluate(end_stage, from + h, &self.next, system, ticker)?;
+            self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
         }
-        let size2 = self.error_size(state, from, h, norm);
+        let size2 = self.error_size(state, &from, h, norm);
         let outcome = S::settle(clock, running, size2, &self.rule);
         if outcome.accepted.any() && !self.end_in_estimate {
-            self.stages.evaluate(end_stage, clock.elapsed, &self.next, system, ticker)?;
+            self.stages.evaluate(end_stage, &clock.elapsed, &self.next, system, ticker)?;
         }
         Ok(outcome)
     }
@@ -257,7 +257,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let first = self.end_stage() + 1;
-        let step = (outcome.from, &outcome.h);
+        let step = (&outcome.from, &outcome.h);
         let mut rows = self.dense_rows.iter().enumerate();
         rows.try_for_each(|(index, row)| {
             self.stages.evaluate_at(first + index, step, state, row, system, ticker)

@@ -62,7 +62,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         clock.h = S::select(fresh, self.h, clock.h);
-        self.stages.evaluate(0, clock.elapsed, state, system, ticker)
+        self.stages.evaluate(0, &clock.elapsed, state, system, ticker)
     }
 
     fn attempt(
@@ -75,10 +75,10 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
-        self.stages.evaluate_rest((from, &h), state, system, ticker)?;
+        self.stages.evaluate_rest((&from, &h), state, system, ticker)?;
         self.stages.finish(state, &h, &mut self.next);
         let outcome = S::settle(clock, running, S::zero(), &self.rule);
-        self.stages.evaluate(self.end_stage(), clock.elapsed, &self.next, system, ticker)?;
+        self.stages.evaluate(self.end_stage(), &clock.elapsed, &self.next, system, ticker)?;
         Ok(outcome)
     }
 
@@ -96,7 +96,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         let len = self.stages.len();
         let h = outcome.h * S::splat(0.5);
         self.half.k[..len].copy_from_slice(&self.stages.k[..len]);
-        self.half.evaluate_rest((outcome.from, &h), state, system, ticker)?;
+        self.half.evaluate_rest((&outcome.from, &h), state, system, ticker)?;
         self.half.finish(state, &h, &mut self.middle);
         let mut polynomial = core::mem::take(&mut self.polynomial);
         polynomial.clear();

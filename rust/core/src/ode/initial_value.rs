@@ -89,10 +89,10 @@ impl System<f64> for Equations<'_, '_> {
         self.evaluations
     }
 
-    fn rate(&mut self, t: f64, y: &[f64], rate: &mut [f64], _: &mut Ticker<'_>) -> Result<()> {
+    fn rate(&mut self, t: &f64, y: &[f64], rate: &mut [f64], _: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         let (first, last) = self.ends;
-        let t = self.t0 + t;
+        let t = self.t0 + *t;
         let t = if t < first { first } else { t };
         let t = if t > last { last } else { t };
         (self.function)(t, y, rate)

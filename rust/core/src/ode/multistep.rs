@@ -114,7 +114,7 @@ impl<S: Element> MultistepStep<S> {
             return Ok(());
         }
         let t = self.nodes.time(node + 1);
-        system.acceleration(t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
+        system.acceleration(&t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
         self.past.start(state.velocity(), &self.weights);
         Ok(())
     }
@@ -145,7 +145,7 @@ impl<S: Element> Stepper<S> for MultistepStep<S> {
         self.past.pass(1);
         // Here and not before the next step: the velocity at this node needs it.
         let t = self.nodes.time(node + 1);
-        system.acceleration(t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
+        system.acceleration(&t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
         Ok(1)
     }
 
@@ -192,7 +192,7 @@ mod tests {
         }
         fn acceleration(
             &mut self,
-            _: f64,
+            _: &f64,
             _: &[f64],
             _: &[f64],
             a: &mut [f64],

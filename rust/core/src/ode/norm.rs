@@ -94,7 +94,7 @@ impl<S: Controlled> Norm<S> {
         &self,
         state: &State<S>,
         next: &State<S>,
-        elapsed: S,
+        elapsed: &S,
         changes: &[Change<'_, S>; 2],
     ) -> [S; 2] {
         if let Some(RootMeanSquare { atol, rtol }) = &self.mean {
@@ -111,19 +111,16 @@ impl<S: Controlled> Norm<S> {
                 (true, true) => state.v(),
             };
             let change = changes[usize::from(block.velocity)];
-            let place: [S; 4] = core::array::from_fn(|c| match &self.weights {
-                Some(weights) if c < block.shape.components => {
-                    let rows = &y[block.start + c * block.shape.rows..];
-                    let mean =
-                        weights.iter().zip(rows).fold(S::zero(), |sum, (&w, &y)| w.multiply_add(y, sum));
-                    if self.together { mean.sum_of_lanes() } else { mean }
-                }
-                _ => block.reference[c] + block.drift[c] * elapsed,
-            });
+            let mean = self.weights.as_ref().map(|weights| self.center(weights, block, y));
+            let still = [S::zero(); 4];
+            let (reference, drift) =
+                mean.as_ref().map_or((&block.reference, &block.drift), |mean| (mean, &still));
             let sizes = S::pass(LargestErrors {
                 shape: block.shape,
                 y: &y[block.start..],
-                reference: &place,
+                reference,
+                drift,
+                elapsed,
                 atol: &block.atol,
                 rtol: &self.rtol,
                 h: &change.factor,
@@ -134,6 +131,21 @@ impl<S: Controlled> Norm<S> {
             largest = [largest[0].max(sizes[0]), largest[1].max(sizes[1])];
         }
         if self.together { largest.map(S::largest_lane) } else { largest }
+    }
+
+    /// The weighted mean of the vectors of a block.
+    fn center(&self, weights: &[S], block: &Block<S>, y: &[S]) -> [S; 4] {
+        let Shape { rows, components } = block.shape;
+        let mut mean = [S::zero(); 4];
+        for (c, mean) in mean.iter_mut().enumerate().take(components) {
+            for (&weight, &y) in weights.iter().zip(&y[block.start + c * rows..]) {
+                *mean += weight * y;
+            }
+            if self.together {
+                *mean = mean.sum_of_lanes();
+            }
+        }
+        mean
     }
 }
 
@@ -146,7 +158,7 @@ mod tests {
         let [state, next] = [y, next].map(|y| State::first_order(y.to_vec()));
         let terms = [PairTerm { stage: 0, weights: [1.0, 10.0] }];
         let change = Change { k, stride: k.len(), terms: &terms, factor: h };
-        norm.sizes(&state, &next, 0.0, &[change, change])
+        norm.sizes(&state, &next, &0.0, &[change, change])
     }
 
     #[test]

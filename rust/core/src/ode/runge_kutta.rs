@@ -69,7 +69,7 @@ impl<S: Element> Stages<S> {
     pub fn evaluate(
         &mut self,
         stage: usize,
-        t: S,
+        t: &S,
         state: &State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
@@ -89,7 +89,7 @@ impl<S: Element> Stages<S> {
     pub fn evaluate_at(
         &mut self,
         stage: usize,
-        (t, h): (S, &S),
+        (t, h): (&S, &S),
         state: &State<S>,
         row: &Row<S>,
         system: &mut dyn System<S>,
@@ -97,7 +97,13 @@ impl<S: Element> Stages<S> {
     ) -> Result<()> {
         let len = self.len();
         let stages = |terms| Weighted { h, terms, k: &self.k };
-        let t = if self.needs.time { t + *h * row.fraction } else { t };
+        let later;
+        let t = if self.needs.time {
+            later = *t + *h * row.fraction;
+            &later
+        } else {
+            t
+        };
         if matches!(self.form, Form::FirstOrder(_)) {
             S::pass(Rates { out: &mut self.position, y: state.all(), stages: stages(&row.velocity) });
             return system.rate(t, &self.position, &mut self.k[stage * len..][..len], ticker);
@@ -124,7 +130,7 @@ impl<S: Element> Stages<S> {
     /// Those of an evaluation.
     pub fn evaluate_rest(
         &mut self,
-        step: (S, &S),
+        step: (&S, &S),
         state: &State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
@@ -187,18 +193,20 @@ impl<S: Element> RungeKuttaStep<S> {
         self.stages.derivative(0)
     }
 
-    /// Advances the state at time `t` by a step `h`.
+    /// Advances the state at `node` by a step `h`, or by its own.
     fn advance(
         &mut self,
-        (t, h): (S, S),
+        (node, h): (u64, Option<&S>),
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        self.stages.evaluate(0, t, state, system, ticker)?;
-        self.stages.evaluate_rest((t, &h), state, system, ticker)?;
-        self.stages.finish(state, &h, &mut self.next);
-        core::mem::swap(state, &mut self.next);
+        let Self { stages, next, h: own, nodes } = self;
+        let (t, h) = (nodes.time(node), h.unwrap_or(own));
+        stages.evaluate(0, &t, state, system, ticker)?;
+        stages.evaluate_rest((&t, h), state, system, ticker)?;
+        stages.finish(state, h, next);
+        core::mem::swap(state, next);
         Ok(())
     }
 }
@@ -214,7 +222,7 @@ impl<S: Element> Stepper<S> for RungeKuttaStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
-        self.advance((self.nodes.time(node), self.h), state, system, ticker)?;
+        self.advance((node, None), state, system, ticker)?;
         Ok(1)
     }
 
@@ -226,6 +234,6 @@ impl<S: Element> Stepper<S> for RungeKuttaStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        self.advance((self.nodes.time(node), S::splat(past)), state, system, ticker)
+        self.advance((node, Some(&S::splat(past))), state, system, ticker)
     }
 }

@@ -62,7 +62,7 @@ impl<S: Element> Force<S> {
     fn advance(
         &mut self,
         moves: &Moves<S>,
-        t: S,
+        (nodes, node): (&Nodes, u64),
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
@@ -70,21 +70,33 @@ impl<S: Element> Force<S> {
         for (index, (kick, drift, time)) in moves.pairs.iter().enumerate() {
             if self.idle[index] {
                 let (q, (v, _)) = state.halves_mut();
-                S::pass(Advance { y: q, k: v, step: *drift });
+                S::pass(Advance { y: q, k: v, step: drift });
             } else {
                 if !self.fresh {
-                    system.acceleration(t + *time, state.q(), state.v(), &mut self.acceleration, ticker)?;
+                    system.acceleration(
+                        &nodes.after(node, time),
+                        state.q(),
+                        state.v(),
+                        &mut self.acceleration,
+                        ticker,
+                    )?;
                 }
                 let (q, v) = state.halves_mut();
-                S::pass(KickDrift { q, v, a: &self.acceleration, kick: *kick, drift: *drift });
+                S::pass(KickDrift { q, v, a: &self.acceleration, kick, drift });
             }
             self.fresh = false;
         }
         if !self.last_idle {
-            system.acceleration(t + moves.h, state.q(), state.v(), &mut self.acceleration, ticker)?;
+            system.acceleration(
+                &nodes.after(node, &moves.h),
+                state.q(),
+                state.v(),
+                &mut self.acceleration,
+                ticker,
+            )?;
             self.fresh = true;
             let (_, v) = state.halves_mut();
-            S::pass(Advance { y: v, k: &self.acceleration, step: moves.last_kick });
+            S::pass(Advance { y: v, k: &self.acceleration, step: &moves.last_kick });
         }
         Ok(())
     }
@@ -128,7 +140,7 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
-        self.force.advance(&self.moves, self.nodes.time(node), state, system, ticker)?;
+        self.force.advance(&self.moves, (&self.nodes, node), state, system, ticker)?;
         Ok(1)
     }
 
@@ -146,7 +158,7 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         shorter.set(past);
         at_node.copy_from_slice(&force.acceleration);
         let fresh = force.fresh;
-        let outcome = force.advance(shorter, nodes.time(node), state, system, ticker);
+        let outcome = force.advance(shorter, (&*nodes, node), state, system, ticker);
         // What was looked at leaves no trace.
         core::mem::swap(&mut force.acceleration, at_node);
         force.fresh = fresh;

@@ -185,9 +185,14 @@ controlled!(f64 DoubleDouble);
 /// The clock in the tier's registers.
 #[inline(always)]
 fn load<V: Vector8>(clock: &Clock<Lanes>) -> Clock<V> {
-    let &Clock { elapsed, error, h, end, rejected } = clock;
-    let [elapsed, error, h, end] = [elapsed, error, h, end].map(V::load);
-    Clock { elapsed, error, h, end, rejected }
+    // Not `map`, which may be compiled without the tier's instructions.
+    Clock {
+        elapsed: V::load(clock.elapsed),
+        error: V::load(clock.error),
+        h: V::load(clock.h),
+        end: V::load(clock.end),
+        rejected: clock.rejected,
+    }
 }
 
 #[inline(always)]

@@ -69,6 +69,11 @@ impl Nodes {
     pub fn time<S: Element>(&self, node: u64) -> S {
         if self.needed { S::splat(self.h * node as f64) } else { S::zero() }
     }
+    /// The time so long after a node.
+    #[inline(always)]
+    pub fn after<S: Element>(&self, node: u64, delay: &S) -> S {
+        if self.needed { self.time::<S>(node) + *delay } else { S::zero() }
+    }
 }
 
 /// The method with step `h`, for a system and states like `state`.

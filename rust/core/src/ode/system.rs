@@ -91,7 +91,7 @@ pub trait System<S: Element>: Send {
     ///
     /// # Errors
     /// [`Error::Interrupted`] when the caller asked to stop; the derivative is then unfinished.
-    fn rate(&mut self, t: S, y: &[S], rate: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn rate(&mut self, t: &S, y: &[S], rate: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         let _ = (t, y, rate, ticker);
         Err(Error::Internal("the system has no rates".to_owned()))
     }
@@ -100,7 +100,7 @@ pub trait System<S: Element>: Send {
     ///
     /// # Errors
     /// As [`rate`](Self::rate).
-    fn acceleration(&mut self, t: S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn acceleration(&mut self, t: &S, q: &[S], v: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         let _ = (t, q, v, a, ticker);
         Err(Error::Internal("the system has no accelerations".to_owned()))
     }
@@ -109,7 +109,7 @@ pub trait System<S: Element>: Send {
     ///
     /// # Errors
     /// As [`rate`](Self::rate).
-    fn kick(&mut self, t: S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn kick(&mut self, t: &S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         self.acceleration(t, q, &[], a, ticker)
     }
 

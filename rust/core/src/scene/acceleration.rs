@@ -50,7 +50,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
             prepared.write(&mut state, lane);
         }
         let mut a = vec![Lanes::zero(); shape.len()];
-        dynamics.acceleration(Lanes::zero(), state.q(), state.v(), &mut a, ticker)?;
+        dynamics.acceleration(&Lanes::zero(), state.q(), state.v(), &mut a, ticker)?;
         for slot in prepared.unit.recorded.clone() {
             let (row, lane) = prepared.locate(slot, 0);
             for c in 0..shape.components {

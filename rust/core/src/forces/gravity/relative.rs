@@ -128,8 +128,8 @@ impl<S: Element> Relative<S> {
                 center: (&self.center.0, &self.center.1),
                 drift: (&self.drift.0, &self.drift.1),
             },
-            h: self.h,
-            node: S::splat(self.node as f64),
+            h: &self.h,
+            node: self.node,
         });
         v_compensation.fill(S::zero());
     }
@@ -159,9 +159,9 @@ struct Absolute<'a, S> {
     q: PairMut<'a, S>,
     v: &'a mut [S],
     relative: Coordinates<'a, S>,
-    h: S,
+    h: &'a S,
     /// The present node.
-    node: S,
+    node: u64,
 }
 
 impl<S: Element> Pass<S> for Absolute<'_, S> {
@@ -178,7 +178,7 @@ impl<S: Element> Pass<S> for Absolute<'_, S> {
             center: V::pair(center),
             drift: V::pair(drift),
         };
-        let elapsed = product((V::load(self.h), V::zero()), (V::load(self.node), V::zero()));
+        let elapsed = product((V::load(*self.h), V::zero()), (V::splat(self.node as f64), V::zero()));
         absolute(V::pair_mut(self.q), V::view_mut(self.v), &from, elapsed);
     }
 }

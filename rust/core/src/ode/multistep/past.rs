@@ -64,7 +64,7 @@ impl<S: Element> Past<S> {
     ) -> Nodes<'a, S> {
         let Self { acceleration, last, first, second, newest, d, d_error } = self;
         let past = Differences { last, first, second, newest: *newest };
-        Nodes { q, d: (d, d_error), past, a: acceleration, h2: *h2, weights: second_differences }
+        Nodes { q, d: (d, d_error), past, a: acceleration, h2, weights: second_differences }
     }
 
     /// Takes in the accelerations at a further node, which is then the one before.
@@ -87,10 +87,10 @@ impl<S: Element> Past<S> {
 
     /// `v = d/h + h Σ weight·(differences of the accelerations up to the present node)`.
     pub fn velocity(&mut self, v: &mut [S], weights: &Weights<S>) {
-        self.backward(v, (weights.h, weights.h_inverse), &weights.velocity);
+        self.backward(v, (&weights.h, &weights.h_inverse), &weights.velocity);
     }
 
-    fn backward(&mut self, v: &mut [S], h: (S, Scaled<S>), weights: &[S]) {
+    fn backward(&mut self, v: &mut [S], h: (&S, &Scaled<S>), weights: &[S]) {
         let Self { acceleration, last, first, second, newest, d, .. } = self;
         let past = Differences { last, first, second, newest: *newest };
         S::pass(BackwardVelocity { v, d, past, a: acceleration, h, weights });
@@ -101,12 +101,12 @@ impl<S: Element> Past<S> {
     pub fn start(&mut self, (v, v_compensation): (&[S], &[S]), weights: &Weights<S>) {
         let mut sum = vec![S::zero(); v.len()];
         self.d.fill(S::zero());
-        self.backward(&mut sum, (S::one(), (S::one(), S::zero())), &weights.velocity);
+        self.backward(&mut sum, (&S::one(), &(S::one(), S::zero())), &weights.velocity);
         for i in 0..v.len() {
             (self.d[i], self.d_error[i]) = two_product(weights.h, v[i]);
             self.d_error[i] += weights.h * v_compensation[i];
         }
         let step = (-weights.h2, S::zero());
-        S::pass(Advance { y: (&mut self.d, &mut self.d_error), k: &sum, step });
+        S::pass(Advance { y: (&mut self.d, &mut self.d_error), k: &sum, step: &step });
     }
 }

@@ -37,8 +37,12 @@ pub struct LargestErrors<'a, S> {
     pub shape: Shape,
     /// The state.
     pub y: &'a [S],
-    /// What sizes are measured from.
+    /// What sizes are measured from, at the start.
     pub reference: &'a [S; 4],
+    /// How it moves.
+    pub drift: &'a [S; 4],
+    /// The time since the start.
+    pub elapsed: &'a S,
     /// Absolute tolerance.
     pub atol: &'a S,
     /// Tolerance relative to the distance from the reference.
@@ -57,18 +61,21 @@ impl<S: Element> Pass<S> for LargestErrors<'_, S> {
     type Output = [S; 2];
     #[inline(always)]
     fn run<V: View<S>>(self) -> [S; 2] {
-        let Self { shape, reference, .. } = self;
+        let Self { shape, reference, drift, .. } = self;
         let y = V::view(self.y);
-        let [r0, r1, r2, r3] = *reference;
-        let reference = [V::load(r0), V::load(r1), V::load(r2), V::load(r3)];
+        let elapsed = V::load(*self.elapsed);
+        let mut place = [V::zero(); 4];
+        for c in 0..shape.components.min(4) {
+            place[c] = V::load(reference[c]) + V::load(drift[c]) * elapsed;
+        }
         let tolerance = (V::load(*self.atol), V::load(*self.rtol));
         let (h, terms, k) =
             (V::load(*self.h), view_terms::<S, V>(self.terms), (V::view(self.k), self.stride));
         let [first, second] = match shape.components {
-            1 => largest_vector_errors::<V, 1>(shape.rows, y, &reference, tolerance, h, terms, k),
-            2 => largest_vector_errors::<V, 2>(shape.rows, y, &reference, tolerance, h, terms, k),
-            3 => largest_vector_errors::<V, 3>(shape.rows, y, &reference, tolerance, h, terms, k),
-            _ => largest_vector_errors::<V, 4>(shape.rows, y, &reference, tolerance, h, terms, k),
+            1 => largest_vector_errors::<V, 1>(shape.rows, y, &place, tolerance, h, terms, k),
+            2 => largest_vector_errors::<V, 2>(shape.rows, y, &place, tolerance, h, terms, k),
+            3 => largest_vector_errors::<V, 3>(shape.rows, y, &place, tolerance, h, terms, k),
+            _ => largest_vector_errors::<V, 4>(shape.rows, y, &place, tolerance, h, terms, k),
         };
         [first.store(), second.store()]
     }

@@ -45,7 +45,7 @@ pub struct Nodes<'a, S> {
     /// The accelerations at the present node.
     pub a: &'a mut [S],
     /// The step, squared.
-    pub h2: S,
+    pub h2: &'a S,
     /// h² times the weights of the second differences, the oldest first.
     pub weights: &'a [S],
 }
@@ -59,7 +59,7 @@ impl<'a, S> Nodes<'a, S> {
             d: V::pair_mut(self.d),
             past: self.past.view(),
             a: V::view_mut(self.a),
-            h2: V::load(self.h2),
+            h2: V::view_one(self.h2),
             weights: V::view(self.weights),
         }
     }
@@ -165,7 +165,7 @@ pub struct BackwardVelocity<'a, S> {
     /// The accelerations at the present node.
     pub a: &'a [S],
     /// The step and its reciprocal.
-    pub h: (S, Scaled<S>),
+    pub h: (&'a S, &'a Scaled<S>),
     /// The weights.
     pub weights: &'a [S],
 }
@@ -176,7 +176,7 @@ impl<S: Element> Pass<S> for BackwardVelocity<'_, S> {
     fn run<V: View<S>>(self) {
         let (v, d, a) = (V::view_mut(self.v), V::view(self.d), V::view(self.a));
         let Differences { last, first, second, newest } = self.past.view::<V>();
-        let (h, h_inverse) = (V::load(self.h.0), V::scaled(self.h.1));
+        let (h, h_inverse) = (V::load(*self.h.0), V::scaled(self.h.1));
         let n = a.len();
         let [present, changed, bent, weights @ ..] = V::view(self.weights) else { return };
         in_groups!(n, |start| backward_velocity_group(

@@ -30,9 +30,9 @@ pub struct KickDrift<'a, S> {
     /// Accelerations.
     pub a: &'a [S],
     /// The first coefficient times the step.
-    pub kick: Scaled<S>,
+    pub kick: &'a Scaled<S>,
     /// The second.
-    pub drift: Scaled<S>,
+    pub drift: &'a Scaled<S>,
 }
 
 impl<S: Element> Pass<S> for KickDrift<'_, S> {
@@ -62,7 +62,7 @@ pub struct Advance<'a, S> {
     /// Derivatives.
     pub k: &'a [S],
     /// The coefficient times the step.
-    pub step: Scaled<S>,
+    pub step: &'a Scaled<S>,
 }
 
 impl<S: Element> Pass<S> for Advance<'_, S> {
@@ -114,8 +114,8 @@ mod tests {
             q: (&mut q, &mut q_left),
             v: (&mut v, &mut v_left),
             a: &[0.0],
-            kick: (0.0, 0.0),
-            drift: (3.0, 0.0),
+            kick: &(0.0, 0.0),
+            drift: &(3.0, 0.0),
         });
         assert_eq!((v[0], v_left[0]), (1.0, left_out));
         assert_eq!(q[0], 3.0_f64.next_up());

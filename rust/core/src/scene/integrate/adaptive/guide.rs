@@ -221,15 +221,15 @@ impl System<Lanes> for Guided {
 
     fn acceleration(
         &mut self,
-        t: Lanes,
+        t: &Lanes,
         q: &[Lanes],
         v: &[Lanes],
         a: &mut [Lanes],
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         self.evaluations += 1;
-        self.path.at(&t, &mut self.places);
-        let phase = Phase { t: self.base + t, q, v };
+        self.path.at(t, &mut self.places);
+        let phase = Phase { t: &(self.base + *t), q, v };
         for (index, term) in self.terms.iter_mut().enumerate() {
             match term {
                 Term::Pull { strength, softening2, .. } => Lanes::pass(Pull {
