@@ -9,8 +9,11 @@
 use super::constants::scaled;
 use super::kepler::KeplerOrbit;
 use crate::error::{Error, Result};
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, product, sum};
+use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
+use crate::numerics::real::Real;
 use crate::words::{number, numbers};
 use nalgebra::Vector3;
 
@@ -26,8 +29,9 @@ pub struct TwoBody {
     initial: [State; 2],
     /// R and its velocity.
     center: ExactState,
-    /// Whether sizes of R and its velocity are moderate.
-    moderate: bool,
+    /// The same if all sizes are moderate: the numbers of R and of its velocity, each with what it leaves out, and what
+    /// they gain in a unit of time.
+    moderate: Option<[[Lanes; 2]; 2]>,
     /// m₂/M and −m₁/M.
     shares: [DoubleDouble; 2],
     relative: KeplerOrbit,
@@ -107,7 +111,9 @@ impl TwoBody {
             })
         };
         let center: ExactState = (center([r1, r2]), center([v1, v2]));
-        let moderate = [center.0, center.1].iter().flatten().all(|x| is_moderate(x.to_f64()));
+        let (r, v) = center;
+        let moderate = r.iter().chain(&v).all(|x| is_moderate(x.to_f64()));
+        let moderate = moderate.then(|| [in_lanes([r, v]), in_lanes([v, Default::default()])]);
         Ok(Self { initial: states, center, moderate, shares, relative })
     }
 
@@ -125,15 +131,16 @@ impl TwoBody {
     pub fn unrounded(&self, elapsed: DoubleDouble) -> [ExactState; 2] {
         let (r, v) = self.relative.state(elapsed.to_f64());
         let (position, velocity) = &self.center;
-        if self.moderate && is_moderate(elapsed.to_f64()) && r.iter().chain(&v).all(|&x| is_moderate(x)) {
-            let still = DoubleDouble::default() * elapsed;
-            let reached: [_; 3] = core::array::from_fn(|c| position[c] + velocity[c] * elapsed);
-            let drift: [_; 3] = core::array::from_fn(|c| velocity[c] + still);
-            return self.shares.map(|share| {
-                (
-                    core::array::from_fn(|c| reached[c] + share * DoubleDouble::from(r[c])),
-                    core::array::from_fn(|c| drift[c] + share * DoubleDouble::from(v[c])),
-                )
+        if let Some([center, rate]) = &self.moderate
+            && is_moderate(elapsed.to_f64())
+            && r.iter().chain(&v).all(|&x| is_moderate(x))
+        {
+            let relative = Lanes([r.x, r.y, r.z, v.x, v.y, v.z, 0.0, 0.0]);
+            let bodies =
+                Lanes::pass(Moved { center, rate, elapsed, shares: &self.shares, relative: &relative });
+            return bodies.map(|[high, low]| {
+                let number = |lane: usize| DoubleDouble::new(high.0[lane], low.0[lane]);
+                ([0, 1, 2].map(number), [3, 4, 5].map(number))
             });
         }
         self.shares.map(|share| {
@@ -147,6 +154,43 @@ impl TwoBody {
     /// The relative motion r₁ − r₂.
     pub fn relative(&self) -> &KeplerOrbit {
         &self.relative
+    }
+}
+
+/// Six numbers and what they leave out, in lanes.
+fn in_lanes([a, b]: [[DoubleDouble; 3]; 2]) -> [Lanes; 2] {
+    let part = |of: fn(DoubleDouble) -> f64| {
+        let [[ax, ay, az], [bx, by, bz]] = [a, b].map(|numbers| numbers.map(of));
+        Lanes([ax, ay, az, bx, by, bz, 0.0, 0.0])
+    };
+    [part(DoubleDouble::high), part(DoubleDouble::low)]
+}
+
+/// [`moved`] of all numbers of both bodies at once, where sizes are moderate.
+struct Moved<'a> {
+    center: &'a [Lanes; 2],
+    rate: &'a [Lanes; 2],
+    elapsed: DoubleDouble,
+    shares: &'a [DoubleDouble; 2],
+    relative: &'a Lanes,
+}
+
+impl Pass<Lanes> for Moved<'_> {
+    type Output = [[Lanes; 2]; 2];
+    #[inline(always)]
+    fn run<V: View<Lanes>>(self) -> [[Lanes; 2]; 2] {
+        let Self { center, rate, elapsed, shares, relative } = self;
+        let elapsed = (V::splat(elapsed.high()), V::splat(elapsed.low()));
+        let way = product((V::load(rate[0]), V::load(rate[1])), elapsed);
+        let center = sum((V::load(center[0]), V::load(center[1])), way);
+        let mut bodies = [[Lanes::zero(); 2]; 2];
+        for body in 0..2 {
+            let share = (V::splat(shares[body].high()), V::splat(shares[body].low()));
+            let part = product(share, (V::load(*relative), V::zero()));
+            let (high, low) = sum(center, part);
+            bodies[body] = [high.store(), low.store()];
+        }
+        bodies
     }
 }
 
@@ -183,3 +227,28 @@ fn is_moderate(x: f64) -> bool {
 const MODERATE: i32 = 400;
 /// The size of zero: below every other, and far enough from the end to be added to.
 const LEAST: i32 = -100_000;
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_numbers_at_once_have_the_bits_of_one_by_one() {
+        let states = [
+            (Vector3::new(1.0, -2.0, 0.0), Vector3::new(0.3, -0.0, 0.1)),
+            (Vector3::new(-4.0, 0.5, 0.0), Vector3::new(0.0, -0.0, -0.7)),
+        ];
+        for masses in [[1.0, 3.0], [0.0, 2.0], [1e-3, 1.0]] {
+            let moderate = TwoBody::new(1.0, masses, states).unwrap();
+            assert!(moderate.moderate.is_some());
+            let apart = TwoBody { moderate: None, ..moderate.clone() };
+            for t in [-1e5, -3.0, 0.1, 7.7, 1e9] {
+                let bits = |of: &TwoBody| {
+                    let bits = |x: DoubleDouble| (x.high().to_bits(), x.low().to_bits());
+                    of.unrounded(DoubleDouble::sum(t, 1e-20)).map(|(x, v)| [x, v].map(|x| x.map(bits)))
+                };
+                assert_eq!(bits(&moderate), bits(&apart), "{masses:?} at {t}");
+            }
+        }
+    }
+}

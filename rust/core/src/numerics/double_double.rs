@@ -28,7 +28,7 @@ pub fn two_sum<S: Real>(a: S, b: S) -> (S, S) {
 
 /// `a + b` exactly when `|a| ≥ |b|` (Dekker).
 #[inline(always)]
-fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
+fn quick_two_sum<S: Real>(a: S, b: S) -> (S, S) {
     let sum = a + b;
     (sum, b - (sum - a))
 }
@@ -46,6 +46,22 @@ pub fn two_product<S: Real>(a: S, b: S) -> (S, S) {
     let b_low = b - b_high;
     let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
     (product, error)
+}
+
+/// `a + b` of double-doubles, in every lane.
+#[inline(always)]
+pub fn sum<S: Real>(a: (S, S), b: (S, S)) -> (S, S) {
+    let (high, error) = two_sum(a.0, b.0);
+    let (low, low_error) = two_sum(a.1, b.1);
+    let (high, error) = quick_two_sum(high, error + low);
+    quick_two_sum(high, error + low_error)
+}
+
+/// `a * b` of double-doubles, in every lane.
+#[inline(always)]
+pub fn product<S: Real>(a: (S, S), b: (S, S)) -> (S, S) {
+    let (high, error) = two_product(a.0, b.0);
+    quick_two_sum(high, error + (a.0 * b.1 + a.1 * b.0))
 }
 
 impl DoubleDouble {
@@ -120,10 +136,7 @@ impl Add for DoubleDouble {
     type Output = Self;
     #[inline]
     fn add(self, other: Self) -> Self {
-        let (sum, error) = two_sum(self.high, other.high);
-        let (low_sum, low_error) = two_sum(self.low, other.low);
-        let (sum, error) = quick_two_sum(sum, error + low_sum);
-        let (high, low) = quick_two_sum(sum, error + low_error);
+        let (high, low) = sum(self.parts(), other.parts());
         Self { high, low }
     }
 }
@@ -145,9 +158,7 @@ impl Mul for DoubleDouble {
     type Output = Self;
     #[inline]
     fn mul(self, other: Self) -> Self {
-        let (product, error) = two_product(self.high, other.high);
-        let cross = self.high * other.low + self.low * other.high;
-        let (high, low) = quick_two_sum(product, error + cross);
+        let (high, low) = product(self.parts(), other.parts());
         Self { high, low }
     }
 }

@@ -58,8 +58,15 @@ pub fn tier() -> Tier {
         3 => Tier::Avx512,
         2 => Tier::Avx2,
         1 => Tier::Portable,
-        _ => resolve().unwrap_or(Tier::Portable),
+        _ => first(),
     }
+}
+
+/// Where nobody asked before. A function of its own: inlined, what it leaves to drop would burden every loop.
+#[cold]
+#[inline(never)]
+fn first() -> Tier {
+    resolve().unwrap_or(Tier::Portable)
 }
 
 /// Reads `VISVIVA_SIMD` once and fixes the tier.

@@ -15,7 +15,7 @@ pub use past::Past;
 use super::Multistep;
 use super::runge_kutta::RungeKuttaStep;
 use super::state::State;
-use super::stepper::{Nodes, Stepper};
+use super::stepper::{Nodes, Stepper, per_call};
 use super::system::System;
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
@@ -130,7 +130,7 @@ impl<S: Element> Stepper<S> for MultistepStep<S> {
     fn step(
         &mut self,
         node: u64,
-        _: u64,
+        at_most: u64,
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
@@ -140,13 +140,16 @@ impl<S: Element> Stepper<S> for MultistepStep<S> {
             return Ok(1);
         }
         self.settled = false;
-        let (q, _) = state.halves_mut();
-        S::pass(self.past.nodes(q, &self.weights));
-        self.past.pass(1);
-        // Here and not before the next step: the velocity at this node needs it.
-        let t = self.nodes.time(node + 1);
-        system.acceleration(&t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
-        Ok(1)
+        let steps = per_call(state.q().len(), at_most);
+        for step in 0..steps {
+            let (q, _) = state.halves_mut();
+            S::pass(self.past.nodes(q, &self.weights));
+            self.past.pass(1);
+            // Here and not before the next step: the velocity at this node needs it.
+            let t = self.nodes.time(node + step + 1);
+            system.acceleration(&t, state.q(), state.v(), &mut self.past.acceleration, ticker)?;
+        }
+        Ok(steps)
     }
 
     fn settle(&mut self, state: &mut State<S>) {

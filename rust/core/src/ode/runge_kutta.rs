@@ -7,7 +7,7 @@ use super::Tableau;
 use super::nystrom::Row;
 use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
 use super::state::State;
-use super::stepper::{Nodes, Stepper};
+use super::stepper::{Nodes, Stepper, per_call};
 use super::system::{Form, Needs, System};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
@@ -217,13 +217,16 @@ impl<S: Element> Stepper<S> for RungeKuttaStep<S> {
     fn step(
         &mut self,
         node: u64,
-        _: u64,
+        at_most: u64,
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
-        self.advance((node, None), state, system, ticker)?;
-        Ok(1)
+        let steps = per_call(self.stages.len(), at_most);
+        for step in 0..steps {
+            self.advance((node + step, None), state, system, ticker)?;
+        }
+        Ok(steps)
     }
 
     fn between(

@@ -6,7 +6,7 @@
 use super::Splitting;
 use super::passes::updates::{Advance, KickDrift};
 use super::state::State;
-use super::stepper::{Nodes, Stepper};
+use super::stepper::{Nodes, Stepper, per_call};
 use super::system::System;
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
@@ -73,13 +73,7 @@ impl<S: Element> Force<S> {
                 S::pass(Advance { y: q, k: v, step: drift });
             } else {
                 if !self.fresh {
-                    system.acceleration(
-                        &nodes.after(node, time),
-                        state.q(),
-                        state.v(),
-                        &mut self.acceleration,
-                        ticker,
-                    )?;
+                    nodes.acceleration((node, time), state, &mut self.acceleration, system, ticker)?;
                 }
                 let (q, v) = state.halves_mut();
                 S::pass(KickDrift { q, v, a: &self.acceleration, kick, drift });
@@ -87,13 +81,7 @@ impl<S: Element> Force<S> {
             self.fresh = false;
         }
         if !self.last_idle {
-            system.acceleration(
-                &nodes.after(node, &moves.h),
-                state.q(),
-                state.v(),
-                &mut self.acceleration,
-                ticker,
-            )?;
+            nodes.acceleration((node, &moves.h), state, &mut self.acceleration, system, ticker)?;
             self.fresh = true;
             let (_, v) = state.halves_mut();
             S::pass(Advance { y: v, k: &self.acceleration, step: &moves.last_kick });
@@ -135,13 +123,16 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
     fn step(
         &mut self,
         node: u64,
-        _: u64,
+        at_most: u64,
         state: &mut State<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
-        self.force.advance(&self.moves, (&self.nodes, node), state, system, ticker)?;
-        Ok(1)
+        let steps = per_call(state.q().len(), at_most);
+        for step in 0..steps {
+            self.force.advance(&self.moves, (&self.nodes, node + step), state, system, ticker)?;
+        }
+        Ok(steps)
     }
 
     fn between(

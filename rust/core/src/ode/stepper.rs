@@ -52,6 +52,14 @@ pub trait Stepper<S: Element>: Send {
     ) -> Result<()>;
 }
 
+/// Numbers that the steps of one call change, about: some milliseconds at most between two looks at whether to stop.
+const NUMBERS_PER_CALL: usize = 4096;
+
+/// How many steps of a state of so many coordinates one call takes: more than one saves the way in and out.
+pub fn per_call(coordinates: usize, at_most: u64) -> u64 {
+    at_most.min((NUMBERS_PER_CALL / coordinates.max(1)) as u64).max(1)
+}
+
 /// The time of nodes, for systems that need it.
 #[derive(Clone, Copy, Debug)]
 pub struct Nodes {
@@ -72,7 +80,37 @@ impl Nodes {
     /// The time so long after a node.
     #[inline(always)]
     pub fn after<S: Element>(&self, node: u64, delay: &S) -> S {
-        if self.needed { self.time::<S>(node) + *delay } else { S::zero() }
+        if self.needed { self.time::<S>(node) + *delay } else { *delay }
+    }
+    /// The acceleration at a state so long after a node.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    #[inline(always)]
+    pub fn acceleration<S: Element>(
+        &self,
+        (node, delay): (u64, &S),
+        state: &State<S>,
+        a: &mut [S],
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        if self.needed {
+            return self.timed((node, delay), state, a, system, ticker);
+        }
+        system.acceleration(delay, state.q(), state.v(), a, ticker)
+    }
+    /// A function of its own: the room for a time would be a burden where none is needed.
+    #[inline(never)]
+    fn timed<S: Element>(
+        &self,
+        (node, delay): (u64, &S),
+        state: &State<S>,
+        a: &mut [S],
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        system.acceleration(&self.after(node, delay), state.q(), state.v(), a, ticker)
     }
 }
 
