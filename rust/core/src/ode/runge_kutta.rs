@@ -50,6 +50,7 @@ impl<S: Element> Stages<S> {
         self.form
     }
     /// Numbers per derivative.
+    #[inline]
     pub fn len(&self) -> usize {
         self.position.len()
     }
@@ -66,6 +67,7 @@ impl<S: Element> Stages<S> {
     ///
     /// # Errors
     /// Those of an evaluation.
+    #[inline]
     pub fn evaluate(
         &mut self,
         stage: usize,
@@ -128,6 +130,7 @@ impl<S: Element> Stages<S> {
     ///
     /// # Errors
     /// Those of an evaluation.
+    #[inline]
     pub fn evaluate_rest(
         &mut self,
         step: (&S, &S),
@@ -146,6 +149,7 @@ impl<S: Element> Stages<S> {
     }
 
     /// Writes the end of the step, all stages of the tableau being there.
+    #[inline]
     pub fn finish(&self, state: &State<S>, h: &S, next: &mut State<S>) {
         self.state_at(&self.end, state, h, next);
     }

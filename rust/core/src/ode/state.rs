@@ -22,6 +22,7 @@ impl<S: Element> State<S> {
         Self { compensation: vec![S::zero(); y.len()], y, coordinates: 0 }
     }
     /// The form of the equations that it is a state of.
+    #[inline]
     pub fn form(&self) -> Form {
         match self.coordinates {
             0 => Form::FirstOrder(self.y.len()),
@@ -29,34 +30,42 @@ impl<S: Element> State<S> {
         }
     }
     /// Coordinates.
+    #[inline]
     pub fn q(&self) -> &[S] {
         &self.y[..self.coordinates]
     }
     /// Velocities.
+    #[inline]
     pub fn v(&self) -> &[S] {
         &self.y[self.coordinates..]
     }
     /// What the coordinates leave out.
+    #[inline]
     pub fn q_compensation(&self) -> &[S] {
         &self.compensation[..self.coordinates]
     }
     /// What the velocities leave out.
+    #[inline]
     pub fn v_compensation(&self) -> &[S] {
         &self.compensation[self.coordinates..]
     }
     /// Coordinates and what they leave out.
+    #[inline]
     pub fn position(&self) -> (&[S], &[S]) {
         (self.q(), self.q_compensation())
     }
     /// Velocities and what they leave out.
+    #[inline]
     pub fn velocity(&self) -> (&[S], &[S]) {
         (self.v(), self.v_compensation())
     }
     /// All numbers and their compensations.
+    #[inline]
     pub fn all(&self) -> (&[S], &[S]) {
         (&self.y, &self.compensation)
     }
     /// As [`all`](Self::all), to be changed.
+    #[inline]
     pub fn all_mut(&mut self) -> PairMut<'_, S> {
         (&mut self.y, &mut self.compensation)
     }
