@@ -98,7 +98,7 @@ def _of_ctypes(fun: Any) -> str:
 def _of_numba(fun: Any) -> str:
     signature = fun._sig
     names = {"float64": "double", "float64*": "double*", "void*": "void*", "none": "void"}
-    kinds = [names.get(str(kind), str(kind)) for kind in (signature.return_type, *signature.args)]
+    kinds = [names.get(kind.name, kind.name) for kind in (signature.return_type, *signature.args)]
     return f"{kinds[0]}({','.join(kinds[1:])})"
 
 

@@ -233,9 +233,10 @@ def solve_ivp(
     >>> out.y.shape, bool(abs(out.y[0, -1] + 9.378) < 1e-3)
     ((3, 5), True)
     """
-    _warn_of_what_has_no_effect(
-        {"min_step": min_step, "jac": jac, "jac_sparsity": jac_sparsity, "lband": lband, "uband": uband}
-    )
+    if not (min_step is jac is jac_sparsity is lband is uband is None):
+        _warn_of_what_has_no_effect(
+            {"min_step": min_step, "jac": jac, "jac_sparsity": jac_sparsity, "lband": lband, "uband": uband}
+        )
     native = compiled(fun, args)
     if native is None and not callable(fun):
         raise InvalidInput("fun", f"expected a function f(t, y) or a compiled one, got {type(fun).__name__}")
@@ -271,19 +272,20 @@ def _result(found: _core._Solved, asked: _core._Problem) -> OdeResult:
     early = asked["t_eval"] is not None and not t.size
     extension = found["extension"]
     zeros = found["zeros"] if asked["events"] else None
+    # By position, in the order of the fields: their names cost as much as a hundred evaluations of a compiled function.
     return OdeResult(
-        t=nothing if early else t,
-        y=nothing if early else y,
-        sol=None if extension is None else OdeSolution(extension[0], extension),
-        t_events=None if zeros is None else [times for times, _ in zeros],
+        nothing if early else t,
+        nothing if early else y,
+        None if extension is None else OdeSolution(extension[0], extension),
+        None if zeros is None else [times for times, _ in zeros],
         # An event without zeros has no states at all, as in SciPy.
-        y_events=None if zeros is None else [states if times.size else np.empty(0) for times, states in zeros],
-        nfev=found["nfev"],
-        njev=0,
-        nlu=0,
-        status=found["status"],
-        message=found["message"],
-        success=found["status"] >= 0,
+        None if zeros is None else [states if times.size else np.empty(0) for times, states in zeros],
+        found["nfev"],
+        0,
+        0,
+        found["status"],
+        found["message"],
+        found["status"] >= 0,
     )
 
 
@@ -319,7 +321,9 @@ def _state(y0: object) -> NDArray[np.float64]:
             "y0 = [*y.real, *y.imag], or use scipy.integrate.solve_ivp",
         )
     if array.dtype == np.float64 and array.ndim == 1 and isinstance(y0, np.ndarray | list | tuple):
-        return np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])  # the core judges whether they are finite
+        # The core judges whether they are finite.
+        as_it_is = array.flags.c_contiguous and array.flags.aligned
+        return array if as_it_is else np.require(array, requirements=["C_CONTIGUOUS", "ALIGNED"])
     return float_array("y0", y0, (None,))
 
 
