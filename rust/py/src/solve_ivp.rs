@@ -13,7 +13,7 @@ use pyo3::types::{PyDict, PyList, PyTuple};
 use std::sync::{Mutex, PoisonError};
 use visviva_core::ode::events::{Condition, Events, Zeros};
 use visviva_core::ode::extension::View;
-use visviva_core::ode::initial_value::{Function, Request, Solution, solve};
+use visviva_core::ode::initial_value::{Request, Solution, solve};
 use visviva_core::ode::run::Ending;
 use visviva_core::parallel::Ticker;
 use visviva_core::registry::solver;
@@ -218,10 +218,8 @@ pub(crate) fn solve_ivp<'py>(
         columns: false,
     });
     let mut events = PythonEvents { functions: functions.collect(), raised: &exception };
-    let mut solved = |function: &mut Function<'_>, ticker: &mut Ticker<'_>| {
-        let events = Some(&mut events).filter(|events| !events.functions.is_empty());
-        solve(&request, function, events.map(|events| events as &mut dyn Events), ticker)
-    };
+    let watched = !events.functions.is_empty();
+    let events = watched.then_some(&mut events as &mut (dyn Events + Send));
     let outcome = match asked.compiled {
         Some((address, data)) => {
             let function = Compiled { address, data };
@@ -230,14 +228,18 @@ pub(crate) fn solve_ivp<'py>(
                 unsafe { function.call(t, y, rate) };
                 Ok(())
             };
-            compute(py, 0, None, |ticker| solved(&mut rate, ticker))?
+            compute(py, 0, None, |ticker| {
+                solve(&request, &mut rate, events.map(|events| events as &mut dyn Events), ticker)
+            })?
         }
         None => {
             let function = Callable { function: fun, further: further(true), columns: asked.vectorized };
             let mut rate = |t: f64, y: &[f64], rate: &mut [f64]| {
                 exception.kept(attached(|py| function.rate(py, t, y, rate)))
             };
-            compute_attached(py, |ticker| solved(&mut rate, ticker))?
+            compute_attached(py, |ticker| {
+                solve(&request, &mut rate, events.map(|events| events as &mut dyn Events), ticker)
+            })?
         }
     };
     let (solution, _) = outcome.partial(py)?;

@@ -6,82 +6,70 @@
 //! Time is counted from the start of the run, so that a large `t0` costs no digits.
 
 use super::Embedded;
-use super::norm::{Change, Norm};
+use super::norm::{Change, Norm, RootMeanSquare};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::{HUGE, PairTerm};
+use super::passes::rates::RateErrors;
 use super::passes::stages::{Positions, Term, Weighted};
-use super::passes::updates::Replace;
-use super::runge_kutta::{Stages, coupling};
+use super::runge_kutta::Stages;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Outcome, Rule, root};
 use super::system::{Form, System};
 use super::trial::{Cost, Trial};
 use crate::error::Result;
-use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Element;
-use crate::numerics::real::{Mask, Real};
+use crate::numerics::real::Mask;
 use crate::parallel::Ticker;
+use core::cell::OnceCell;
 
-/// Weights of the derivatives in the coordinates and in the velocities; of a system of the first order, the first are none.
-type Weights<T> = [Vec<T>; 2];
+mod between;
+use between::{Between, Weights};
 
 /// An embedded method at work on one state (of one or of eight trajectories).
 pub struct EmbeddedStep<S: Element> {
+    method: &'static Embedded,
     stages: Stages<S>,
     /// The weights of the two error estimates.
     errors: Weights<PairTerm<S>>,
-    two_estimates: bool,
     /// Whether an estimate weighs the derivative at the end of the step.
     end_in_estimate: bool,
-    /// The stages that only the continuous extension uses.
-    dense_rows: Vec<Row<S>>,
-    /// For every stage, its weights in the continuous extension in the nested basis of [`Embedded::dense`].
-    dense: Weights<Vec<S>>,
-    /// The weights of every stage in the coordinates, term after term of that basis.
-    of_terms: Vec<Vec<Term<S>>>,
-    /// Room for those weights at one fraction of the step.
-    between: Row<S>,
+    /// The continuous extension, once somebody asks for it.
+    between: OnceCell<Between<S>>,
+    /// Room for its weights at one fraction of the step.
+    weights: Row<S>,
     rule: Rule<S>,
     next: State<S>,
 }
 
 impl<S: Controlled> EmbeddedStep<S> {
     /// For a system and states like `state`, with steps of at most `max_step`.
-    pub fn new(method: &Embedded, system: &dyn System<S>, state: &State<S>, max_step: S) -> Self {
+    pub fn new(method: &'static Embedded, system: &dyn System<S>, state: &State<S>, max_step: S) -> Self {
         Self::with_rule(method, system, state, Rule::new(method.error_exponent, max_step))
     }
 
     /// As [`new`](Self::new), with a rule for the choice of steps.
-    pub fn with_rule(method: &Embedded, system: &dyn System<S>, state: &State<S>, rule: Rule<S>) -> Self {
+    pub fn with_rule(
+        method: &'static Embedded,
+        system: &dyn System<S>,
+        state: &State<S>,
+        rule: Rule<S>,
+    ) -> Self {
         let tableau = &method.tableau;
-        // The derivative at the end is a stage of its own, whose row are the weights.
-        let rows = tableau.a.iter().chain([&tableau.b]).chain(method.dense_a);
-        let a: Vec<Vec<DoubleDouble>> = rows.map(|row| row.to_vec()).collect();
         let errors = [method.error, method.second_error.unwrap_or_default()];
-        let of_coordinates = coupling(system.form(), &a);
-        let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, of_coordinates));
-        let dense_rows = method.dense_a.iter().zip(method.dense_c);
-        let every_stage = || (0..a.len()).map(|stage| Term { stage, weight: S::zero() }).collect();
-        let stages = Stages::new(tableau, 1 + method.dense_a.len(), system);
         let of_rates = pair_terms(errors);
-        let dense = dense(method, a.len(), of_coordinates);
-        let of_term = |term: usize| {
-            dense[0].iter().enumerate().map(move |(stage, row)| Term { stage, weight: row[term] })
-        };
-        let of_terms =
-            (0..dense[0].first().map_or(0, Vec::len)).map(|term| of_term(term).collect()).collect();
         Self {
-            errors: match stages.form() {
-                Form::FirstOrder(_) => [of_rates, Vec::new()],
-                Form::SecondOrder(_) => [pair_terms([&of_q, &of_q2]), of_rates],
+            method,
+            errors: match system.form() {
+                Form::FirstOrder(_) => [Vec::new(), of_rates],
+                Form::SecondOrder(_) => {
+                    let [of_q, of_q2] = errors.map(|row| nystrom_weights(row, &method.rows()));
+                    [pair_terms([&of_q, &of_q2]), of_rates]
+                }
             },
-            stages,
-            two_estimates: method.second_error.is_some(),
+            stages: Stages::new(tableau, 1 + method.dense_a.len(), system),
             end_in_estimate: errors.iter().any(|row| row.len() > tableau.b.len()),
-            dense_rows: dense_rows.map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
-            of_terms,
-            dense,
-            between: Row { fraction: S::zero(), position: every_stage(), velocity: every_stage() },
+            between: OnceCell::new(),
+            weights: Row { fraction: S::zero(), position: Vec::new(), velocity: Vec::new() },
             rule,
             next: state.clone(),
         }
@@ -89,7 +77,11 @@ impl<S: Controlled> EmbeddedStep<S> {
 
     /// The stage that holds the derivative at the end of the step.
     fn end_stage(&self) -> usize {
-        self.dense[0].len() - self.dense_rows.len() - 1
+        self.method.tableau.b.len()
+    }
+
+    fn between(&self) -> &Between<S> {
+        self.between.get_or_init(|| Between::new(self.method, self.stages.form()))
     }
 
     fn change<'a>(&'a self, terms: &'a [PairTerm<S>], factor: S) -> Change<'a, S> {
@@ -98,16 +90,19 @@ impl<S: Controlled> EmbeddedStep<S> {
 
     /// The squared scaled error of the step.
     fn error_size(&self, state: &State<S>, elapsed: &S, h: S, norm: &Norm<S>) -> S {
-        let [first, second] = &self.errors;
+        let [of_q, of_v] = &self.errors;
         let changes = match self.stages.form() {
-            Form::FirstOrder(_) => [self.change(first, h), self.change(second, h)],
-            Form::SecondOrder(_) => [self.change(first, h * h), self.change(second, h)],
+            Form::FirstOrder(_) => [self.change(of_v, h), self.change(of_v, h)],
+            Form::SecondOrder(_) => [self.change(of_q, h * h), self.change(of_v, h)],
         };
-        let [main, other] = norm.sizes(state, &self.next, elapsed, &changes);
-        if !self.two_estimates {
+        self.combined(norm.sizes(state, &self.next, elapsed, &changes))
+    }
+
+    /// `(E² / sqrt(E² + 0.01 E3²))²` of two estimates, with `E²` and `E3²` at hand; the first if there is one only.
+    fn combined(&self, [main, other]: [S; 2]) -> S {
+        if self.method.second_error.is_none() {
             return main;
         }
-        // (E² / sqrt(E² + 0.01 E3²))², with E² and E3² at hand.
         let denominator = main + S::splat(0.01) * other;
         let size2 = main * (main / denominator);
         S::select(main.less_equal(S::zero()), S::zero(), size2)
@@ -152,13 +147,6 @@ impl<S: Controlled> EmbeddedStep<S> {
         let h = by_order.min(S::splat(100.0) * trial).min(span).min(self.rule.max_step);
         Ok(h * direction)
     }
-
-    /// Takes the derivative at the end for that at the start.
-    fn begin_with_end(&mut self, lanes: S::Mask) {
-        let (len, end_stage) = (self.stages.len(), self.end_stage());
-        let (before, after) = self.stages.k.split_at_mut(end_stage * len);
-        S::pass(Replace { into: &mut before[..len], from: &after[..len], mask: lanes });
-    }
 }
 
 impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
@@ -174,7 +162,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     ) -> Result<()> {
         let end_stage = self.end_stage();
         self.stages.evaluate(end_stage, &clock.elapsed, state, system, ticker)?;
-        self.begin_with_end(fresh);
+        self.stages.begin_with_end(fresh, end_stage);
         let chosen = S::zero().less(clock.h.abs());
         if chosen.or(fresh.not()).all() {
             return Ok(());
@@ -231,13 +219,19 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
-        self.stages.evaluate_rest((&from, &h), state, system, ticker)?;
-        self.stages.finish(state, &h, &mut self.next);
         let end_stage = self.end_stage();
-        if self.end_in_estimate {
-            self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
-        }
-        let size2 = self.error_size(state, &from, h, norm);
+        let size2 = if let Some(RootMeanSquare { atol, rtol }) = &norm.mean {
+            let errors = RateErrors { terms: &self.errors[1], end: self.end_in_estimate, atol, rtol };
+            let states = (state, &mut self.next);
+            let sizes = self.stages.rate_step((&from, &h), states, Some(errors), system, ticker)?;
+            self.combined(sizes)
+        } else {
+            self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
+            if self.end_in_estimate {
+                self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
+            }
+            self.error_size(state, &from, h, norm)
+        };
         let outcome = S::settle(clock, running, size2, &self.rule);
         if outcome.accepted.any() && !self.end_in_estimate {
             self.stages.evaluate(end_stage, &clock.elapsed, &self.next, system, ticker)?;
@@ -258,33 +252,23 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     ) -> Result<()> {
         let first = self.end_stage() + 1;
         let step = (&outcome.from, &outcome.h);
-        let mut rows = self.dense_rows.iter().enumerate();
-        rows.try_for_each(|(index, row)| {
-            self.stages.evaluate_at(first + index, step, state, row, system, ticker)
-        })
+        let Self { method, stages, between, .. } = self;
+        let between = between.get_or_init(|| Between::new(method, stages.form()));
+        let mut rows = between.rows.iter().enumerate();
+        rows.try_for_each(|(index, row)| stages.evaluate_at(first + index, step, state, row, system, ticker))
     }
 
     fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>) {
-        let rest = S::one() - theta;
-        self.between.fraction = theta;
-        let weights = [&mut self.between.position, &mut self.between.velocity];
-        for (terms, coefficients) in weights.into_iter().zip(&self.dense) {
-            for (term, row) in terms.iter_mut().zip(coefficients) {
-                term.weight = S::zero();
-                for (index, &coefficient) in row.iter().enumerate().rev() {
-                    let factor = if index % 2 == 0 { theta } else { rest };
-                    term.weight = factor * (coefficient + term.weight);
-                }
-            }
-        }
-        self.stages.state_at(&self.between, state, &h, into);
+        let Self { method, stages, between, weights, .. } = self;
+        between.get_or_init(|| Between::new(method, stages.form())).weigh(theta, weights);
+        stages.state_at(weights, state, &h, into);
     }
 
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
         let len = self.stages.len();
         if matches!(self.stages.form(), Form::SecondOrder(_)) {
             let zeros = vec![S::zero(); len];
-            for (index, terms) in self.of_terms.iter().enumerate() {
+            for (index, terms) in self.between().of_terms.iter().enumerate() {
                 let from = into.len();
                 into.resize(from + len, S::zero());
                 let fraction = if index == 0 { S::one() } else { S::zero() };
@@ -297,10 +281,11 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
             }
             return;
         }
+        let [_, of_v] = &self.between().weights;
         for term in 0..self.terms() {
             for number in 0..len.min(state.all().0.len()) {
                 let mut sum = S::zero();
-                for (stage, weights) in self.dense[1].iter().enumerate() {
+                for (stage, weights) in of_v.iter().enumerate() {
                     sum = weights[term].multiply_add(self.stages.k[stage * len + number], sum);
                 }
                 into.push(h * sum);
@@ -312,7 +297,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         let len = self.stages.len();
         for term in 0..self.terms() {
             let mut sums = [S::zero(); 2];
-            for (sum, weights) in sums.iter_mut().zip(&self.dense) {
+            for (sum, weights) in sums.iter_mut().zip(&self.between().weights) {
                 for (stage, weights) in weights.iter().enumerate() {
                     *sum += weights[term] * self.stages.k[stage * len + coordinate];
                 }
@@ -322,36 +307,17 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     }
 
     fn terms(&self) -> usize {
-        self.dense[1].first().map_or(0, Vec::len)
+        self.method.terms()
     }
 
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
-        let (y, compensation) = state.all_mut();
-        let (next, next_compensation) = self.next.all();
-        S::pass(Replace { into: y, from: next, mask: accepted });
-        S::pass(Replace { into: compensation, from: next_compensation, mask: accepted });
-        self.begin_with_end(accepted);
+        state.take_over(&self.next, accepted);
+        self.stages.begin_with_end(accepted, self.end_stage());
     }
 
     fn cost(&self) -> Cost {
         let stages = self.end_stage() as u64;
         let end = u64::from(self.end_in_estimate);
-        Cost { start: 2, tried: stages - 1 + end, kept: 1 - end, dense: self.dense_rows.len() as u64 }
+        Cost { start: 2, tried: stages - 1 + end, kept: 1 - end, dense: self.method.dense_a.len() as u64 }
     }
-}
-
-/// The weights of the continuous extension, in the coordinates and in the velocities; `a` are the rows of all stages, if
-/// there are coordinates.
-fn dense<S: Element>(method: &Embedded, stages: usize, a: &[Vec<DoubleDouble>]) -> Weights<Vec<S>> {
-    let powers = method.dense.iter().map(|row| row.len()).max().unwrap_or(0);
-    let zero = DoubleDouble::zero();
-    let power = |index| -> Vec<DoubleDouble> {
-        method.dense.iter().map(|row| row.get(index).copied().unwrap_or(zero)).collect()
-    };
-    let of_v: Vec<Vec<DoubleDouble>> = (0..powers).map(power).collect();
-    let of_q: Vec<Vec<DoubleDouble>> = of_v.iter().map(|row| nystrom_weights(row, a)).collect();
-    [of_q, of_v].map(|rows| {
-        let of_stage = |stage| rows.iter().map(|row| S::from_double_double(row[stage])).collect();
-        (0..stages).map(of_stage).collect()
-    })
 }

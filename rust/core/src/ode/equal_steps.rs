@@ -5,7 +5,6 @@
 
 use super::Tableau;
 use super::norm::Norm;
-use super::passes::updates::Replace;
 use super::runge_kutta::Stages;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Outcome, Rule};
@@ -75,8 +74,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
-        self.stages.evaluate_rest((&from, &h), state, system, ticker)?;
-        self.stages.finish(state, &h, &mut self.next);
+        self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
         let outcome = S::settle(clock, running, S::zero(), &self.rule);
         self.stages.evaluate(self.end_stage(), &clock.elapsed, &self.next, system, ticker)?;
         Ok(outcome)
@@ -96,8 +94,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         let len = self.stages.len();
         let h = outcome.h * S::splat(0.5);
         self.half.k[..len].copy_from_slice(&self.stages.k[..len]);
-        self.half.evaluate_rest((&outcome.from, &h), state, system, ticker)?;
-        self.half.finish(state, &h, &mut self.middle);
+        self.half.step((&outcome.from, &h), (state, &mut self.middle), system, ticker)?;
         let mut polynomial = core::mem::take(&mut self.polynomial);
         polynomial.clear();
         self.extension(state, outcome.h, &mut polynomial);
@@ -143,13 +140,8 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
     }
 
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
-        let (y, compensation) = state.all_mut();
-        let (next, next_compensation) = self.next.all();
-        S::pass(Replace { into: y, from: next, mask: accepted });
-        S::pass(Replace { into: compensation, from: next_compensation, mask: accepted });
-        let (len, end_stage) = (self.stages.len(), self.end_stage());
-        let (before, after) = self.stages.k.split_at_mut(end_stage * len);
-        S::pass(Replace { into: &mut before[..len], from: &after[..len], mask: accepted });
+        state.take_over(&self.next, accepted);
+        self.stages.begin_with_end(accepted, self.end_stage());
     }
 
     fn cost(&self) -> Cost {

@@ -24,7 +24,8 @@ use crate::words::number;
 const LIMITS: (f64, f64) = (0.2, 10.0);
 
 /// A function `f(t, y)` that writes the rates.
-pub type Function<'a> = dyn FnMut(f64, &[f64], &mut [f64]) -> Result<()> + Send + 'a;
+pub trait Function: FnMut(f64, &[f64], &mut [f64]) -> Result<()> + Send {}
+impl<F: FnMut(f64, &[f64], &mut [f64]) -> Result<()> + Send> Function for F {}
 
 /// What is asked of a problem.
 #[derive(Clone, Debug)]
@@ -71,8 +72,8 @@ pub struct Solution {
 }
 
 /// A function as a system; it is never asked for a time outside the span.
-struct Equations<'a, 'f> {
-    function: &'a mut Function<'f>,
+struct Equations<'a, F> {
+    function: &'a mut F,
     numbers: usize,
     t0: f64,
     /// The smaller and the larger end of the span.
@@ -80,7 +81,7 @@ struct Equations<'a, 'f> {
     evaluations: u64,
 }
 
-impl System<f64> for Equations<'_, '_> {
+impl<F: Function> System<f64> for Equations<'_, F> {
     fn form(&self) -> Form {
         Form::FirstOrder(self.numbers)
     }
@@ -247,7 +248,7 @@ impl Request {
 /// What was asked is refused; errors of the functions but [`Error::Interrupted`].
 pub fn solve<'a>(
     request: &'a Request,
-    function: &mut Function<'_>,
+    function: &mut impl Function,
     events: Option<&'a mut dyn Events>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Solution> {

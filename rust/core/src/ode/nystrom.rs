@@ -12,7 +12,7 @@ use crate::numerics::element::Element;
 use crate::numerics::real::Real;
 
 /// Rows of coefficients, one for each stage that they weigh.
-type Rows = [Vec<DoubleDouble>];
+type Rows<'a> = [&'a [DoubleDouble]];
 
 /// Products of coefficients that cancel leave about 1e-29; the least that is meant is above 1e-6.
 const NOTHING: f64 = 1e-20;
@@ -30,7 +30,7 @@ pub struct Row<S> {
 
 impl<S: Element> Row<S> {
     /// The point of a stage: `row` weighs the derivatives of the stages whose own rows are `a`.
-    pub fn new(row: &[DoubleDouble], fraction: DoubleDouble, a: &Rows) -> Self {
+    pub fn new(row: &[DoubleDouble], fraction: DoubleDouble, a: &Rows<'_>) -> Self {
         Self {
             fraction: S::from_double_double(fraction),
             position: terms(&nystrom_weights(row, a)),
@@ -43,7 +43,7 @@ impl<S: Element> Row<S> {
     /// Every weight rounded by itself would leave a sum of, for RK4, `1 - 2^-54`: each step would fall short
     /// by that share, and a long run would lag behind in proportion to time. The smallest weight, being the
     /// finest, takes up what the rounding of all of them leaves out.
-    pub fn end(weights: &[DoubleDouble], a: &Rows) -> Self {
+    pub fn end(weights: &[DoubleDouble], a: &Rows<'_>) -> Self {
         let exact = |weights: &[DoubleDouble]| {
             let mut terms = terms(weights);
             let rest = weights.iter().fold(S::zero(), |rest, &weight| rest + S::one().scaled_by(weight).1);
@@ -59,10 +59,10 @@ impl<S: Element> Row<S> {
 
 /// The Nyström weights `ā = row·A`: those of the accelerations in `Σ row·k` when the `k` are velocities of stages with the
 /// rows `a`, less what the velocity at the start is worth.
-pub fn nystrom_weights(row: &[DoubleDouble], a: &Rows) -> Vec<DoubleDouble> {
+pub fn nystrom_weights(row: &[DoubleDouble], a: &Rows<'_>) -> Vec<DoubleDouble> {
     let mut product = vec![DoubleDouble::zero(); row.len()];
     for (weight, stage) in row.iter().zip(a) {
-        for (sum, &coefficient) in product.iter_mut().zip(stage) {
+        for (sum, &coefficient) in product.iter_mut().zip(*stage) {
             *sum += *weight * coefficient;
         }
     }
@@ -99,8 +99,7 @@ mod tests {
             else {
                 continue;
             };
-            let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
-            let end = Row::<f64>::end(tableau.b, &a);
+            let end = Row::<f64>::end(tableau.b, tableau.a);
             let sum = |terms: &[Term<f64>]| {
                 terms.iter().fold(DoubleDouble::zero(), |sum, term| sum + DoubleDouble::from(term.weight))
             };

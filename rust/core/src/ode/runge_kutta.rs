@@ -5,7 +5,9 @@
 
 use super::Tableau;
 use super::nystrom::Row;
+use super::passes::rates::{RateErrors, RateStep};
 use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
+use super::passes::updates::replace;
 use super::state::State;
 use super::stepper::{Nodes, Stepper, per_call};
 use super::system::{Form, Needs, System};
@@ -31,14 +33,14 @@ pub struct Stages<S> {
 impl<S: Element> Stages<S> {
     /// For a tableau with `extra` further stages, and a system.
     pub fn new(tableau: &Tableau, extra: usize, system: &dyn System<S>) -> Self {
-        let a: Vec<Vec<DoubleDouble>> = tableau.a.iter().map(|row| row.to_vec()).collect();
         let form = system.form();
         let len = form.evaluated();
-        let of_coordinates = coupling(form, &a);
+        let of_coordinates = coupling(form, tableau.a);
+        let stages = tableau.a.iter().zip(tableau.c);
         Self {
             form,
             needs: system.needs(),
-            rows: a.iter().zip(tableau.c).map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
+            rows: stages.map(|(row, &c)| Row::new(row, c, of_coordinates)).collect(),
             end: Row::end(tableau.b, of_coordinates),
             k: vec![S::zero(); (tableau.b.len() + extra) * len],
             position: vec![S::zero(); len],
@@ -126,32 +128,64 @@ impl<S: Element> Stages<S> {
         system.acceleration(t, &self.position, velocity, &mut self.k[stage * len..][..len], ticker)
     }
 
-    /// All stages of the tableau from the second on; the first must be there.
+    /// All stages of the tableau from the second on, and the end of the step; the first must be there.
     ///
     /// # Errors
     /// Those of an evaluation.
     #[inline]
-    pub fn evaluate_rest(
+    pub fn step(
         &mut self,
-        step: (&S, &S),
-        state: &State<S>,
+        (t, h): (&S, &S),
+        (state, next): (&State<S>, &mut State<S>),
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
+        if matches!(self.form, Form::FirstOrder(_)) {
+            return self.rate_step((t, h), (state, next), None, system, ticker).map(drop);
+        }
         let rows = core::mem::take(&mut self.rows);
         let outcome = rows
             .iter()
             .enumerate()
             .skip(1)
-            .try_for_each(|(stage, row)| self.evaluate_at(stage, step, state, row, system, ticker));
+            .try_for_each(|(stage, row)| self.evaluate_at(stage, (t, h), state, row, system, ticker));
         self.rows = rows;
-        outcome
+        outcome?;
+        self.state_at(&self.end, state, h, next);
+        Ok(())
     }
 
-    /// Writes the end of the step, all stages of the tableau being there.
-    #[inline]
-    pub fn finish(&self, state: &State<S>, h: &S, next: &mut State<S>) {
-        self.state_at(&self.end, state, h, next);
+    /// As [`step`](Self::step), of a system of the first order; gives the squared scaled errors if it is said how.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn rate_step(
+        &mut self,
+        (t, h): (&S, &S),
+        (state, next): (&State<S>, &mut State<S>),
+        errors: Option<RateErrors<'_, S>>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<[S; 2]> {
+        S::pass(RateStep {
+            rows: (&self.rows, &self.end),
+            time: (*t, self.needs.time),
+            h,
+            y: state.all(),
+            k: &mut self.k,
+            position: &mut self.position,
+            next: next.all_mut(),
+            errors,
+            system,
+            ticker,
+        })
+    }
+
+    /// Takes the derivative at the end of the step for that at its start.
+    pub fn begin_with_end(&mut self, lanes: S::Mask, end_stage: usize) {
+        let len = self.len();
+        let (before, after) = self.k.split_at_mut(end_stage * len);
+        replace(&mut before[..len], &after[..len], lanes);
     }
 
     /// Writes the state that the row leads to, compensated.
@@ -169,7 +203,7 @@ impl<S: Element> Stages<S> {
 }
 
 /// The rows that Nyström weights are made of: a system of the first order has none, and no time is spent on them.
-pub(super) fn coupling(form: Form, a: &[Vec<DoubleDouble>]) -> &[Vec<DoubleDouble>] {
+pub(super) fn coupling<'a>(form: Form, a: &'a [&'a [DoubleDouble]]) -> &'a [&'a [DoubleDouble]] {
     match form {
         Form::FirstOrder(_) => &[],
         Form::SecondOrder(_) => a,
@@ -208,8 +242,7 @@ impl<S: Element> RungeKuttaStep<S> {
         let Self { stages, next, h: own, nodes } = self;
         let (t, h) = (nodes.time(node), h.unwrap_or(own));
         stages.evaluate(0, &t, state, system, ticker)?;
-        stages.evaluate_rest((&t, h), state, system, ticker)?;
-        stages.finish(state, h, next);
+        stages.step((&t, h), (state, next), system, ticker)?;
         core::mem::swap(state, next);
         Ok(())
     }

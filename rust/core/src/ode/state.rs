@@ -1,5 +1,6 @@
 //! The state that an integrator advances: numbers, each with its compensation.
 
+use super::passes::updates::replace;
 use super::system::Form;
 use crate::numerics::element::{Element, PairMut};
 
@@ -85,5 +86,10 @@ impl<S: Element> State<S> {
     pub fn copy_from(&mut self, other: &Self) {
         self.y.copy_from_slice(&other.y);
         self.compensation.copy_from_slice(&other.compensation);
+    }
+    /// Takes over another state of the same form in the lanes of the mask.
+    pub fn take_over(&mut self, other: &Self, lanes: S::Mask) {
+        replace(&mut self.y, &other.y, lanes);
+        replace(&mut self.compensation, &other.compensation, lanes);
     }
 }

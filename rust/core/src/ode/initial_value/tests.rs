@@ -30,7 +30,7 @@ fn solvers() -> impl Iterator<Item = &'static Method> {
 
 fn quietly<'a>(
     request: &'a Request,
-    function: &mut Function<'_>,
+    function: &mut impl Function,
     events: Option<&'a mut (dyn Events + 'a)>,
 ) -> Solution {
     let control = Control::default();

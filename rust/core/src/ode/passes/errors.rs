@@ -2,7 +2,7 @@
 
 use crate::numerics::element::{Element, Pass, Shape, View};
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::real::Mask;
+use crate::numerics::real::{Mask, Real};
 
 /// One term of two weighted sums of stages.
 #[derive(Clone, Copy, Debug)]
@@ -156,24 +156,27 @@ impl<S: Element> Pass<S> for MeanErrors<'_, S> {
         let (next, atol, rtol) =
             (&V::view(self.next)[..n], &V::view(self.atol)[..n], &V::view(self.rtol)[..n]);
         let terms = view_terms::<S, V>(self.terms);
-        let mut sums = [V::zero(); 2];
-        for i in 0..n {
-            let scale = rtol[i].multiply_add(y[i].abs().max(next[i].abs()), atol[i]);
-            let mut errors = [V::zero(); 2];
-            for &PairTerm { stage, weights } in terms {
-                let k = k[stage * self.stride + i];
-                for estimate in 0..2 {
-                    errors[estimate] = weights[estimate].multiply_add(k, errors[estimate]);
+        let (mut sums, mut start) = ([V::zero(); 2], 0);
+        // Several numbers at a time, because one sum alone waits for each of its additions.
+        macro_rules! groups {
+            ($($size:literal)+) => {$(
+                while n - start >= $size {
+                    let errors = pair_weighted::<V, $size>(terms, k, self.stride, start);
+                    for i in start..start + $size {
+                        let scale = rtol[i].multiply_add(y[i].abs().max(next[i].abs()), atol[i]);
+                        for estimate in 0..2 {
+                            let error = h * errors[i - start][estimate];
+                            let ratio = error / scale;
+                            // Without an error any tolerance is kept, one of zero too.
+                            let none = error.less_equal(V::zero()).and(V::zero().less_equal(error));
+                            sums[estimate] += V::select(none, V::zero(), ratio * ratio);
+                        }
+                    }
+                    start += $size;
                 }
-            }
-            for estimate in 0..2 {
-                let error = h * errors[estimate];
-                let ratio = error / scale;
-                // Without an error any tolerance is kept, one of zero too.
-                let none = error.less_equal(V::zero()).and(V::zero().less_equal(error));
-                sums[estimate] += V::select(none, V::zero(), ratio * ratio);
-            }
+            )+};
         }
+        groups!(4 3 2 1);
         let inverse = V::one() / V::splat(n as f64);
         for sum in &mut sums {
             *sum = *sum * inverse;
@@ -182,4 +185,24 @@ impl<S: Element> Pass<S> for MeanErrors<'_, S> {
         let [first, second] = sums;
         [first.store(), second.store()]
     }
+}
+
+/// `Σ weight·k[stage]` for both weights at `G` numbers from `i` on.
+#[inline(always)]
+fn pair_weighted<S: Real, const G: usize>(
+    terms: &[PairTerm<S>],
+    k: &[S],
+    stride: usize,
+    i: usize,
+) -> [[S; 2]; G] {
+    let mut sums = [[S::zero(); 2]; G];
+    for &PairTerm { stage, weights } in terms {
+        let column = &k[stage * stride + i..][..G];
+        for g in 0..G {
+            for estimate in 0..2 {
+                sums[g][estimate] = weights[estimate].multiply_add(column[g], sums[g][estimate]);
+            }
+        }
+    }
+    sums
 }

@@ -2,5 +2,6 @@
 
 pub mod errors;
 pub mod multistep;
+pub mod rates;
 pub mod stages;
 pub mod updates;

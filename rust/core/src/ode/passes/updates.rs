@@ -4,7 +4,7 @@
 //! with about twice the digits, so that round-off grows like a random walk of the *increments*.
 
 use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 
 /// `y + e + increment`, again as a sum and what it leaves out. What the step's coefficient leaves out joins the increment before `e` does: so a step
 /// stays the symplectic map of its rounded coefficients. Added to `e` first it is kept or lost depending on the
@@ -80,14 +80,20 @@ impl<S: Element> Pass<S> for Advance<'_, S> {
 }
 
 /// `if mask { from } else { into }`, element by element.
+pub fn replace<S: Element>(into: &mut [S], from: &[S], mask: S::Mask) {
+    if mask.all() {
+        into.copy_from_slice(from);
+    } else {
+        S::pass(Replace { into, from, mask });
+    }
+}
+
+/// [`replace`] where the lanes differ.
 #[derive(Debug)]
-pub struct Replace<'a, S: Real> {
-    /// What is changed.
-    pub into: &'a mut [S],
-    /// What it takes over.
-    pub from: &'a [S],
-    /// In which lanes.
-    pub mask: S::Mask,
+struct Replace<'a, S: Real> {
+    into: &'a mut [S],
+    from: &'a [S],
+    mask: S::Mask,
 }
 
 impl<S: Element> Pass<S> for Replace<'_, S> {

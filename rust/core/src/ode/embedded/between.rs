@@ -1,0 +1,76 @@
+//! The continuous extension of an embedded method: what a run that looks between its steps needs, and no other.
+
+use super::Embedded;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::element::Element;
+use crate::numerics::real::Real;
+use crate::ode::nystrom::{Row, nystrom_weights};
+use crate::ode::passes::stages::Term;
+use crate::ode::runge_kutta::coupling;
+use crate::ode::system::Form;
+
+/// Weights of the derivatives in the coordinates and in the velocities; of a system of the first order, the first are none.
+pub(super) type Weights<T> = [Vec<T>; 2];
+
+/// The stages of the continuous extension and its weights.
+pub(super) struct Between<S> {
+    /// The stages that nothing else uses.
+    pub(super) rows: Vec<Row<S>>,
+    /// For every stage, its weights in the nested basis of [`Embedded::dense`].
+    pub(super) weights: Weights<Vec<S>>,
+    /// The weights of every stage in the coordinates, term after term of that basis.
+    pub(super) of_terms: Vec<Vec<Term<S>>>,
+}
+
+impl Embedded {
+    /// The rows of all stages; the derivative at the end is a stage of its own, whose row are the weights.
+    pub(super) fn rows(&self) -> Vec<&'static [DoubleDouble]> {
+        self.tableau.a.iter().chain([&self.tableau.b]).chain(self.dense_a).copied().collect()
+    }
+
+    /// How many terms the continuous extension has.
+    pub(super) fn terms(&self) -> usize {
+        self.dense.iter().map(|row| row.len()).max().unwrap_or(0)
+    }
+}
+
+impl<S: Element> Between<S> {
+    /// Of a method on equations of this form.
+    pub(super) fn new(method: &Embedded, form: Form) -> Self {
+        let all = method.rows();
+        let a = coupling(form, &all);
+        let zero = DoubleDouble::zero();
+        let power = |index| -> Vec<DoubleDouble> {
+            method.dense.iter().map(|row| row.get(index).copied().unwrap_or(zero)).collect()
+        };
+        let of_v: Vec<Vec<DoubleDouble>> = (0..method.terms()).map(power).collect();
+        let of_q: Vec<Vec<DoubleDouble>> = of_v.iter().map(|row| nystrom_weights(row, a)).collect();
+        let weights: Weights<Vec<S>> = [of_q, of_v].map(|rows| {
+            let of_stage = |stage| rows.iter().map(|row| S::from_double_double(row[stage])).collect();
+            (0..all.len()).map(of_stage).collect()
+        });
+        let of_term = |term: usize| {
+            weights[0].iter().enumerate().map(move |(stage, row)| Term { stage, weight: row[term] })
+        };
+        let of_terms = (0..method.terms()).map(|term| of_term(term).collect()).collect();
+        let rows = method.dense_a.iter().zip(method.dense_c).map(|(row, &c)| Row::new(row, c, a)).collect();
+        Self { rows, weights, of_terms }
+    }
+
+    /// The weights at the fraction `theta` of the step.
+    pub(super) fn weigh(&self, theta: S, into: &mut Row<S>) {
+        let rest = S::one() - theta;
+        into.fraction = theta;
+        for (terms, coefficients) in [&mut into.position, &mut into.velocity].into_iter().zip(&self.weights) {
+            terms.clear();
+            terms.extend(coefficients.iter().enumerate().map(|(stage, row)| {
+                let mut weight = S::zero();
+                for (index, &coefficient) in row.iter().enumerate().rev() {
+                    let factor = if index % 2 == 0 { theta } else { rest };
+                    weight = factor * (coefficient + weight);
+                }
+                Term { stage, weight }
+            }));
+        }
+    }
+}
