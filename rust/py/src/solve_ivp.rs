@@ -15,7 +15,6 @@ use visviva_core::ode::events::{Condition, Events, Zeros};
 use visviva_core::ode::extension::View;
 use visviva_core::ode::initial_value::{Request, Solution, solve};
 use visviva_core::ode::run::Ending;
-use visviva_core::parallel::Ticker;
 use visviva_core::registry::solver;
 use visviva_core::{Error, Result};
 
