@@ -149,4 +149,33 @@ KEPT: list[tuple[str, Recipe]] = [
         "two_methods_agree",
         Recipe(bodies=29, forces=(("PairPotential", 53),), seed=36, at_origin=True, members=8, steps=4),
     ),
+    # Members in lockstep paid for the looks into steps of each other, and for steps after their own end.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(method="rk4", forces=(), members=3, steps=4, events=(("plane", 0), ("distance", 2), ("apsis", 26))),
+    ),
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            method="leapfrog",
+            bodies=3,
+            seed=1,
+            members=5,
+            steps=8,
+            events=(("plane", 1), ("distance", 1)),
+            terminal=1,
+        ),
+    ),
+    # A massive body had other sizes alone than with massless ones that follow it.
+    (
+        "massless_bodies_do_not_touch_the_massive",
+        Recipe(
+            method="bogacki_shampine32",
+            bodies=3,
+            massless=2,
+            forces=(("LinearDrag", 8), ("Gravity", 53)),
+            seed=3926,
+            steps=16,
+        ),
+    ),
 ]

@@ -82,6 +82,8 @@ fn lockstep(
         step: scale(dt, -unit_of_time),
         between: None,
         watched: watches.iter().any(Option::is_some),
+        looks: vec![0; watches.len()],
+        stopped: vec![None; watches.len()],
         watches,
         failed: vec![None; units.len()],
         running: units.len(),
@@ -111,6 +113,10 @@ struct Records<'a> {
     watched: bool,
     /// The events of each unit.
     watches: Vec<Option<Box<Watch<'a>>>>,
+    /// What looking for them took, which each unit pays for itself.
+    looks: Vec<u64>,
+    /// What a unit that an event ended had cost by then.
+    stopped: Vec<Option<Counts>>,
     units: Vec<Prepared>,
     /// The output time at which a unit was no longer finite.
     failed: Vec<Option<usize>>,
@@ -168,8 +174,15 @@ impl Recorder<Lanes> for Records<'_> {
             }
             match watch {
                 Some(watch) => {
+                    let before = inside.system.evaluations();
                     watch.look(unit, span, (after, lane), &mut inside, ticker)?;
+                    let evaluations = inside.system.evaluations();
+                    self.looks[lane] += evaluations - before;
                     going |= !watch.stopped;
+                    if watch.stopped {
+                        let counts = Counts { steps: node, rejected: 0, evaluations };
+                        self.stopped[lane] = Some(paid_by(lane, counts, &self.looks));
+                    }
                 }
                 None => going = true,
             }
@@ -190,7 +203,7 @@ impl Recorder<Lanes> for Records<'_> {
 
 impl Records<'_> {
     /// The reports of a run that has come to `reached` at `time`; `short` says why, if that is not the end.
-    fn reports(mut self, reached: &State<Lanes>, time: f64, short: &Ending, counts: Counts) -> Vec<Report> {
+    fn reports(mut self, reached: &State<Lanes>, time: f64, short: &Ending, all: Counts) -> Vec<Report> {
         let last = self.last.take();
         let (state, time, otherwise) = match &last {
             Some(last) => (last, self.job.end(), &Ending::Finished),
@@ -203,6 +216,8 @@ impl Records<'_> {
                 Some(failed) => (failed, Ending::NotFinite),
                 None => (self.rows, otherwise.clone()),
             };
+            let counts = self.stopped.get(lane).copied().flatten();
+            let counts = counts.unwrap_or_else(|| paid_by(lane, all, &self.looks));
             let mut report = self.job.report(unit, state, lane, time, ending, rows, counts);
             if let Some(watch) = watch {
                 watch.tell(&mut report);
@@ -211,6 +226,12 @@ impl Records<'_> {
         };
         self.units.iter().enumerate().zip(watches).map(report).collect()
     }
+}
+
+/// What a unit cost of all that was done for those in lockstep, who looked for their events apart.
+fn paid_by(lane: usize, all: Counts, looks: &[u64]) -> Counts {
+    let others = looks.iter().sum::<u64>() - looks.get(lane).copied().unwrap_or_default();
+    Counts { evaluations: all.evaluations - others, ..all }
 }
 
 /// The inside of a step, by shadow steps from the present node.

@@ -42,8 +42,6 @@ impl Prepared {
         let bodies = self.bodies();
         let rate = plan.forces.iter().map(|force| force.rate(&bodies, self.units)).fold(0.0, f64::max);
         let time = if rate * span > 1.0 { 1.0 / rate } else { span };
-        // What moves with the reference and is slowed down or turned has the reference's own path.
-        let speed = if speed > 0.0 || field > 0.0 { speed } else { distance(self.reference.drift, [0.0; 3]) };
         let length = time * (speed + 0.5 * field * time);
         // Where nothing ever moves any length will do.
         if length > 0.0 && length.is_finite() { length } else { 1.0 }
