@@ -16,6 +16,7 @@ SCRIPTS = (
     "energy_growth",
     "massless",
     "outputs",
+    "energy_column",
     "events",
     "figure_eight_ensemble",
     "rutherford",
