@@ -5,8 +5,9 @@
 
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::fused_double::FusedDouble;
-use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::real::Mask;
 use crate::tiered;
 
 /// The arrays: masses, then for each coordinate positions, their rests, velocities, their rests.
@@ -83,18 +84,52 @@ impl PreciseBodies {
         }
     }
 
+    /// The array of a coordinate; the next one is what it leaves out.
+    #[inline(always)]
+    fn first(of: Of, c: usize) -> usize {
+        1 + 4 * c + if matches!(of, Of::Position) { 0 } else { 2 }
+    }
+
     /// A coordinate of all bodies and what it leaves out, to be set.
     #[inline]
     pub fn coordinates_mut(&mut self, of: Of, c: usize) -> [&mut [f64]; 2] {
         let (len, stride) = (self.len, self.stride);
-        let first = (1 + 4 * c + if matches!(of, Of::Position) { 0 } else { 2 }) * stride;
+        let first = Self::first(of, c) * stride;
         let (values, rests) = self.numbers[first..first + 2 * stride].split_at_mut(stride);
         [&mut values[..len], &mut rests[..len]]
+    }
+
+    /// Whether the masses are those of so many bodies, as they were set: positions and velocities may then be set anew.
+    #[inline]
+    pub fn keeps_masses(&self, len: usize) -> bool {
+        self.len == len && self.units == Exponents::default()
+    }
+
+    /// Sets a coordinate of eight bodies from one on, whose place is that of a row, and what it leaves out; zero after the
+    /// last of them.
+    #[inline(always)]
+    pub fn set_row<V: Vector8>(&mut self, of: Of, c: usize, body: usize, value: FusedDouble<V>) {
+        let there = Bits((0xff_u32 >> (WIDTH - (self.len - body).min(WIDTH))) as u8);
+        let first = Self::first(of, c) * self.stride + body;
+        let (high, low) = (V::select(there, value.high, V::zero()), V::select(there, value.low, V::zero()));
+        if let Some(row) = self.numbers[first..].first_chunk_mut() {
+            *row = high.store().0;
+        }
+        if let Some(row) = self.numbers[first + self.stride..].first_chunk_mut() {
+            *row = low.store().0;
+        }
     }
 
     /// Brings the values near one, once all are set.
     #[inline]
     pub fn settle(&mut self) {
+        if !are_near(self) {
+            self.settle_far();
+        }
+    }
+
+    #[cold]
+    fn settle_far(&mut self) {
         let largest = largest(self);
         let far = |size: f64| size != 0.0 && !(LEAST..MOST).contains(&size);
         if far(largest[0]) || far(largest[1]) || far(largest[2]) {
@@ -145,7 +180,7 @@ impl PreciseBodies {
 
     #[inline(always)]
     fn parts(&self, of: Of, c: usize) -> [&[f64]; 2] {
-        let first = 1 + 4 * c + if matches!(of, Of::Position) { 0 } else { 2 };
+        let first = Self::first(of, c);
         [self.array(first), self.array(first + 1)]
     }
 
@@ -182,11 +217,36 @@ tiered! {
     /// Σ m q, or Σ q.
     pub fn vector_sum[][](bodies: &PreciseBodies, of: Of, weighted: bool) -> [FusedDouble<Lanes>; 3] = mass_times_vector;
     fn largest[][](bodies: &PreciseBodies) -> [f64; 3] = largest_sizes;
+    fn are_near[][](bodies: &PreciseBodies) -> bool = sizes_are_near;
 }
 
 /// The largest finite mass, coordinate and component of a velocity.
 #[inline(always)]
 fn largest_sizes<V: Vector8>(bodies: &PreciseBodies) -> [f64; 3] {
+    let largest = largest_in_lanes::<V>(bodies);
+    let mut result = [0.0; 3];
+    for kind in 0..3 {
+        for size in largest[kind].store().0 {
+            result[kind] = if size > result[kind] { size } else { result[kind] };
+        }
+    }
+    result
+}
+
+/// Whether the largest of each kind are known to be near one, none of them zero.
+#[inline(always)]
+fn sizes_are_near<V: Vector8>(bodies: &PreciseBodies) -> bool {
+    let (least, most) = (V::splat(LEAST), V::splat(MOST));
+    let largest = largest_in_lanes::<V>(bodies);
+    let mut near = true;
+    for kind in 0..3 {
+        near &= largest[kind].less(most).all() && least.less_equal(largest[kind]).any();
+    }
+    near
+}
+
+#[inline(always)]
+fn largest_in_lanes<V: Vector8>(bodies: &PreciseBodies) -> [V; 3] {
     let mut largest = [V::zero(); 3];
     for body in (0..bodies.len).step_by(WIDTH) {
         larger(&mut largest[0], bodies.masses_from(body));
@@ -195,13 +255,7 @@ fn largest_sizes<V: Vector8>(bodies: &PreciseBodies) -> [f64; 3] {
             larger(&mut largest[2], bodies.coordinates_from(Of::Velocity, c, body).high);
         }
     }
-    let mut result = [0.0; 3];
-    for kind in 0..3 {
-        for size in largest[kind].store().0 {
-            result[kind] = if size > result[kind] { size } else { result[kind] };
-        }
-    }
-    result
+    largest
 }
 
 #[inline(always)]

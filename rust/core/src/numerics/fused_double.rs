@@ -5,6 +5,7 @@
 //! Source: Ogita, Rump & Oishi, SIAM J. Sci. Comput. 26 (2005) 1955; Joldes, Muller & Popescu, ACM TOMS 44 (2017) 15.
 
 use super::double_double::two_sum;
+use super::inverse_cube::InverseCube;
 use super::real::Real;
 
 /// `high + low` in every lane, the low part small beside the high one, if not always below half its last place: sums are
@@ -67,10 +68,26 @@ impl<S: Real> FusedDouble<S> {
         Self { high, low: (self.high + self.high).multiply_add(self.low, low) }
     }
 
-    /// `1/√self`: a step of Halley's method from the nearest number or so.
+    /// Adds a term to a running sum. What the sum leaves out is gathered beside it and only joined at the end.
+    #[inline(always)]
+    pub fn gather(&mut self, term: Self) {
+        let (high, error) = two_sum(self.high, term.high);
+        self.high = high;
+        self.low += error + term.low;
+    }
+}
+
+impl<S: InverseCube> FusedDouble<S> {
+    /// `1/√self` by a series and a step of Halley's method: no square root, no division. For numbers from 1e-240 to
+    /// 1e240; zero gives something finite.
     #[inline(always)]
     pub fn inverse_root(self) -> Self {
-        let guess = S::one() / self.high.sqrt();
+        let rough = self.high.rough_inverse_root();
+        // The square of its 17 bits is exact, so the guess is off by no more than its rounding.
+        let off = self.high.multiply_subtract_from(rough * rough, S::one());
+        let series = off.multiply_add(S::splat(0.3125), S::splat(0.375));
+        let series = off.multiply_add(series, S::splat(0.5));
+        let guess = (rough * off).multiply_add(series, rough);
         let square = Self::product(guess, guess);
         // How far the guess is off: 1 - self·guess², which is small, so that its rounding is that of the 106th bit.
         let off = self.high.multiply_subtract_from(square.high, S::one());
@@ -78,13 +95,5 @@ impl<S: Real> FusedDouble<S> {
             self.low.multiply_subtract_from(square.high, self.high.multiply_subtract_from(square.low, off));
         let series = S::splat(0.375).multiply_add(off, S::splat(0.5));
         Self { high: guess, low: (guess * off) * series }
-    }
-
-    /// Adds a term to a running sum. What the sum leaves out is gathered beside it and only joined at the end.
-    #[inline(always)]
-    pub fn gather(&mut self, term: Self) {
-        let (high, error) = two_sum(self.high, term.high);
-        self.high = high;
-        self.low += error + term.low;
     }
 }

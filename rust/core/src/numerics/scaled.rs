@@ -49,6 +49,10 @@ impl Scaled {
     /// The sum.
     #[inline]
     pub fn plus(self, other: Self) -> Self {
+        let (high, start) = (other.value.to_f64(), self.value.to_f64() == 0.0);
+        if start && high != 0.0 && high.is_finite() && self.exponent == other.exponent {
+            return other; // As the sum would be, without the wait for it.
+        }
         let value = self.value + other.value;
         if self.exponent == other.exponent && value.is_finite() {
             return Self { value, exponent: self.exponent };

@@ -1,12 +1,14 @@
 //! The potential energy and the virial of gravity: the pairs of one state, summed to about thirty digits.
 //!
-//! Pairs go eight at a time, a body beside eight that follow it. A pair whose numbers would leave the range (closer
-//! than 2^-450 of the extent, say) is summed by itself, in units of its own.
+//! Pairs go eight at a time: eight bodies beside one of those that follow, and among themselves turned as on a ring, by
+//! one lane to four. A pair whose numbers would leave the range (closer than 2^-450 of the extent, say) is summed by
+//! itself, in units of its own.
 
 use crate::error::Result;
 use crate::forces::bodies::{Exponents, Of, PreciseBodies, joined};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::fused_double::FusedDouble;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::{exponent, power_of_two, scale};
 use crate::numerics::real::{Mask, Real};
@@ -78,15 +80,16 @@ pub fn potential_and_virial(
     Ok((potential, if softening == 0.0 { potential } else { virial.by(unit) }))
 }
 
-/// Rows of about as many pairs.
+/// Bodies of about as many pairs, whole rows of eight.
 fn blocks(massive: usize) -> Vec<Range<usize>> {
     let mut blocks = Vec::new();
     let (mut first, mut pairs) = (0, 0);
-    for row in 0..massive {
-        pairs += massive - 1 - row;
-        if pairs >= PAIRS_PER_BLOCK || row + 1 == massive {
-            blocks.push(first..row + 1);
-            (first, pairs) = (row + 1, 0);
+    for row in (0..massive).step_by(WIDTH) {
+        let end = (row + WIDTH).min(massive);
+        pairs += WIDTH * (massive - row);
+        if pairs >= PAIRS_PER_BLOCK || end == massive {
+            blocks.push(first..end);
+            (first, pairs) = (end, 0);
         }
     }
     blocks
@@ -104,58 +107,126 @@ tiered! {
     fn row_sums[const SOFT: bool][SOFT](bodies: &PreciseBodies, rows: Range<usize>, softening: f64) -> Sums = rows_of_pairs;
 }
 
+/// Lane `i` of a row beside lane `i + k`, for each turn `k`.
+const TURNS: [[i64; WIDTH]; WIDTH / 2] =
+    [[1, 2, 3, 4, 5, 6, 7, 0], [2, 3, 4, 5, 6, 7, 0, 1], [3, 4, 5, 6, 7, 0, 1, 2], [4, 5, 6, 7, 0, 1, 2, 3]];
+
+/// Masses and places of eight bodies.
+#[derive(Clone, Copy)]
+struct Eight<V> {
+    mass: V,
+    place: [FusedDouble<V>; 3],
+}
+
+impl<V: Vector8> Eight<V> {
+    /// Those from one on.
+    #[inline(always)]
+    fn row(bodies: &PreciseBodies, first: usize) -> Self {
+        let mut place = [FusedDouble::zero(); 3];
+        for c in 0..3 {
+            place[c] = bodies.coordinates_from(Of::Position, c, first);
+        }
+        Self { mass: bodies.masses_from(first), place }
+    }
+
+    /// One in all lanes.
+    #[inline(always)]
+    fn one(bodies: &PreciseBodies, body: usize) -> Self {
+        let mut place = [FusedDouble::zero(); 3];
+        for c in 0..3 {
+            place[c] = bodies.coordinate(Of::Position, c, body);
+        }
+        Self { mass: V::splat(bodies.mass()[body]), place }
+    }
+
+    #[inline(always)]
+    fn turned(self, turn: &[i64; WIDTH]) -> Self {
+        let mut place = self.place;
+        for c in 0..3 {
+            place[c] = FusedDouble { high: place[c].high.permute(turn), low: place[c].low.permute(turn) };
+        }
+        Self { mass: self.mass.permute(turn), place }
+    }
+}
+
+/// Running sums.
+struct Running<V> {
+    depth: FusedDouble<V>,
+    work: FusedDouble<V>,
+    apart: Option<[Scaled; 2]>,
+}
+
+impl<V: Vector8 + InverseCube> Running<V> {
+    /// Adds the pairs of the lanes that are wanted; the bodies are those from `first` on, beside those that `second` says:
+    /// one, and how far after it.
+    #[inline(always)]
+    fn add<const SOFT: bool>(
+        &mut self,
+        bodies: &PreciseBodies,
+        (from, to): (&Eight<V>, &Eight<V>),
+        (wanted, first, second): (Bits, usize, (usize, &[i64; WIDTH])),
+        softening: f64,
+    ) {
+        let zero = V::zero();
+        let product = FusedDouble::product(from.mass, to.mass);
+        let mut d = [FusedDouble::<V>::zero(); 3];
+        for c in 0..3 {
+            d[c] = to.place[c].minus(from.place[c]);
+        }
+        let r2 = FusedDouble::sum_of_squares(d);
+        let soft = FusedDouble::product(V::splat(softening), V::splat(softening));
+        let soft2 = if SOFT { r2.plus(soft) } else { r2 };
+        let heavy = wanted.and(zero.less(from.mass)).and(zero.less(to.mass));
+        let (least, most) = (V::splat(power_of_two(-RANGE)), V::splat(power_of_two(RANGE)));
+        let fine = least.less(soft2.high).and(soft2.high.less(most)).and(least.less(product.high));
+        let inverse = soft2.inverse_root();
+        let term = product.times(inverse);
+        // Also what is not a number, of two massless bodies in one place or after the last, is taken out.
+        let good = heavy.and(fine);
+        self.depth.gather(only(good, term));
+        if SOFT {
+            self.work.gather(only(good, term.times(r2.times(inverse.squared()))));
+        }
+        let odd = heavy.and(fine.not());
+        if odd.any() {
+            for lane in 0..WIDTH {
+                if odd.lane(lane) {
+                    let pair = (first + lane, second.0 + second.1[lane] as usize);
+                    pair_apart(bodies, pair, softening, self.apart.get_or_insert([Scaled::ZERO; 2]));
+                }
+            }
+        }
+    }
+}
+
 #[inline(always)]
-fn rows_of_pairs<V: Vector8, const SOFT: bool>(
+fn rows_of_pairs<V: Vector8 + InverseCube, const SOFT: bool>(
     bodies: &PreciseBodies,
     rows: Range<usize>,
     softening: f64,
 ) -> Sums {
     let massive = bodies.massive();
-    let soft = FusedDouble::product(V::splat(softening), V::splat(softening));
-    let (least, most) = (V::splat(power_of_two(-RANGE)), V::splat(power_of_two(RANGE)));
-    let mut depth = FusedDouble::<V>::zero();
-    let mut work = FusedDouble::<V>::zero();
-    let mut apart = None;
-    for i in rows {
-        if bodies.mass()[i] == 0.0 {
-            continue;
+    let zero = FusedDouble::<V>::zero();
+    let mut sums = Running { depth: zero, work: zero, apart: None };
+    for first in rows.step_by(WIDTH) {
+        let row = Eight::<V>::row(bodies, first);
+        let lanes = (massive - first).min(WIDTH);
+        for (index, turn) in TURNS.iter().enumerate().take(lanes.saturating_sub(1)) {
+            // Half a turn meets each pair twice.
+            let wanted = Bits(if index + 1 == TURNS.len() { 0x0f } else { 0xff });
+            let pairs = (wanted, first, (first, turn));
+            sums.add::<SOFT>(bodies, (&row, &row.turned(turn)), pairs, softening);
         }
-        let mass = V::splat(bodies.mass()[i]);
-        let mut j = i + 1;
-        while j < massive {
-            let masses = bodies.masses_from::<V>(j);
-            let product = FusedDouble::product(mass, masses);
-            let mut d = [FusedDouble::<V>::zero(); 3];
-            for c in 0..3 {
-                let (to, from) =
-                    (bodies.coordinates_from::<V>(Of::Position, c, j), bodies.coordinate(Of::Position, c, i));
-                d[c] = to.minus(from);
+        for body in first + WIDTH..massive {
+            if bodies.mass()[body] != 0.0 {
+                let one = Eight::one(bodies, body);
+                let pairs = (Bits(0xff), first, (body, &[0; WIDTH]));
+                sums.add::<SOFT>(bodies, (&row, &one), pairs, softening);
             }
-            let r2 = FusedDouble::sum_of_squares(d);
-            let soft2 = if SOFT { r2.plus(soft) } else { r2 };
-            let heavy = V::zero().less(masses);
-            let fine = least.less(soft2.high).and(soft2.high.less(most)).and(least.less(product.high));
-            let inverse = soft2.inverse_root();
-            let term = product.times(inverse);
-            // Also what is not a number, of two massless bodies in one place or after the last, is taken out.
-            let good = heavy.and(fine);
-            depth.gather(only(good, term));
-            if SOFT {
-                work.gather(only(good, term.times(r2.times(inverse.squared()))));
-            }
-            let odd = heavy.and(fine.not());
-            if odd.any() {
-                for lane in 0..WIDTH {
-                    if odd.lane(lane) {
-                        pair_apart(bodies, (i, j + lane), softening, apart.get_or_insert([Scaled::ZERO; 2]));
-                    }
-                }
-            }
-            j += WIDTH;
         }
     }
     let stored = |sum: FusedDouble<V>| FusedDouble { high: sum.high.store(), low: sum.low.store() };
-    Sums { lanes: [stored(depth), stored(work)], apart }
+    Sums { lanes: [stored(sums.depth), stored(sums.work)], apart: sums.apart }
 }
 
 #[inline(always)]
