@@ -14,6 +14,19 @@ class _Scene(TypedDict):
     velocity: NDArray[np.float64]
     forces: list[dict[str, Any]]
     t0: float
+    continuation: _Continuation | None
+
+class _Continuation(TypedDict):
+    """How a run with fixed steps came to a scene: what it began with, and what it held at a node, block by block."""
+
+    form: int
+    method: str
+    dt: float
+    t0: float
+    node: int
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    held: NDArray[np.float64]
 
 class _Request(_Scene):
     """A scene and what is asked of it."""

@@ -57,6 +57,17 @@ _EVENTS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "events/velocity": ("f8", ("K", "N", 3)),
     "events/member": ("i8", ("K",)),
 }
+# Of a run that left something behind for another, and of one that went on with what another left: K blocks, S places.
+_HELD: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "final/held": ("f8", ("B", "blocks", "places", 3)),
+    "final/node": ("i8", ("B",)),
+}
+_START: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "final/start_held": ("f8", ("B", "start blocks", "start places", 3)),
+    "final/start_position": ("f8", ("B", "N", 3)),
+    "final/start_velocity": ("f8", ("B", "N", 3)),
+}
+_SHARED: dict[str, type | tuple[type, ...]] = {"form": int, "method": str, "dt": (int, float), "t0": (int, float)}
 # The keys that files of version 1 have always had; those of a later version are not asked for.
 _HEADER: dict[str, type | tuple[type, ...]] = {
     "ensemble": bool,
@@ -123,9 +134,7 @@ def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
             f"the file has format version {header['version']}, this visviva reads up to {VERSION}; use a newer visviva"
         )
     _check_header(header)
-    # Files of before definitions were kept have none.
-    looked_for = len(header["events"]) if "events" in header else np.inf
-    _check_arrays(arrays, header["ensemble"], looked_for)
+    _check_arrays(arrays, header)
     return header, arrays
 
 
@@ -172,23 +181,33 @@ def _check_header(header: dict[str, Any]) -> None:
             raise Damaged("the header of the file has an event without a kind")
     _check_keys("account of what the run cost", header["stats"], _STATS)
     _check_keys("plan", header["plan"], _PLAN)
+    for name, own in (("continuation", {"goes_on": bool}), ("start_continuation", {"node": int})):
+        if name in header:
+            _check_keys("header", header, {name: dict})
+            _check_keys("header", header[name], {**_SHARED, **own})
+    if header.get("continuation", {}).get("goes_on") and "start_continuation" not in header:
+        raise Damaged("the file has a run that goes on with another, and not what it goes on with")
     for name, length in (("rows", 3), ("skipped", 2)):
         for row in header["plan"][name]:
             if not (isinstance(row, list) and len(row) == length and all(isinstance(word, str) for word in row)):
                 raise Damaged(f"the plan of the file has a line in {name!r} that is not {length} texts")
 
 
-def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool, looked_for: float) -> None:
+def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> None:
     lengths: dict[str, int] = {}
-    for name, (dtype, axes) in _ARRAYS.items():
-        if name not in arrays:
-            raise Damaged(f"the file lacks the array {name!r}")
-        _check_array(name, arrays[name], dtype, axes, lengths)
+    _check_all(_ARRAYS, arrays, lengths)
+    if "continuation" in header:
+        _check_all(_HELD, arrays, lengths)
+        if (arrays["final/node"] < 0).any():
+            raise Damaged("the file has a node before the first")
+    if "start_continuation" in header:
+        _check_all(_START, arrays, lengths)
+        if header["start_continuation"]["node"] < 0:
+            raise Damaged("the file has a node before the first")
     if any(name.startswith("events/") for name in arrays):
-        for name, (dtype, axes) in _EVENTS.items():
-            if name not in arrays:
-                raise Damaged(f"the file lacks the array {name!r}")
-            _check_array(name, arrays[name], dtype, axes, lengths)
+        _check_all(_EVENTS, arrays, lengths)
+        # Files of before definitions were kept have none.
+        looked_for = len(header["events"]) if "events" in header else np.inf
         copies = arrays["events/member"]
         if ((copies < 0) | (copies >= lengths["B"])).any():
             raise Damaged("the file has an event of a copy that there is not")
@@ -205,11 +224,20 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], ensemble: bool, looked_for: f
             if group not in GROUPS or not member:
                 raise Damaged(f"the file has an array {name!r} that this version does not know")
             _check_array(name, array, array.dtype.str, ("B", *array.shape[1:]), lengths)
-    if not ensemble and lengths["B"] != 1:
+    if not header["ensemble"] and lengths["B"] != 1:
         raise Damaged(f"the file has {lengths['B']} copies of what is no ensemble")
     known = {int(status) for status in Status}
     if not known.issuperset(arrays["status"].tolist()):
         raise Damaged("the file has a status that this version does not know")
+
+
+def _check_all(
+    expected: dict[str, tuple[str, tuple[str | int, ...]]], arrays: dict[str, NDArray[Any]], lengths: dict[str, int]
+) -> None:
+    for name, (dtype, axes) in expected.items():
+        if name not in arrays:
+            raise Damaged(f"the file lacks the array {name!r}")
+        _check_array(name, arrays[name], dtype, axes, lengths)
 
 
 def _check_array(

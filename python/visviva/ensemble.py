@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any, overload
 import numpy as np
 
 from visviva._arrays import float_array, mass_array
+from visviva._continuation import attached, left_behind, of_copies
 from visviva._keywords import frozen, known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -99,6 +100,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             "velocity": full["velocity"],
             "forces": scene._keywords["forces"],
             "t0": scene.t0,
+            "continuation": None,
         }
         for name, value in {"scene": scene, **full, "_keywords": prepared}.items():
             object.__setattr__(self, name, value)
@@ -113,11 +115,13 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
         chosen = _chosen(index, len(self))
         mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
+        continuation = of_copies(self._keywords["continuation"], _rows(chosen))
         if isinstance(chosen, slice):
-            return EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity)
+            return attached(EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity), continuation)
         from visviva.scene import Scene
 
-        return Scene(Particles(mass, position, velocity), *self.scene.forces, t0=self.scene.t0)
+        scene = Scene(Particles(mass, position, velocity), *self.scene.forces, t0=self.scene.t0)
+        return attached(scene, continuation)
 
     if not TYPE_CHECKING:
 
@@ -136,7 +140,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self.scene, self.position, self.velocity, self.mass)
+        return _rebuild, (self.scene, self.position, self.velocity, self.mass, self._keywords["continuation"])
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)
@@ -187,7 +191,7 @@ class EnsembleTrajectory(Recorded):
     def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
     def __getitem__(self, index: int | slice) -> Trajectory | EnsembleTrajectory:
         chosen = _chosen(index, len(self))
-        rows = chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
+        rows = _rows(chosen)
         result = dict(self._result)
         for group in ("columns", "final", "per_trajectory"):
             result[group] = {name: values[rows] for name, values in self._result[group].items()}
@@ -237,7 +241,7 @@ class EnsembleTrajectory(Recorded):
 
     @property
     def final(self) -> EnsembleScene:
-        """The copies at the last time, ready to run on.
+        """The copies at the last time, ready to run on, with the bits of one long run as `Trajectory.final`.
 
         Raises
         ------
@@ -251,7 +255,8 @@ class EnsembleTrajectory(Recorded):
             )
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
-        return EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
+        copies = EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
+        return attached(copies, left_behind(self.ensemble._keywords, self._result))
 
 
 def _chosen(index: Any, count: int) -> int | slice:
@@ -267,6 +272,10 @@ def _chosen(index: Any, count: int) -> int | slice:
     return number % count
 
 
+def _rows(chosen: int | slice) -> slice:
+    return chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
+
+
 def _of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
     """The lines of some copies, which are numbered anew."""
     lines = [np.flatnonzero(events["member"] == copy) for copy in copies]
@@ -277,6 +286,10 @@ def _of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDAr
 
 
 def _rebuild(
-    scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64]
+    scene: Scene,
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    continuation: _core._Continuation | None = None,
 ) -> EnsembleScene:
-    return EnsembleScene(scene, position=position, velocity=velocity, mass=mass)
+    return attached(EnsembleScene(scene, position=position, velocity=velocity, mass=mass), continuation)

@@ -2,8 +2,9 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header. Every
-later version of visviva must load it: `tests/reference` keeps one.
+``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header. What a run
+left behind for another to go on with is in ``final/held`` and ``final/node``; what the run itself went on with in
+``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
@@ -19,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import visviva
+from visviva._continuation import SHARED, attached
 from visviva._keywords import known_keywords
 from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
@@ -68,10 +70,16 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     }
     if "looked_for" in result:
         header["events"] = result["looked_for"]
+    if "continuation" in result:
+        header["continuation"] = result["continuation"]
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
     arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
     arrays |= {f"events/{name}": array for name, array in result.get("events", {}).items()}
+    if start["continuation"] is not None:
+        before = dict(start["continuation"])
+        header["start_continuation"] = {name: before.pop(name) for name in (*SHARED, "node")}
+        arrays |= {f"final/start_{name}": array for name, array in before.items()}
     text = json.dumps(header, default=_plain).encode()
     # A link stays a link: what it points to is written.
     target = Path(os.path.realpath(name)) if name else Path()
@@ -138,8 +146,13 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
 def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | EnsembleTrajectory:
     result: dict[str, Any] = {group: {} for group in GROUPS}
     result |= {"t": arrays["t"], "status": arrays["status"], "stats": header["stats"], "plan": header["plan"]}
+    if "continuation" in header:
+        result["continuation"] = header["continuation"]
     if any(name.startswith("events/") for name in arrays):
         result |= {"events": {}, "looked_for": header.get("events", [])}
+    before: Any = header.get("start_continuation")
+    if before is not None:
+        before |= {name: arrays.pop(f"final/start_{name}") for name in ("position", "velocity", "held")}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if member:
@@ -150,9 +163,9 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
         copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
-        run = EnsembleTrajectory(copies, result)
+        run = EnsembleTrajectory(attached(copies, before), result)
     else:
-        run = Trajectory(scene, result)
+        run = Trajectory(attached(scene, before), result)
     _ = run.stats, run.plan, run.status, "events" in result and run.events
     return run
 

@@ -15,6 +15,7 @@ import numpy as np
 from visviva import _core
 from visviva import forces as force_classes
 from visviva._arrays import float_array, in_range, number
+from visviva._continuation import attached
 from visviva._keywords import known_keywords
 from visviva._text import article
 from visviva.errors import InvalidInput
@@ -98,6 +99,7 @@ class Scene(Runnable[Trajectory]):
             "velocity": particles.velocity[None],
             "forces": [force._to_core() for force in forces],
             "t0": t0,
+            "continuation": None,
         }
         object.__setattr__(self, "_keywords", prepared)
 
@@ -114,7 +116,7 @@ class Scene(Runnable[Trajectory]):
         return hash((self.particles, self.forces, self.t0))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self.particles, self.forces, self.t0)
+        return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"])
 
     def _finished(self, result: dict[str, Any]) -> Trajectory:
         return Trajectory(self, result)
@@ -319,5 +321,7 @@ def _flat(part: object) -> Iterable[object]:
     return part if isinstance(part, list | tuple) else (part,)
 
 
-def _rebuild(particles: Particles, forces: tuple[Force, ...], t0: float) -> Scene:
-    return Scene(particles, *forces, t0=t0)
+def _rebuild(
+    particles: Particles, forces: tuple[Force, ...], t0: float, continuation: _core._Continuation | None = None
+) -> Scene:
+    return attached(Scene(particles, *forces, t0=t0), continuation)

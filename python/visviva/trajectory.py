@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva._continuation import attached, left_behind
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -107,9 +108,24 @@ class Trajectory(Recorded):
 
     @property
     def final(self) -> Scene:
-        """The scene at the last state that was reached."""
+        """The scene at the last state that was reached, ready to run on.
+
+        After fixed steps that ended on a node it keeps, out of sight, what the method holds there: the digits beyond
+        float64 and the past of a multistep method. Run on with the same method and `dt`, it goes on to the bits of one
+        long run; ``plan`` says so. Anything made from it (``rescaled``, ``with_state``, a `Scene` of its parts) is a
+        new scene, and so is it to any other method or step. More than 2^25 numbers, of huge ensembles, are not kept.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene, how = vv.problems.figure_eight().scene, {"method": "stormer13", "dt": 0.01}
+        >>> in_two = scene.run(t=1.0, **how).final.run(t=2.0, **how)
+        >>> bool((in_two.position[-1] == scene.run(t=2.0, **how).position[-1]).all())
+        True
+        """
         last = self._result["final"]
-        return self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+        scene = self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+        return attached(scene, left_behind(self.scene._keywords, self._result))
 
     def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
         """Angular momentum about a fixed point or about the moving centre of mass, shape (T, 3).

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 import tempfile
 from dataclasses import replace
 from pathlib import Path
@@ -187,6 +188,79 @@ def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
     if not np.isfinite(on).all():
         return
     _same(outcome(result.final, on, case.how), outcome(loaded.final, on, case.how), "run on after loading")
+
+
+def _legs(start: Any, t: tuple[float, ...], cuts: list[float], how: dict[str, Any], member: int | None) -> list[Any]:
+    """The run in legs that end at the cuts, the last at the end; a failure ends them."""
+    legs: list[Any] = []
+    sign = -1.0 if t[0] > t[-1] else 1.0
+    for index, cut in enumerate([*cuts, t[-1]]):
+        before = cuts[index - 1] if index else None
+        # Every other leg reads its own beginning, too.
+        times = [
+            time
+            for time in t
+            if (time - cut) * sign <= 0.0
+            and (before is None or (time - before) * sign > 0.0 or (index % 2 == 0 and time == before))
+        ]
+        if not times:
+            continue
+        result, ended = execute(start, tuple(times), {**how, "threads": 1 + index % 2})
+        if member is not None and isinstance(start, vv.EnsembleScene):
+            result = result[member]
+            ended = ended or ("" if result.status == 0 else result.status.name)
+        legs.append(result)
+        if ended:
+            break
+        start = result.final
+        if index % 2:
+            start = pickle.loads(pickle.dumps(start))
+    return legs
+
+
+@law
+def a_run_goes_on_with_the_bits_of_the_whole(recipe: Recipe) -> None:
+    """From a node, with the same method and step: in any number of legs, an ensemble or a member of one alone."""
+    case = recipe.case()
+    step = case.how.get("dt")
+    if step is None:
+        raise Refused("no fixed step")
+    scene, sign = case.members()[0], -1.0 if recipe.backward else 1.0
+    rng = np.random.default_rng(recipe.seed + 3)
+    # The end of a ragged recipe is no node.
+    nodes = sorted({int(node) for node in rng.integers(1, recipe.steps + 1, 1 + recipe.seed % 3)})
+    ends = (scene.t0 + sign * step * node for node in nodes)
+    cuts = [end for end in ends if abs(end - scene.t0) <= abs(case.t[-1] - scene.t0)]
+    if not cuts:
+        raise Refused("no node before the end")
+    t = tuple(sorted({*case.t, *cuts}, reverse=recipe.backward))
+    whole, ended = execute(case.start, t, case.how)
+    if whole is None:
+        raise Refused(ended)
+    failed = not case.alone and bool(whole.status.any())
+    members: list[int | None] = [None]
+    if not case.alone:
+        count = len(whole)
+        members = [*sorted({0, count // 2, count - 1}), *([] if failed else [None])]
+    for member in members:
+        one = whole if member is None else whole[member]
+        legs = _legs(case.start, t, cuts, case.how, member)
+        for name in whole.recorded:
+            axis = 1 if member is None and not case.alone else 0
+            read = np.concatenate([leg.t for leg in legs])
+            rows = np.concatenate([getattr(leg, name) for leg in legs], axis=axis)
+            expected = np.take(getattr(one, name), np.searchsorted(sign * one.t, sign * read), axis=axis)
+            assert rows.tobytes() == expected.tobytes(), f"member {member}, cut at {nodes}: other {name}"
+        if not ended and not failed:
+            assert set(one.t) <= set(np.concatenate([leg.t for leg in legs])), f"cut at {nodes}: not all was run"
+            for leg in legs[1:]:
+                assert any(row[0] == "start" for row in leg.plan.rows), f"cut at {nodes}: a new scene"
+    if not ended and not failed and recipe.seed % 4 == 0:
+        end = legs[0].final
+        rest = t[t.index(cuts[0]) :]
+        here = outcome(end, rest, case.how)
+        for tier in TIERS:
+            _same(here, worker(tier).outcome(end, rest, case.how), f"from node {nodes[0]} on tier {tier}")
 
 
 @law

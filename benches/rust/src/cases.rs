@@ -45,7 +45,7 @@ pub fn cluster(particles: usize, solar: bool) -> Bodies {
         position[0] = [0.0; 3];
     }
     let forces = gravity(if solar { 0.0 } else { 0.01 });
-    Scene { copies: 1, particles, mass, position, velocity, forces, t0: 0.0 }
+    Scene { copies: 1, particles, mass, position, velocity, forces, t0: 0.0, continuation: None }
 }
 
 /// As [`cluster`], softened so that every method takes it easily, with the mass in the first `massive` bodies.
@@ -95,6 +95,7 @@ pub fn figure_eights(copies: usize) -> Bodies {
         velocity: [v, v, scaled(v, -2.0)].repeat(copies),
         forces: gravity(0.0),
         t0: 0.0,
+        continuation: None,
     }
 }
 

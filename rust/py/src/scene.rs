@@ -20,14 +20,13 @@ use visviva_core::conservation::columns::{COLUMNS, State, column};
 use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
-use visviva_core::scene::plan::Plan;
-use visviva_core::scene::run::run as run_scene;
+use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
 /// Plans a run without running it.
 #[pyfunction]
 pub(crate) fn plan<'py>(py: Python<'py>, asked: Asked<'py>) -> PyResult<Bound<'py, PyDict>> {
     let (scene, request, _) = asked.prepared(None)?;
-    let plan = compute(py, 0, None, |_| Plan::new(&scene, &request))?.whole(py)?;
+    let plan = compute(py, 0, None, |_| plan_scene(&scene, &request))?.whole(py)?;
     plan_dict(py, &plan)
 }
 

@@ -100,16 +100,21 @@ pub struct Taken<'a, S: Element> {
 /// How a run ended.
 #[derive(Debug)]
 pub struct Ended {
+    /// The last node.
+    pub node: u64,
     /// Steps taken.
     pub steps: u64,
+    /// Whether all that the stepper holds belongs to that node: not if a step was broken off.
+    pub stands: bool,
     /// `Ok` at the last output time, or where the most steps were taken or the recorder gave up; else what ended it.
     pub outcome: Result<()>,
 }
 
-/// Advances `state` through the places of the outputs, in order, and hands each state to the recorder; stops short at
-/// `max_steps`.
+/// Advances `state`, with the stepper at the node `from`, through the places of the outputs, in order, and hands each
+/// state to the recorder; stops short after `max_steps`.
 pub fn run<S: Element>(
     stepper: &mut dyn Stepper<S>,
+    from: u64,
     max_steps: u64,
     state: &mut State<S>,
     system: &mut dyn System<S>,
@@ -117,15 +122,16 @@ pub fn run<S: Element>(
     ticker: &mut Ticker<'_>,
     recorder: &mut impl Recorder<S>,
 ) -> Ended {
-    let mut taken = 0;
+    let mut node = from;
+    let mut stands = true;
+    let last = from.saturating_add(max_steps);
     let outcome = (|| {
-        stepper.restart();
         let mut between = None;
         let watches = recorder.watches();
         let mut before = system.stops_midway().then(|| state.clone());
         for (index, place) in places.enumerate() {
-            while taken < place.node {
-                if taken == max_steps {
+            while node < place.node {
+                if node == last {
                     stepper.settle(state);
                     return Ok(());
                 }
@@ -134,11 +140,12 @@ pub fn run<S: Element>(
                     before.copy_from(state);
                 }
                 let at_most =
-                    (place.node.min(max_steps) - taken).min(PROGRESS_STEPS - taken % PROGRESS_STEPS);
+                    (place.node.min(last) - node).min(PROGRESS_STEPS - (node - from) % PROGRESS_STEPS);
                 let at_most = if watches.is_some() { 1 } else { at_most };
-                taken += match stepper.step(taken, at_most, state, system, ticker) {
+                node += match stepper.step(node, at_most, state, system, ticker) {
                     Ok(steps) => steps,
                     Err(error) => {
+                        stands = false;
                         // Some methods change the state in place: half a step is taken back.
                         if let Some(before) = &before {
                             state.copy_from(before);
@@ -146,10 +153,10 @@ pub fn run<S: Element>(
                         return Err(error);
                     }
                 };
-                if taken % PROGRESS_STEPS == 0 {
+                if (node - from) % PROGRESS_STEPS == 0 {
                     ticker.advance(PROGRESS_STEPS);
                 }
-                if taken % WATCH_STEPS == 0 {
+                if (node - from) % WATCH_STEPS == 0 {
                     stepper.settle(state);
                     if !recorder.goes_on(state) {
                         return Ok(());
@@ -157,8 +164,7 @@ pub fn run<S: Element>(
                 }
                 if watches.is_some() {
                     stepper.settle(state);
-                    let step =
-                        Taken { node: taken, present: state, past: None, stepper: &mut *stepper, system };
+                    let step = Taken { node, present: state, past: None, stepper: &mut *stepper, system };
                     if !recorder.look(step, ticker)? {
                         return Ok(());
                     }
@@ -174,19 +180,19 @@ pub fn run<S: Element>(
                 Some(past) => {
                     let between = between.get_or_insert_with(|| state.clone());
                     between.copy_from(state);
-                    stepper.between(taken, past, between, system, ticker)?;
+                    stepper.between(node, past, between, system, ticker)?;
                     &*between
                 }
             };
             if let (true, Some(past)) = (watches == Some(index), place.past) {
                 let past = Some((past, reached));
-                let step = Taken { node: taken, present: state, past, stepper: &mut *stepper, system };
+                let step = Taken { node, present: state, past, stepper: &mut *stepper, system };
                 let _: bool = recorder.look(step, ticker)?;
             }
             recorder.record(index, reached, ticker)?;
         }
-        ticker.advance(taken % PROGRESS_STEPS);
+        ticker.advance((node - from) % PROGRESS_STEPS);
         Ok(())
     })();
-    Ended { steps: taken, outcome }
+    Ended { node, steps: node - from, stands, outcome }
 }

@@ -140,6 +140,19 @@ impl Method {
         matches!(self.scheme, Scheme::Embedded(_))
     }
 
+    /// The most blocks, each of as many numbers as an evaluation gives, that its steps hold at a node besides the state
+    /// ([`Stepper::memory`](stepper::Stepper::memory)).
+    pub const fn held(&self) -> usize {
+        match self.scheme {
+            Scheme::RungeKutta(_) | Scheme::Embedded(_) | Scheme::Boris(_) => 0,
+            // The acceleration of the last kick.
+            Scheme::Splitting(_) => 1,
+            // Beside second differences: three blocks of accelerations, a compensated difference of coordinates, and
+            // compensated coordinates of a kernel's own.
+            Scheme::Multistep(Multistep { second_differences, .. }) => second_differences.len() + 7,
+        }
+    }
+
     /// Whether the method can take systems of this form that look at these things.
     pub const fn serves(&self, form: Form, needs: Needs) -> bool {
         match self.scheme {

@@ -93,6 +93,11 @@ impl<S: Element> MultistepStep<S> {
         &self.weights
     }
 
+    /// Steps since nodes are made by the method itself, at a node.
+    pub fn steps_since_start(&self, node: u64) -> Option<u64> {
+        node.checked_sub(self.nodes_to_start as u64)
+    }
+
     /// What is held of the present node and those before it.
     pub fn past(&self) -> &Past<S> {
         &self.past
@@ -159,6 +164,13 @@ impl<S: Element> Stepper<S> for MultistepStep<S> {
             v_compensation.fill(S::zero());
             self.settled = true;
         }
+    }
+
+    fn memory(&mut self, node: u64, each: &mut dyn FnMut(&mut [S])) {
+        self.to_start =
+            self.nodes_to_start - self.nodes_to_start.min(usize::try_from(node).unwrap_or(usize::MAX));
+        self.past.memory(node, each);
+        self.settled = true;
     }
 
     fn between(

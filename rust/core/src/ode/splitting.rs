@@ -135,6 +135,13 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         Ok(steps)
     }
 
+    fn memory(&mut self, _: u64, each: &mut dyn FnMut(&mut [S])) {
+        self.force.fresh = !self.force.last_idle;
+        if self.force.fresh {
+            each(&mut self.force.acceleration);
+        }
+    }
+
     fn between(
         &mut self,
         node: u64,

@@ -38,6 +38,13 @@ pub trait Stepper<S: Element>: Send {
         let _ = state;
     }
 
+    /// Stands at `node`, a settled one, and goes over what it holds there besides the state: at most
+    /// [`held`](Method::held) blocks, which lie as coordinates do. Read, they are the node's; overwritten with those of
+    /// the same node of another run, of a stepper alike, the steps go on as there.
+    fn memory(&mut self, node: u64, each: &mut dyn FnMut(&mut [S])) {
+        let _ = (node, each);
+    }
+
     /// Advances a copy of the settled state at `node` by a step `past` instead, leaving the sequence as it is.
     ///
     /// # Errors
@@ -136,4 +143,74 @@ pub fn stepper<S: Element>(
             return Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)));
         }
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::ode::system::{Form, Needs};
+    use crate::parallel::Control;
+    use crate::registry::METHODS;
+
+    /// A driven pendulum: the time of an acceleration is seen in its bits.
+    struct Pendulum;
+    impl System<f64> for Pendulum {
+        fn form(&self) -> Form {
+            Form::SecondOrder(1)
+        }
+        fn needs(&self) -> Needs {
+            Needs { time: true, ..Needs::default() }
+        }
+        fn evaluations(&self) -> u64 {
+            0
+        }
+        fn acceleration(
+            &mut self,
+            t: f64,
+            q: &[f64],
+            _: &[f64],
+            a: &mut [f64],
+            _: &mut Ticker<'_>,
+        ) -> Result<()> {
+            a[0] = t.cos() - q[0].sin();
+            Ok(())
+        }
+    }
+
+    #[test]
+    fn what_is_held_at_a_node_is_all_that_the_next_steps_need() {
+        let control = Control::default();
+        let mut ticker = Ticker::quiet(&control);
+        let start = State::new(&[0.3], &[1.1]);
+        for method in METHODS.iter().filter(|method| !method.adaptive()) {
+            let new = || stepper(method, 0.07, &Pendulum, &start).unwrap();
+            for held_at in [1, 5, 12, 13, 40] {
+                let (mut whole, mut state) = (new(), start.clone());
+                let mut blocks: Vec<Vec<f64>> = Vec::new();
+                let (mut other, mut resumed) = (new(), start.clone());
+                for node in 0..60 {
+                    if node == held_at {
+                        whole.settle(&mut state);
+                        whole.memory(node, &mut |block| blocks.push(block.to_vec()));
+                        assert!(blocks.len() <= method.held(), "{}", method.name);
+                        resumed.copy_from(&state);
+                        let mut held = blocks.iter();
+                        other.memory(node, &mut |block| block.copy_from_slice(held.next().unwrap()));
+                        assert!(held.next().is_none());
+                    }
+                    assert_eq!(whole.step(node, 1, &mut state, &mut Pendulum, &mut ticker).unwrap(), 1);
+                    if node >= held_at {
+                        let _ = other.step(node, 1, &mut resumed, &mut Pendulum, &mut ticker).unwrap();
+                    }
+                }
+                whole.settle(&mut state);
+                other.settle(&mut resumed);
+                let bits = |of: &State<f64>| {
+                    let (y, rest) = of.all();
+                    y.iter().chain(rest).map(|x| x.to_bits()).collect::<Vec<_>>()
+                };
+                assert_eq!(bits(&state), bits(&resumed), "{} from node {held_at}", method.name);
+            }
+        }
+    }
 }

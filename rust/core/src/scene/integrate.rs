@@ -6,6 +6,7 @@
 mod adaptive;
 mod events;
 mod fixed;
+mod held;
 mod report;
 
 pub use events::Found;
@@ -13,10 +14,12 @@ pub use report::{Counts, Ending, Report};
 
 use super::Scene;
 use super::columns::Writer;
+use super::continuation::Continuation;
 use super::plan::Plan;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::numerics::lanes::WIDTH;
+use crate::numerics::power_of_two::scale;
 use crate::ode::Scheme;
 use crate::parallel::{Ticker, for_chunks};
 
@@ -41,6 +44,10 @@ pub struct Job<'a> {
     pub max_steps: u64,
     /// Whether the events of the plan are looked for.
     pub watches: bool,
+    /// What the units go on with, at the node of the plan, and which copies of its scene they belong to.
+    pub from: Option<(&'a Continuation, Option<&'a [usize]>)>,
+    /// Whether the units tell what they hold at the end.
+    pub keeps: bool,
     /// Where the records go.
     pub writer: &'a Writer<'a>,
 }
@@ -56,6 +63,11 @@ impl Job<'_> {
         self.watches && !self.plan.events.is_empty()
     }
 
+    /// The time from the start of the scene to that of the run, in the plan's units.
+    fn begun(&self) -> f64 {
+        scale(self.plan.dt.unwrap_or(0.0), -self.plan.units.time) * self.plan.from as f64
+    }
+
     fn prepare(&self, unit: &Unit) -> Prepared {
         Prepared::new(self.plan, self.scene, unit.clone())
     }
@@ -65,7 +77,10 @@ impl Job<'_> {
         let span = (self.end() - self.scene.t0).abs();
         let count = |together: usize| runs.iter().map(|run| run.len().div_ceil(together) as u64).sum::<u64>();
         match self.plan.dt {
-            Some(dt) => count(self.plan.layout.in_lockstep()) * (span / dt.abs()) as u64,
+            Some(dt) => {
+                count(self.plan.layout.in_lockstep())
+                    * ((span / dt.abs()) as u64).saturating_sub(self.plan.from)
+            }
             None => count(1) * adaptive::PROGRESS_PER_UNIT,
         }
     }

@@ -6,6 +6,7 @@
 pub mod acceleration;
 pub mod closed_form;
 pub mod columns;
+pub mod continuation;
 pub mod events;
 pub mod frame;
 pub mod integrate;
@@ -21,6 +22,7 @@ use crate::forces::ForceTerm;
 use crate::forces::term::{Bodies, check_masses};
 pub(crate) use crate::numerics::points::distance;
 use crate::words::{number, numbers};
+use continuation::Continuation;
 use std::sync::Arc;
 
 /// A batch of copies of a scene with the same forces (a batch of one is a scene).
@@ -40,6 +42,8 @@ pub struct Scene {
     pub forces: Vec<Arc<dyn ForceTerm>>,
     /// The time of this state.
     pub t0: f64,
+    /// How a run with fixed steps came to this state, if one did.
+    pub continuation: Option<Continuation>,
 }
 
 impl Scene {

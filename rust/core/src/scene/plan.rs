@@ -84,6 +84,8 @@ pub struct Plan {
     pub record: Vec<String>,
     /// The time of the scene.
     pub t0: f64,
+    /// The node that the run goes on from; 0 is the scene.
+    pub from: u64,
     copies: usize,
     particles: usize,
 }
@@ -153,6 +155,7 @@ impl Plan {
             events: request.events.clone().into(),
             record: request.record.clone(),
             t0: scene.t0,
+            from: 0,
             copies: scene.copies,
             particles: scene.particles,
         };

@@ -1,5 +1,6 @@
 //! From a scene and a request to columns: plan, do, put together.
 
+mod begun;
 mod derived;
 mod events;
 mod patterns;
@@ -9,6 +10,7 @@ mod resolved;
 use super::Scene;
 use super::closed_form;
 use super::columns::{Columns, Missing, Wanted};
+use super::continuation::{Continuation, Held};
 use super::integrate::{self, Counts, Ending, Job};
 use super::plan::Plan;
 use super::request::Request;
@@ -16,9 +18,10 @@ use super::room::give_back;
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::parallel::Ticker;
+use begun::Begun;
+pub use begun::plan;
 use derived::derive;
 pub use events::Events;
-use patterns::patterns;
 use reached::gather;
 
 /// What became of a copy of the scene.
@@ -45,6 +48,17 @@ pub struct Reached {
     pub velocity: Vec<[f64; 3]>,
 }
 
+/// What the copies hold at the nodes at which they ended.
+#[derive(Clone, Debug)]
+pub struct Kept {
+    /// The node of each copy; 0 of one that did not end on a node.
+    pub nodes: Vec<u64>,
+    /// The time from which they are counted.
+    pub t0: f64,
+    /// What is held there.
+    pub held: Held,
+}
+
 /// Everything a run gives.
 #[derive(Clone, Debug)]
 pub struct Output {
@@ -56,6 +70,8 @@ pub struct Output {
     pub outcomes: Vec<Outcome>,
     /// The states reached.
     pub reached: Reached,
+    /// What is kept for other runs to go on.
+    pub kept: Option<Kept>,
     /// The events found.
     pub events: Events,
     /// Of a scene of one copy, what is still to be made NaN where the rows beyond the last common one are wanted at all:
@@ -65,6 +81,9 @@ pub struct Output {
 
 /// Copies that are run together.
 struct Part<'a> {
+    /// All copies at the time of the run.
+    whole: &'a Scene,
+    /// The copies, as they are planned: at the time of the run, or at that of an earlier one which it goes on with.
     scene: &'a Scene,
     plan: &'a Plan,
     /// Which copies of the whole they are; `None` is all of them.
@@ -75,6 +94,12 @@ impl Part<'_> {
     /// The place among all copies of one of these.
     fn member(&self, copy: usize) -> usize {
         self.members.map_or(copy, |members| members[copy])
+    }
+
+    /// What an earlier run has left behind, if this one goes on with it.
+    fn from(&self) -> Option<(&Continuation, Option<&[usize]>)> {
+        let continuation = self.whole.continuation.as_ref().filter(|_| self.plan.from > 0)?;
+        Some((continuation, self.members))
     }
 
     /// Whether columns can be derived at the record.
@@ -90,18 +115,9 @@ impl Part<'_> {
 /// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
-    let plan = Plan::new(scene, request)?;
-    let groups = patterns(scene, &plan);
-    let plans: Vec<Plan> =
-        groups.iter().flatten().map(|(_, part)| Plan::new(part, request)).collect::<Result<_>>()?;
-    let parts: Vec<Part<'_>> = match &groups {
-        None => vec![Part { scene, plan: &plan, members: None }],
-        Some(groups) => groups
-            .iter()
-            .zip(&plans)
-            .map(|((members, scene), plan)| Part { scene, plan, members: Some(members) })
-            .collect(),
-    };
+    let begun = Begun::of(scene, request)?;
+    let parts = begun.parts(scene);
+    let plan = &begun.plan;
     let derived = request.derived();
     let wanted = Wanted {
         position: request.records("position"),
@@ -113,10 +129,13 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     let mut columns = Columns::new(scene.copies, request.times.len(), scene.particles, &wanted)?;
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
     let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
+    // A method that chooses its steps has no nodes, and a closed form holds nothing.
+    let held = if plan.dt.is_some() { Held::room(scene, plan.method)? } else { None };
+    let mut kept = held.map(|held| Kept { nodes: vec![u64::MAX; scene.copies], t0: plan.t0, held });
     let mut missing = Vec::new();
     let mut events = Events::default();
     for part in &parts {
-        let into = (&mut columns, &mut outcomes[..], &mut reached, &mut events);
+        let into = (&mut columns, &mut outcomes[..], &mut reached, kept.as_mut(), &mut events);
         missing = run_part(part, request, into, ticker)?;
         if scene.copies > 1 {
             columns.finish(&core::mem::take(&mut missing));
@@ -137,7 +156,8 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
         }
     }
     events.sort(plan.direction);
-    Ok(Output { plan, columns, outcomes, reached, events, missing })
+    let plan = begun.plan;
+    Ok(Output { plan, columns, outcomes, reached, kept, events, missing })
 }
 
 /// Refuses what there is no memory for: the columns, the times of each thread, the states reached.
@@ -159,11 +179,14 @@ fn check_memory(scene: &Scene, request: &Request, wanted: &Wanted, threads: usiz
     )
 }
 
+/// Where what a run gives is put.
+type Places<'a> = (&'a mut Columns, &'a mut [Outcome], &'a mut Reached, Option<&'a mut Kept>, &'a mut Events);
+
 /// Runs a part; gives what was not recorded of it.
 fn run_part(
     part: &Part<'_>,
     request: &Request,
-    (columns, outcomes, reached, events): (&mut Columns, &mut [Outcome], &mut Reached, &mut Events),
+    (columns, outcomes, reached, kept, events): Places<'_>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Missing>> {
     let Part { scene, plan, .. } = *part;
@@ -192,9 +215,14 @@ fn run_part(
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
         watches: true,
+        from: part.from(),
+        keeps: kept.is_some(),
         writer: &writer,
     };
-    let reports = integrate::run(&job, ticker)?;
+    let mut reports = integrate::run(&job, ticker)?;
+    if let Some(kept) = kept {
+        kept.gather(part, &mut reports);
+    }
     gather(part, request, &reports, columns, outcomes, reached, ticker)?;
     events.gather(part, &reports, outcomes);
     resolved::look(part, request, outcomes, reached, ticker)?;

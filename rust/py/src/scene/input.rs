@@ -12,6 +12,7 @@ use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::Scene;
+use visviva_core::scene::continuation::{Continuation, Held};
 use visviva_core::scene::request::Request;
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
@@ -25,6 +26,7 @@ pub(crate) struct Asked<'py> {
     velocity: Array<'py>,
     forces: Bound<'py, PyList>,
     t0: f64,
+    continuation: Option<Continued<'py>>,
     times: Array<'py>,
     end_only: bool,
     method: String,
@@ -35,6 +37,42 @@ pub(crate) struct Asked<'py> {
     max_steps: Option<i64>,
     record: Vec<String>,
     events: Vec<Bound<'py, PyDict>>,
+}
+
+/// How a run came to the scene.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct Continued<'py> {
+    form: i64,
+    method: String,
+    dt: f64,
+    t0: f64,
+    node: u64,
+    position: Array<'py>,
+    velocity: Array<'py>,
+    held: Array<'py>,
+}
+
+impl Continued<'_> {
+    /// Of so many copies of so many particles.
+    fn prepared(self, copies: usize, particles: usize) -> PyResult<Continuation> {
+        let shape = [Some(copies), Some(particles), Some(3)];
+        let position = points(&copied("position", &self.position, shape)?.0);
+        let velocity = points(&copied("velocity", &self.velocity, shape)?.0);
+        let (numbers, [_, blocks, slots, _]) =
+            copied("held", &self.held, [Some(copies), None, None, Some(3)])?;
+        let Self { form, method, dt, t0, node, .. } = self;
+        Ok(Continuation {
+            form,
+            method,
+            dt,
+            t0,
+            position,
+            velocity,
+            node,
+            held: Held { blocks, slots, numbers },
+        })
+    }
 }
 
 impl Asked<'_> {
@@ -62,7 +100,8 @@ impl Asked<'_> {
         let Self { method, dt, rtol, atol, max_step, max_steps, record, .. } = self;
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
-        let scene = Scene { copies, particles, mass, position, velocity, forces, t0 };
+        let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
+        let scene = Scene { copies, particles, mass, position, velocity, forces, t0, continuation };
         let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, threads };
         Ok((scene, request, raised))
     }
@@ -81,7 +120,16 @@ pub(super) fn snapshot(
     let (mass, [particles]) = copied("mass", mass, [None])?;
     let position = points(&copied("position", position, [Some(particles), Some(3)])?.0);
     let velocity = points(&copied("velocity", velocity, [Some(particles), Some(3)])?.0);
-    Ok(Scene { copies: 1, particles, mass, position, velocity, forces: forces(specs)?, t0: 0.0 })
+    Ok(Scene {
+        copies: 1,
+        particles,
+        mass,
+        position,
+        velocity,
+        forces: forces(specs)?,
+        t0: 0.0,
+        continuation: None,
+    })
 }
 
 pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {

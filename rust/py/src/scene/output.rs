@@ -7,10 +7,11 @@ use visviva_core::Error;
 use visviva_core::numerics::simd::tier;
 use visviva_core::scene::Scene;
 use visviva_core::scene::columns::Derived;
+use visviva_core::scene::continuation::FORM;
 use visviva_core::scene::integrate::Ending;
 use visviva_core::scene::plan::Plan;
 use visviva_core::scene::request::Request;
-use visviva_core::scene::run::{Outcome, Output};
+use visviva_core::scene::run::{Kept, Outcome, Output};
 
 /// What will be done.
 pub(super) fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py, PyDict>> {
@@ -65,7 +66,8 @@ pub(super) fn output_dict<'py>(
     let dict = PyDict::new(py);
     let outcomes = &output.outcomes;
     let looked_for = !request.events.is_empty();
-    let span = request.times.last().map_or(0.0, |end| (end - scene.t0).abs());
+    // Of a run that goes on with another, that of both.
+    let span = request.times.last().map_or(0.0, |end| (end - output.plan.t0).abs());
     let mut reached = request.times;
     reached.truncate(times);
     dict.set_item("t", moved(py, reached, &[times])?)?;
@@ -116,6 +118,22 @@ pub(super) fn output_dict<'py>(
     )?;
     last.set_item("position", flat(output.reached.position)?)?;
     last.set_item("velocity", flat(output.reached.velocity)?)?;
+    if let Some(Kept { nodes, t0, held }) = output.kept
+        && nodes.iter().any(|&node| on_a_node(node))
+    {
+        // What is the same for all copies, and what each has of its own.
+        let kept = PyDict::new(py);
+        kept.set_item("form", FORM)?;
+        kept.set_item("method", output.plan.method.name)?;
+        kept.set_item("dt", output.plan.dt)?;
+        kept.set_item("t0", t0)?;
+        kept.set_item("goes_on", output.plan.from > 0)?;
+        dict.set_item("continuation", kept)?;
+        let shape = [copies, held.blocks, held.slots, 3];
+        last.set_item("held", moved(py, held.numbers, &shape)?)?;
+        let nodes = nodes.into_iter().map(|node| if on_a_node(node) { node as i64 } else { 0 });
+        last.set_item("node", moved(py, nodes.collect::<Vec<i64>>(), &[copies])?)?;
+    }
     dict.set_item("final", last)?;
     if let Some(dt) = output.plan.dt {
         let step = dt.abs();
@@ -132,6 +150,11 @@ pub(super) fn output_dict<'py>(
     let error = if ensemble { None } else { failure(&outcomes[0]) };
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
     Ok(dict)
+}
+
+/// Whether a copy came to a node other than the first.
+fn on_a_node(node: u64) -> bool {
+    node > 0 && node < u64::MAX
 }
 
 fn status(ending: &Ending) -> i8 {

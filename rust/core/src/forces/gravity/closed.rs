@@ -214,6 +214,19 @@ impl<S: ClosedKernel> Stepper<S> for ClosedStep<S> {
         self.settled = true;
     }
 
+    fn memory(&mut self, node: u64, each: &mut dyn FnMut(&mut [S])) {
+        let Some(steps) = self.general.steps_since_start(node) else {
+            return self.general.memory(node, each);
+        };
+        let (relative, past) = self.relative.get_or_insert_with(|| {
+            let relative = Relative::blank(&self.few, self.general.weights().h);
+            let past = self.general.past().map(relative.len(), |_, _| {});
+            (relative, past)
+        });
+        relative.memory(steps, past, node, each);
+        self.settled = true;
+    }
+
     fn between(
         &mut self,
         node: u64,

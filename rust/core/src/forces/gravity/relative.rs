@@ -8,6 +8,7 @@ use super::FewBodies;
 use crate::numerics::double_double::{two_product, two_sum};
 use crate::numerics::element::{Element, Pair, PairMut, Pass, Shape, View};
 use crate::numerics::real::Real;
+use crate::ode::multistep::Past;
 use crate::ode::state::State;
 
 /// Numbers, and what they leave out.
@@ -33,19 +34,33 @@ pub(super) struct Relative<S> {
 }
 
 impl<S: Element> Relative<S> {
-    /// The systems at a state, which is node 0 of steps `h`.
-    pub(super) fn new(few: &FewBodies<S>, h: S, state: &State<S>) -> Self {
+    /// The systems at zeros.
+    pub(super) fn blank(few: &FewBodies<S>, h: S) -> Self {
         let (shape, systems) = (few.shape, few.systems);
-        let mut relative = Self {
+        let zeros = |rows: usize| {
+            let zeros = vec![S::zero(); rows * shape.components];
+            (zeros.clone(), zeros)
+        };
+        Self {
             shape,
             systems,
-            coordinates: (Vec::new(), Vec::new()),
+            coordinates: zeros(shape.rows - systems),
             shares: shares(&few.strength, shape.rows / systems),
-            center: (Vec::new(), Vec::new()),
-            drift: (Vec::new(), Vec::new()),
+            center: zeros(systems),
+            drift: zeros(systems),
             h,
             node: 0,
-        };
+        }
+    }
+
+    /// How many relative coordinates there are.
+    pub(super) fn len(&self) -> usize {
+        self.coordinates.0.len()
+    }
+
+    /// The systems at a state, which is node 0 of steps `h`.
+    pub(super) fn new(few: &FewBodies<S>, h: S, state: &State<S>) -> Self {
+        let mut relative = Self::blank(few, h);
         let velocity = relative.of_compensated(state.velocity());
         relative.coordinates = relative.of_compensated(state.position());
         relative.center = relative.centers(state.position(), &relative.coordinates);
@@ -113,6 +128,33 @@ impl<S: Element> Relative<S> {
         self.node += steps;
     }
 
+    /// Stands at the node `steps` after node 0, which the past calls `node`, and goes over what is held there: blocks like
+    /// coordinates of all bodies, in which the first of each system has the place for what the centre of mass does.
+    pub(super) fn memory(
+        &mut self,
+        steps: u64,
+        past: &mut Past<S>,
+        node: u64,
+        each: &mut dyn FnMut(&mut [S]),
+    ) {
+        self.node = steps;
+        let (shape, systems) = (self.shape, self.systems);
+        let mut none = vec![S::zero(); systems * shape.components];
+        let mut spread = |others: &mut [S], first: &mut [S]| {
+            let mut block = vec![S::zero(); shape.len()];
+            exchange(shape, systems, &mut block, others, first);
+            each(&mut block);
+            exchange(shape, systems, &mut block, others, first);
+        };
+        spread(&mut self.coordinates.0, &mut self.center.0);
+        spread(&mut self.coordinates.1, &mut self.center.1);
+        let mut drift = [&mut self.drift.0, &mut self.drift.1].into_iter();
+        past.memory(node, &mut |others| match drift.next() {
+            Some(drift) => spread(others, drift),
+            None => spread(others, &mut none),
+        });
+    }
+
     /// Writes coordinates and velocities of all bodies, from relative velocities.
     pub(super) fn write(&self, state: &mut State<S>, velocity: &[S]) {
         let (q, (v, v_compensation)) = state.halves_mut();
@@ -132,6 +174,19 @@ impl<S: Element> Relative<S> {
             node: self.node,
         });
         v_compensation.fill(S::zero());
+    }
+}
+
+/// Swaps a block like the coordinates of all bodies with relative ones and with vectors of each system.
+fn exchange<S: Element>(shape: Shape, systems: usize, block: &mut [S], others: &mut [S], first: &mut [S]) {
+    let Shape { rows, components } = shape;
+    let bodies = rows / systems;
+    let (mut others, mut first) = (others.iter_mut(), first.iter_mut());
+    for (row, c) in (0..rows).flat_map(|row| (0..components).map(move |c| (row, c))) {
+        let own = if row % bodies == 0 { first.next() } else { others.next() };
+        if let Some(own) = own {
+            core::mem::swap(own, &mut block[c * rows + row]);
+        }
     }
 }
 

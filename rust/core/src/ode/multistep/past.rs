@@ -42,7 +42,19 @@ impl<S: Element> Past<S> {
 
     /// Begins anew.
     pub fn restart(&mut self) {
+        self.memory(0, &mut |block| block.fill(S::zero()));
+    }
+
+    /// Stands at `node` and goes over what is held there, block by block.
+    pub fn memory(&mut self, node: u64, each: &mut dyn FnMut(&mut [S])) {
+        let len = self.last.len().max(1);
         self.newest = 0;
+        self.pass(node);
+        for block in [&mut self.d, &mut self.d_error, &mut self.acceleration, &mut self.last, &mut self.first]
+        {
+            each(block);
+        }
+        self.second.chunks_exact_mut(len).for_each(each);
     }
 
     /// The same nodes in other coordinates, `len` of them, which `of` writes; `d` is still to be found.
@@ -81,7 +93,7 @@ impl<S: Element> Past<S> {
 
     /// So many nodes have joined the ring.
     pub fn pass(&mut self, nodes: u64) {
-        let count = (self.second.len() / self.last.len()) as u64;
+        let count = (self.second.len() / self.last.len().max(1)).max(1) as u64;
         self.newest = ((self.newest as u64 + nodes) % count) as usize;
     }
 

@@ -136,7 +136,7 @@ impl<'a> Watch<'a> {
         };
         watch.read(unit, state, lane);
         core::mem::swap(&mut watch.before, &mut watch.after);
-        let view = watch.view(unit, &watch.before, 0.0);
+        let view = watch.view(unit, &watch.before, job.begun());
         let mut values = Vec::with_capacity(watch.events.len());
         for event in 0..watch.events.len() {
             let value = watch.value(unit, event, &view, ticker)?;

@@ -3,7 +3,7 @@
 use super::super::unit::{self, Prepared, Unit};
 use super::events::{Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
-use super::{Job, Result};
+use super::{Job, Result, held};
 use crate::error::Error;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::Lanes;
@@ -62,11 +62,16 @@ fn lockstep(
         // Lanes without a unit run along with a copy of the last.
         prepared[lane.min(units.len() - 1)].write(state, lane);
     }
+    match job.from {
+        None => stepper.restart(),
+        Some(from) => held::take_up(job, from, &prepared, state, &mut **stepper),
+    }
     let unit_of_time = plan.units.time;
-    let places = job.times.iter().map(move |&t| {
+    let place = |&t: &f64| {
         let place = fixed::place(t - t0, dt, Real::max(t.abs(), t0.abs()));
         Place { past: place.past.map(|past| scale(past, -unit_of_time)), ..place }
-    });
+    };
+    let places = job.times.iter().map(place);
     let mut watches = Vec::new();
     if job.watched() {
         for (lane, unit) in prepared.iter().enumerate() {
@@ -91,15 +96,28 @@ fn lockstep(
         rows: 0,
         last: None,
     };
-    let Ended { steps, outcome } =
-        fixed::run(&mut **stepper, job.max_steps, state, &mut dynamics, places, ticker, &mut records);
+    let Ended { node, steps, stands, outcome } = fixed::run(
+        &mut **stepper,
+        plan.from,
+        job.max_steps,
+        state,
+        &mut dynamics,
+        places,
+        ticker,
+        &mut records,
+    );
     let short = match outcome {
         Ok(()) | Err(Error::Convergence { .. }) => Ending::TooManySteps,
         Err(Error::Interrupted) => Ending::Interrupted,
         Err(other) => return Err(other),
     };
     let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() };
-    Ok(records.reports(state, t0 + steps as f64 * dt, &short, counts))
+    let ended = place(&job.end()).past.is_none() || records.last.is_none();
+    let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
+    if job.keeps && stands && ended && node > 0 {
+        held::leave(&records.units, &mut reports, node, state, &mut **stepper);
+    }
+    Ok(reports)
 }
 
 /// What has been recorded of units in lockstep.
@@ -203,7 +221,7 @@ impl Recorder<Lanes> for Records<'_> {
 
 impl Records<'_> {
     /// The reports of a run that has come to `reached` at `time`; `short` says why, if that is not the end.
-    fn reports(mut self, reached: &State<Lanes>, time: f64, short: &Ending, all: Counts) -> Vec<Report> {
+    fn reports(&mut self, reached: &State<Lanes>, time: f64, short: &Ending, all: Counts) -> Vec<Report> {
         let last = self.last.take();
         let (state, time, otherwise) = match &last {
             Some(last) => (last, self.job.end(), &Ending::Finished),

@@ -1,5 +1,6 @@
 //! What became of a unit.
 
+use super::super::continuation::UnitHeld;
 use super::super::unit::{Prepared, Unit};
 use super::{Found, Job};
 use crate::numerics::lanes::Lanes;
@@ -66,6 +67,8 @@ pub struct Report {
     pub states: Vec<[[f64; 3]; 2]>,
     /// The events found on the way.
     pub found: Vec<Found>,
+    /// What the unit holds, if it ended on a node.
+    pub held: Option<UnitHeld>,
 }
 
 impl Job<'_> {
@@ -86,6 +89,6 @@ impl Job<'_> {
             let entry = unit.read(slot, state, lane, elapsed);
             states.push([entry.position, entry.velocity]);
         }
-        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, found: Vec::new() }
+        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, found: Vec::new(), held: None }
     }
 }

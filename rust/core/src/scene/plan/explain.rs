@@ -33,6 +33,10 @@ impl Plan {
                 None => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
+            if self.from > 0 {
+                let why = "the scene ended a run with this method and step: its bits are those of one run";
+                row("start", format!("goes on from node {}", self.from), why.to_owned());
+            }
             row(
                 "force evaluations per step",
                 self.method.stages.to_string(),

@@ -42,5 +42,6 @@ pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
         velocity: pick(|scene, copy| scene.velocities(copy)),
         forces: scene.forces.clone(),
         t0: scene.t0,
+        continuation: None,
     }
 }

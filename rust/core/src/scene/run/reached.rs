@@ -27,7 +27,7 @@ pub(super) fn gather(
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
-    let t0 = part.scene.t0;
+    let t0 = part.whole.t0;
     for report in reports {
         let member = part.member(report.unit.copy);
         let outcome = &mut outcomes[member];
@@ -94,8 +94,8 @@ fn bring_together(
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
-    let (scene, copy) = (part.scene, apart[0].unit.copy);
-    let outcome = &mut outcomes[part.member(copy)];
+    let (scene, copy) = (part.whole, part.member(apart[0].unit.copy));
+    let outcome = &mut outcomes[copy];
     let row = request.times[..outcome.rows].iter().rposition(|&t| t == outcome.time);
     let on_a_row = apart.iter().all(|report| report.ending == Ending::NotFinite) && row.is_some();
     let interrupted = ticker.tick().is_err();
@@ -107,11 +107,11 @@ fn bring_together(
         return Ok(());
     }
     let recorded = !columns.position.is_empty() && !columns.velocity.is_empty() && outcome.time != scene.t0;
-    let places = part.member(copy) * scene.particles..(part.member(copy) + 1) * scene.particles;
+    let places = copy * scene.particles..(copy + 1) * scene.particles;
     match outcome.rows.checked_sub(1).filter(|_| recorded) {
         Some(row) => {
             outcome.time = request.times[row];
-            let from = (part.member(copy) * columns.times + row) * columns.particles * 3;
+            let from = (copy * columns.times + row) * columns.particles * 3;
             for (particle, place) in places.enumerate() {
                 let at = from + 3 * particle;
                 let point = |values: &[f64]| [values[at], values[at + 1], values[at + 2]];
@@ -150,6 +150,8 @@ fn again(
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: u64::MAX,
         watches: false,
+        from: part.from(),
+        keeps: false,
         writer: &writer,
     };
     let units: Vec<Unit> = apart.iter().map(|report| report.unit.clone()).collect();

@@ -81,30 +81,48 @@ impl Prepared {
         })
     }
 
+    /// What a block that lies as the coordinates do holds of a body.
+    pub fn pick(&self, slot: usize, block: &[Lanes], unit_lane: usize) -> [f64; 3] {
+        let rows = block.len() / self.shape.components;
+        let (row, lane) = self.locate(slot, unit_lane);
+        let mut point = [0.0; 3];
+        for c in 0..self.shape.components {
+            point[c] = block[c * rows + row].0[lane];
+        }
+        point
+    }
+
+    /// Lays what a block holds of a body into its place.
+    pub fn lay(&self, slot: usize, block: &mut [Lanes], unit_lane: usize, point: [f64; 3]) {
+        let rows = block.len() / self.shape.components;
+        let (row, lane) = self.locate(slot, unit_lane);
+        for c in 0..self.shape.components {
+            block[c * rows + row].0[lane] = point[c];
+        }
+    }
+
     /// Where a body is, in the units and about the origin of the integration.
     pub fn place(&self, slot: usize, state: &State<Lanes>, unit_lane: usize) -> [f64; 3] {
-        let rows = state.q().len() / self.shape.components;
-        let (row, lane) = self.locate(slot, unit_lane);
-        let mut place = [0.0; 3];
-        for c in 0..self.shape.components {
-            place[c] = state.q()[c * rows + row].0[lane];
-        }
-        place
+        self.pick(slot, state.q(), unit_lane)
     }
 
     /// Reads a body off a state, in the scene's units and about its origin.
     pub fn read(&self, slot: usize, state: &State<Lanes>, unit_lane: usize, elapsed: f64) -> Entry {
+        let pick = |block: &[Lanes]| self.pick(slot, block, unit_lane);
+        let (position, velocity) = (state.position(), state.velocity());
+        let [position, velocity] = [position, velocity].map(|(values, rests)| [pick(values), pick(rests)]);
+        self.entry(position, velocity, elapsed)
+    }
+
+    /// A body in the scene's units and about its origin, from the numbers of a state and what they leave out.
+    pub fn entry(&self, [q, q_rest]: [[f64; 3]; 2], [v, v_rest]: [[f64; 3]; 2], elapsed: f64) -> Entry {
         let components = self.shape.components;
-        let rows = state.q().len() / components;
         let (length, speed) = (self.units.length, -self.units.velocity());
-        let (row, lane) = self.locate(slot, unit_lane);
         let moved = self.origin.at(elapsed);
         let mut entry = Entry::default();
         for c in 0..components {
-            let at = c * rows + row;
-            let take = |values: &[Lanes], exponent: i32| scale(values[at].0[lane], exponent);
-            let position = (take(state.q(), length), take(state.q_compensation(), length));
-            let velocity = (take(state.v(), speed), take(state.v_compensation(), speed));
+            let position = (scale(q[c], length), scale(q_rest[c], length));
+            let velocity = (scale(v[c], speed), scale(v_rest[c], speed));
             let [x, v] = if self.origin.is_elsewhere() {
                 [restored(moved.position[c], position), restored(moved.velocity[c], velocity)]
             } else {

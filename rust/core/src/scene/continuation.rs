@@ -1,0 +1,181 @@
+//! What a run with fixed steps leaves behind at a node, so that another goes on to the bits of one run.
+//!
+//! The one idea: a run that goes on is planned from the scene at which the first one began, to the same units, origin and
+//! times of nodes. So all that has to be kept is that beginning and, at the node, the numbers that the integrator holds
+//! there: each with its compensation, and what a method keeps of the past.
+
+use super::Scene;
+use super::plan::Plan;
+use super::request::Request;
+use super::unit::{Prepared, Unit};
+use crate::error::Result;
+use crate::forces::gravity::CLOSED_MAX;
+use crate::memory;
+use crate::numerics::real::Real;
+use crate::ode::fixed::{Place, place};
+use crate::ode::{Method, Scheme};
+use crate::registry;
+
+/// What the numbers mean; another number as soon as they mean something else.
+pub const FORM: i64 = 1;
+
+/// More numbers than these are not kept: 256 MiB.
+const MOST: usize = 1 << 25;
+
+/// Blocks of a state: coordinates and velocities, each with what they leave out.
+const STATE_BLOCKS: usize = 4;
+
+/// What a scene keeps of the run that ended in it.
+#[derive(Clone, Debug)]
+pub struct Continuation {
+    /// What the numbers mean: [`FORM`], or they are not read.
+    pub form: i64,
+    /// The method.
+    pub method: String,
+    /// Its signed step.
+    pub dt: f64,
+    /// The time at which the first run began.
+    pub t0: f64,
+    /// The positions there, as those of the scene.
+    pub position: Vec<[f64; 3]>,
+    /// The velocities there.
+    pub velocity: Vec<[f64; 3]>,
+    /// The node that has been reached.
+    pub node: u64,
+    /// What is held there, of each copy.
+    pub held: Held,
+}
+
+/// Numbers of bodies, copy after copy, in blocks of points.
+#[derive(Clone, Debug, Default)]
+pub struct Held {
+    /// Blocks of each copy.
+    pub blocks: usize,
+    /// Points in a block: of each particle, then of the massive ones as they are integrated beside massless ones, where
+    /// these are apart.
+    pub slots: usize,
+    /// The points, three numbers each.
+    pub numbers: Vec<f64>,
+}
+
+/// What a unit holds at a node: block after block, the bodies of the unit in each.
+#[derive(Clone, Debug)]
+pub struct UnitHeld {
+    /// The node.
+    pub node: u64,
+    /// The points.
+    pub points: Vec<[f64; 3]>,
+}
+
+/// Blocks that a method holds, those of the state among them.
+fn blocks(method: &Method) -> usize {
+    STATE_BLOCKS + method.held()
+}
+
+/// Points in a block of each copy: massless bodies are apart beside few massive ones only.
+fn slots(scene: &Scene, method: &Method) -> usize {
+    scene.particles + if matches!(method.scheme, Scheme::Multistep(_)) { CLOSED_MAX } else { 0 }
+}
+
+/// The place of a body of a unit in a block of its copy.
+fn place_of(plan: &Plan, particles: usize, unit: &Unit, slot: usize) -> usize {
+    let beside = plan.passive_apart() && unit.bodies.len() > unit.active;
+    if beside && slot < unit.active { particles + slot } else { unit.bodies[slot] }
+}
+
+impl Held {
+    /// Room for what copies of a scene hold under a method; `None` if it would be too much.
+    ///
+    /// # Errors
+    /// As [`memory::check`].
+    pub fn room(scene: &Scene, method: &Method) -> Result<Option<Self>> {
+        let (blocks, slots) = (blocks(method), slots(scene, method));
+        let len = [scene.copies, slots, blocks].into_iter().try_fold(3_usize, usize::checked_mul);
+        let Some(len) = len.filter(|&len| len <= MOST) else { return Ok(None) };
+        let [mut numbers] =
+            memory::reserved("t", "what a run leaves behind for another to go on", Some(len))?;
+        numbers.resize(len, 0.0);
+        Ok(Some(Self { blocks, slots, numbers }))
+    }
+
+    /// Where a point of a block begins.
+    fn at(&self, copy: usize, block: usize, place: usize) -> usize {
+        ((copy * self.blocks + block) * self.slots + place) * 3
+    }
+
+    /// Takes in what a unit of a copy holds.
+    pub fn put(&mut self, plan: &Plan, particles: usize, (copy, unit): (usize, &Unit), held: &UnitHeld) {
+        for (block, points) in held.points.chunks(unit.bodies.len().max(1)).enumerate() {
+            for (slot, point) in points.iter().enumerate() {
+                let at = self.at(copy, block, place_of(plan, particles, unit, slot));
+                self.numbers[at..at + 3].copy_from_slice(point);
+            }
+        }
+    }
+}
+
+impl Continuation {
+    /// The scene from which to plan, if the run goes on with the steps that led to this scene.
+    pub fn start(scene: &Scene, request: &Request) -> Option<Scene> {
+        let from = scene.continuation.as_ref()?;
+        let (method, dt) = (registry::method(&request.method)?, request.dt?);
+        let end = request.times.last().copied()?;
+        let points = scene.copies * scene.particles;
+        let fits = from.form == FORM
+            && from.method == method.name
+            && from.dt.abs() == dt.abs()
+            && (end - scene.t0) * from.dt >= 0.0
+            && from.held.blocks == blocks(method)
+            && from.held.slots == slots(scene, method)
+            && from.held.numbers.len() == from.held.at(scene.copies, 0, 0)
+            && [&from.position, &from.velocity, &scene.position, &scene.velocity]
+                .iter()
+                .all(|of| of.len() == points)
+            && from.place(scene.t0) == Place { node: from.node, past: None };
+        fits.then(|| Scene {
+            copies: scene.copies,
+            particles: scene.particles,
+            mass: scene.mass.clone(),
+            position: from.position.clone(),
+            velocity: from.velocity.clone(),
+            forces: scene.forces.clone(),
+            t0: from.t0,
+            continuation: None,
+        })
+    }
+
+    fn place(&self, t: f64) -> Place {
+        place(t - self.t0, self.dt, Real::max(t.abs(), self.t0.abs()))
+    }
+
+    /// A point of a block that a unit of a copy holds.
+    pub fn point(
+        &self,
+        plan: &Plan,
+        particles: usize,
+        (copy, unit): (usize, &Unit),
+        block: usize,
+        slot: usize,
+    ) -> [f64; 3] {
+        let at = self.held.at(copy, block, place_of(plan, particles, unit, slot));
+        core::array::from_fn(|c| self.held.numbers[at + c])
+    }
+
+    /// Whether what is held is the state of the scene, to the bit: `start` and `plan` are of the copies `members` of it.
+    pub fn agrees(&self, scene: &Scene, start: &Scene, plan: &Plan, members: Option<&[usize]>) -> bool {
+        let elapsed = scene.t0 - self.t0;
+        plan.unit_list().into_iter().filter(|unit| !unit.recorded.is_empty()).all(|unit| {
+            let copy = members.map_or(unit.copy, |members| members[unit.copy]);
+            let unit = Prepared::new(plan, start, unit);
+            unit.unit.recorded.clone().all(|slot| {
+                let [q, q_rest, v, v_rest] = core::array::from_fn(|block| {
+                    self.point(plan, scene.particles, (copy, &unit.unit), block, slot)
+                });
+                let entry = unit.entry([q, q_rest], [v, v_rest], elapsed);
+                let body = unit.unit.bodies[slot];
+                entry.position == scene.positions(copy)[body]
+                    && entry.velocity == scene.velocities(copy)[body]
+            })
+        })
+    }
+}

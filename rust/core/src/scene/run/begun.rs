@@ -1,0 +1,90 @@
+//! From what a run begins: the scene as it is, or the beginning of an earlier run, which it goes on with.
+
+use super::super::Scene;
+use super::super::continuation::Continuation;
+use super::super::integrate::Report;
+use super::super::plan::Plan;
+use super::super::request::Request;
+use super::patterns::patterns;
+use super::{Kept, Part};
+use crate::error::Result;
+
+/// The plan of a run.
+///
+/// # Errors
+/// As [`Plan::new`].
+pub fn plan(scene: &Scene, request: &Request) -> Result<Plan> {
+    match scene.continuation {
+        None => Plan::new(scene, request),
+        Some(_) => Ok(Begun::of(scene, request)?.plan),
+    }
+}
+
+/// A run that is planned: as a whole and in parts.
+pub(super) struct Begun {
+    /// The scene that is planned from, if it is another.
+    start: Option<Scene>,
+    pub(super) plan: Plan,
+    groups: Option<Vec<(Vec<usize>, Scene)>>,
+    plans: Vec<Plan>,
+}
+
+impl Begun {
+    /// Plans a run.
+    pub(super) fn of(scene: &Scene, request: &Request) -> Result<Self> {
+        if let (Some(start), Some(from)) = (Continuation::start(scene, request), &scene.continuation) {
+            // What is wrong with the request is told of the scene as it is.
+            let _ = request.check(scene)?;
+            let mut begun = Self::planned(&start, request)?;
+            begun.plans.iter_mut().chain([&mut begun.plan]).for_each(|plan| plan.from = from.node);
+            begun.start = Some(start);
+            let agrees = |part: &Part<'_>| from.agrees(scene, part.scene, part.plan, part.members);
+            if begun.parts(scene).iter().all(agrees) {
+                return Ok(begun);
+            }
+        }
+        Self::planned(scene, request)
+    }
+
+    fn planned(scene: &Scene, request: &Request) -> Result<Self> {
+        let plan = Plan::new(scene, request)?;
+        let groups = patterns(scene, &plan);
+        let plans =
+            groups.iter().flatten().map(|(_, part)| Plan::new(part, request)).collect::<Result<_>>()?;
+        Ok(Self { start: None, plan, groups, plans })
+    }
+
+    /// The copies that are run together.
+    pub(super) fn parts<'a>(&'a self, whole: &'a Scene) -> Vec<Part<'a>> {
+        match &self.groups {
+            None => {
+                let scene = self.start.as_ref().unwrap_or(whole);
+                vec![Part { whole, scene, plan: &self.plan, members: None }]
+            }
+            Some(groups) => groups
+                .iter()
+                .zip(&self.plans)
+                .map(|((members, scene), plan)| Part { whole, scene, plan, members: Some(members) })
+                .collect(),
+        }
+    }
+}
+
+impl Kept {
+    /// Takes in what units hold. A copy is kept if all of its units came to one node.
+    pub(super) fn gather(&mut self, part: &Part<'_>, reports: &mut [Report]) {
+        for report in reports.iter_mut().filter(|report| !report.unit.recorded.is_empty()) {
+            let copy = part.member(report.unit.copy);
+            let node = report.held.as_ref().map_or(0, |held| held.node);
+            let node = match core::mem::replace(&mut self.nodes[copy], node) {
+                u64::MAX => node,
+                before if before == node => node,
+                _ => 0,
+            };
+            self.nodes[copy] = node;
+            if let Some(held) = report.held.take().filter(|_| node > 0) {
+                self.held.put(part.plan, part.whole.particles, (copy, &report.unit), &held);
+            }
+        }
+    }
+}
