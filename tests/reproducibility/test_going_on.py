@@ -244,6 +244,22 @@ def test_events_and_columns_on_the_way_are_those_of_the_whole(method: str) -> No
     same(whole, second, slice(1, None))
 
 
+@pytest.mark.parametrize("method", ["leapfrog", "stormer13"])
+@pytest.mark.parametrize("name", ["three and massless", "apart"])
+def test_events_of_bodies_that_are_integrated_apart_are_those_of_the_whole(name: str, method: str) -> None:
+    """They are looked for on bodies that are integrated together once more, which go on from where each of them is."""
+    scene = scenes()[name]
+    last = len(scene.particles) - 1
+    gap = np.linalg.norm(np.diff(run(scene, [3.0, 6.0], method).position[:, [1, last]], axis=1)[:, 0], axis=-1)
+    event = vv.events.distance(1, last, below=float(gap.mean()), direction=0)
+    whole = run(scene, [3.0, 6.0], method, events=[event])
+    second = run(run(scene, 3.0, method).final, 6.0, method, events=[event])
+    assert goes_on(second)
+    assert len(second.events.t) >= 1
+    assert np.array_equal(whole.events.t[whole.events.t > 3.0], second.events.t)
+    same(whole, second, [0, 1])
+
+
 def altered(path: Path, change: Callable[[dict[str, Any], dict[str, Any]], None]) -> Any:
     """The run in the file after the change to header and arrays."""
     with np.load(path) as file:

@@ -9,11 +9,10 @@ use super::plan::Plan;
 use super::request::Request;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
-use crate::forces::gravity::CLOSED_MAX;
 use crate::memory;
 use crate::numerics::real::Real;
+use crate::ode::Method;
 use crate::ode::fixed::{Place, place};
-use crate::ode::{Method, Scheme};
 use crate::registry;
 
 /// What the numbers mean; another number as soon as they mean something else.
@@ -68,28 +67,46 @@ pub struct UnitHeld {
 }
 
 /// Blocks that a method holds, those of the state among them.
-fn blocks(method: &Method) -> usize {
+pub fn blocks(method: &Method) -> usize {
     STATE_BLOCKS + method.held()
 }
 
-/// Points in a block of each copy: massless bodies are apart beside few massive ones only.
-fn slots(scene: &Scene, method: &Method) -> usize {
-    scene.particles + if matches!(method.scheme, Scheme::Multistep(_)) { CLOSED_MAX } else { 0 }
+/// Massive bodies that have places of their own beside massless ones.
+fn beside(plan: &Plan) -> usize {
+    if plan.passive_apart() { plan.active.len() } else { 0 }
 }
 
-/// The place of a body of a unit in a block of its copy.
-fn place_of(plan: &Plan, particles: usize, unit: &Unit, slot: usize) -> usize {
-    let beside = plan.passive_apart() && unit.bodies.len() > unit.active;
-    if beside && slot < unit.active { particles + slot } else { unit.bodies[slot] }
+/// The places of the bodies of a unit in a block of its copy.
+struct Places<'a> {
+    unit: &'a Unit,
+    particles: usize,
+    /// How many of them have places beside massless ones.
+    beside: usize,
+}
+
+impl<'a> Places<'a> {
+    fn new(plan: &Plan, particles: usize, unit: &'a Unit) -> Self {
+        let beside = if unit.bodies.len() > unit.active { beside(plan) } else { 0 };
+        Self { unit, particles, beside }
+    }
+
+    fn of(&self, slot: usize) -> usize {
+        if slot < self.beside { self.particles + slot } else { self.unit.bodies[slot] }
+    }
 }
 
 impl Held {
-    /// Room for what copies of a scene hold under a method; `None` if it would be too much.
+    /// Room for what copies of a scene hold that run by these plans; `None` if it would be too much.
     ///
     /// # Errors
     /// As [`memory::check`].
-    pub fn room(scene: &Scene, method: &Method) -> Result<Option<Self>> {
-        let (blocks, slots) = (blocks(method), slots(scene, method));
+    pub fn room<'p>(
+        scene: &Scene,
+        method: &Method,
+        plans: impl Iterator<Item = &'p Plan>,
+    ) -> Result<Option<Self>> {
+        let slots = scene.particles + plans.map(beside).max().unwrap_or(0);
+        let blocks = blocks(method);
         let len = [scene.copies, slots, blocks].into_iter().try_fold(3_usize, usize::checked_mul);
         let Some(len) = len.filter(|&len| len <= MOST) else { return Ok(None) };
         let [mut numbers] =
@@ -105,9 +122,10 @@ impl Held {
 
     /// Takes in what a unit of a copy holds.
     pub fn put(&mut self, plan: &Plan, particles: usize, (copy, unit): (usize, &Unit), held: &UnitHeld) {
+        let places = Places::new(plan, particles, unit);
         for (block, points) in held.points.chunks(unit.bodies.len().max(1)).enumerate() {
             for (slot, point) in points.iter().enumerate() {
-                let at = self.at(copy, block, place_of(plan, particles, unit, slot));
+                let at = self.at(copy, block, places.of(slot));
                 self.numbers[at..at + 3].copy_from_slice(point);
             }
         }
@@ -126,7 +144,7 @@ impl Continuation {
             && from.dt.abs() == dt.abs()
             && (end - scene.t0) * from.dt >= 0.0
             && from.held.blocks == blocks(method)
-            && from.held.slots == slots(scene, method)
+            && from.held.slots >= scene.particles
             && from.held.numbers.len() == from.held.at(scene.copies, 0, 0)
             && [&from.position, &from.velocity, &scene.position, &scene.velocity]
                 .iter()
@@ -157,14 +175,15 @@ impl Continuation {
         block: usize,
         slot: usize,
     ) -> [f64; 3] {
-        let at = self.held.at(copy, block, place_of(plan, particles, unit, slot));
+        let at = self.held.at(copy, block, Places::new(plan, particles, unit).of(slot));
         core::array::from_fn(|c| self.held.numbers[at + c])
     }
 
     /// Whether what is held is the state of the scene, to the bit: `start` and `plan` are of the copies `members` of it.
     pub fn agrees(&self, scene: &Scene, start: &Scene, plan: &Plan, members: Option<&[usize]>) -> bool {
         let elapsed = scene.t0 - self.t0;
-        plan.unit_list().into_iter().filter(|unit| !unit.recorded.is_empty()).all(|unit| {
+        let fits = self.held.slots >= scene.particles + beside(plan);
+        fits && plan.unit_list().into_iter().filter(|unit| !unit.recorded.is_empty()).all(|unit| {
             let copy = members.map_or(unit.copy, |members| members[unit.copy]);
             let unit = Prepared::new(plan, start, unit);
             unit.unit.recorded.clone().all(|slot| {

@@ -130,7 +130,8 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
     let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
     // A method that chooses its steps has no nodes, and a closed form holds nothing.
-    let held = if plan.dt.is_some() { Held::room(scene, plan.method)? } else { None };
+    let plans = parts.iter().map(|part| part.plan);
+    let held = if plan.dt.is_some() { Held::room(scene, plan.method, plans)? } else { None };
     let mut kept = held.map(|held| Kept { nodes: vec![u64::MAX; scene.copies], t0: plan.t0, held });
     let mut missing = Vec::new();
     let mut events = Events::default();

@@ -115,7 +115,7 @@ fn lockstep(
     let ended = place(&job.end()).past.is_none() || records.last.is_none();
     let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
     if job.keeps && stands && ended && node > 0 {
-        held::leave(&records.units, &mut reports, node, state, &mut **stepper);
+        held::leave(plan.method, &records.units, &mut reports, node, state, &mut **stepper);
     }
     Ok(reports)
 }

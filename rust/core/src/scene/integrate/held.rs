@@ -1,9 +1,10 @@
 //! What units hold at a node: laid into lanes to go on with, and read off where a run ends.
 
-use super::super::continuation::{Continuation, UnitHeld};
+use super::super::continuation::{Continuation, UnitHeld, blocks as blocks_of};
 use super::super::unit::Prepared;
 use super::{Ending, Job, Report};
 use crate::numerics::lanes::Lanes;
+use crate::ode::Method;
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
 
@@ -45,6 +46,7 @@ pub(super) fn take_up(
 
 /// Tells what the units that have come to a node hold there.
 pub(super) fn leave(
+    method: &Method,
     units: &[Prepared],
     reports: &mut [Report],
     node: u64,
@@ -53,7 +55,8 @@ pub(super) fn leave(
 ) {
     for report in reports.iter_mut() {
         if matches!(report.ending, Ending::Finished | Ending::TooManySteps | Ending::Interrupted) {
-            report.held = Some(UnitHeld { node, points: Vec::new() });
+            let points = Vec::with_capacity(blocks_of(method) * report.unit.bodies.len());
+            report.held = Some(UnitHeld { node, points });
         }
     }
     blocks(node, state, stepper, &mut |numbers| {
