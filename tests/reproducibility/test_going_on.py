@@ -352,7 +352,7 @@ def test_after_an_interruption_in_the_middle_of_a_step_it_begins_anew(method: st
 
     scene = vv.Scene(bodies(2500), vv.Gravity(G=1e-3))
     with pytest.raises(vv.Interrupted) as caught:
-        run(scene, 2.0, method, progress=stop, threads=1)
+        run(scene, 2000.0, method, progress=stop, threads=1)  # it would take minutes
     end = caught.value.trajectory.final
     second = run(end, end.t0 + 0.5, method)
     new = vv.Scene(end.particles, *end.forces, t0=end.t0)
