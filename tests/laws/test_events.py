@@ -165,6 +165,35 @@ def test_members_have_the_events_they_have_alone(method: str) -> None:
     np.testing.assert_array_equal(np.unique(some.member), [0, 1, 2])
 
 
+@pytest.mark.parametrize("method", ["dop853", "leapfrog"])
+def test_members_that_drift_have_the_events_they_have_alone(method: str) -> None:
+    """Where a body is in the scene takes the origin of its own member: elsewhere in some, at rest in others."""
+    scene = vv.problems.figure_eight().scene
+    drift = np.where(np.arange(19) % 3 == 0, 0.0, 0.02 * np.arange(19))
+    copies = scene.ensemble(velocity=scene.particles.velocity + drift[:, None, None] * [1.0, 0.5, 0.0])
+    asked = [events.plane([0.1, 0, 0], [1, 0.5, 0], body=1), events.apsis(2, [0.3, 0.1, 0]), events.apsis(0, 1)]
+    run = copies.run(t=6.0, method=method, events=asked, **options(method))
+    for index in (0, 1, 2, 8, 9, 18):
+        alone = scene.with_state(copies.position[index], copies.velocity[index], 0.0)
+        table = alone.run(t=6.0, method=method, events=asked, **options(method)).events
+        assert set(table.which) == {0, 1, 2}
+        for name in ("which", "t", "position", "velocity"):
+            np.testing.assert_array_equal(getattr(table, name), getattr(run[index].events, name))
+
+
+@pytest.mark.parametrize(("method", "each"), [("dop853", 4.5), ("leapfrog", 5.0)])
+def test_only_steps_that_may_hold_a_zero_are_looked_into(method: str, each: float) -> None:
+    """The inside of a step of dop853 takes three evaluations more, and a shadow step of leapfrog one."""
+    scene = kepler(0.5)
+    step = {"rtol": 1e-9} if method == "dop853" else {"dt": PERIOD / 500}
+    plain = scene.run(t=50.2 * PERIOD, method=method, **step).stats
+    far = scene.run(t=50.2 * PERIOD, method=method, events=[events.plane([3.0, 0, 0], [1, 0, 0])], **step).stats
+    assert far.evaluations == plain.evaluations
+    out = scene.run(t=50.2 * PERIOD, method=method, events=[events.apsis(1, 0)], **step)
+    assert len(out.events) == 100
+    assert out.stats.evaluations - plain.evaluations <= each * len(out.events)
+
+
 @pytest.mark.parametrize("method", METHODS)
 def test_a_terminal_event_ends_the_run(method: str) -> None:
     scene = kepler()

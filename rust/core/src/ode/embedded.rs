@@ -9,6 +9,7 @@ use super::Embedded;
 use super::norm::{Change, Norm, RootMeanSquare};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::{HUGE, PairTerm};
+use super::passes::extension::Coordinate;
 use super::passes::rates::RateErrors;
 use super::passes::stages::{Positions, Term, Weighted};
 use super::runge_kutta::Stages;
@@ -294,16 +295,10 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     }
 
     fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
-        let len = self.stages.len();
-        for term in 0..self.terms() {
-            let mut sums = [S::zero(); 2];
-            for (sum, weights) in sums.iter_mut().zip(&self.between().weights) {
-                for (stage, weights) in weights.iter().enumerate() {
-                    *sum += weights[term] * self.stages.k[stage * len + coordinate];
-                }
-            }
-            into.push(sums);
-        }
+        let from = into.len();
+        into.resize(from + self.terms(), [S::zero(); 2]);
+        let (basis, k, stride) = (&self.between().weights, &self.stages.k[..], self.stages.len());
+        S::pass(Coordinate { coordinate, basis, k, stride, into: &mut into[from..] });
     }
 
     fn terms(&self) -> usize {

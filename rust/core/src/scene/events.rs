@@ -5,6 +5,10 @@
 //!
 //! Directions are those of increasing time, also in a run backwards: a pericenter stays one.
 
+mod sight;
+
+pub use sight::{Moving, Sight};
+
 use super::Scene;
 use super::frame::{Moved, Origin, restored};
 use super::plan::Groups;
@@ -14,6 +18,7 @@ use crate::forces::bodies::PreciseBodies;
 use crate::parallel::Ticker;
 use crate::words::{number, numbers};
 use core::fmt;
+use sight::dot;
 use std::sync::Arc;
 
 /// A function of time, positions and velocities, the numbers of one body after those of another.
@@ -83,53 +88,18 @@ pub struct Event {
     pub last: Option<u64>,
 }
 
-/// How a body moves about the origin of its unit, in the scene's units.
-#[derive(Clone, Copy, Debug, Default)]
-pub struct Moving {
-    /// Its position.
-    pub position: [f64; 3],
-    /// What that leaves out.
-    pub position_rest: [f64; 3],
-    /// Its velocity.
-    pub velocity: [f64; 3],
-    /// What that leaves out.
-    pub velocity_rest: [f64; 3],
-}
-
 /// Bodies at one time.
 #[derive(Clone, Copy)]
 pub struct View<'a> {
     /// Those that are looked at.
     pub bodies: &'a [Moving],
     /// The origin that they move about.
-    pub origin: Origin,
+    pub origin: &'a Origin,
     /// Time since the start.
     pub elapsed: f64,
 }
 
 impl View<'_> {
-    /// Distance vector and relative velocity of two of the bodies.
-    fn relative(&self, i: usize, j: usize) -> ([f64; 3], [f64; 3]) {
-        let (a, b) = (&self.bodies[i], &self.bodies[j]);
-        (
-            core::array::from_fn(|c| {
-                (a.position[c] - b.position[c]) + (a.position_rest[c] - b.position_rest[c])
-            }),
-            core::array::from_fn(|c| {
-                (a.velocity[c] - b.velocity[c]) + (a.velocity_rest[c] - b.velocity_rest[c])
-            }),
-        )
-    }
-
-    /// Distance vector from a point at rest, and velocity.
-    fn about_point(&self, i: usize, point: [f64; 3]) -> ([f64; 3], [f64; 3]) {
-        let state = self.state(i, &self.origin.at(self.elapsed));
-        (
-            core::array::from_fn(|c| (state[0][c].0 - point[c]) + state[0][c].1),
-            core::array::from_fn(|c| state[1][c].0 + state[1][c].1),
-        )
-    }
-
     /// Position and velocity about the origin of the scene, each with what it leaves out.
     fn state(&self, i: usize, Moved { position, velocity }: &Moved) -> [[(f64, f64); 3]; 2] {
         let body = &self.bodies[i];
@@ -150,10 +120,6 @@ pub struct Surroundings<'a> {
     pub bodies: &'a [usize],
     /// Whether only some bodies of the copy are there, all those that have a mass among them.
     pub massive: bool,
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
 impl Event {
@@ -181,88 +147,39 @@ impl Event {
         matches!(self.what, What::Function(_))
     }
 
-    /// Its value. The bodies that it looks at are at these places in the view.
+    /// What it sees. The bodies that it looks at are at these places in the view.
     ///
     /// # Errors
     /// Those of a function; [`Error::Interrupted`].
-    pub fn value(
+    #[inline]
+    pub fn sight(
         &self,
         view: &View<'_>,
         places: &[usize],
         around: &Surroundings<'_>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<f64> {
-        Ok(match &self.what {
-            What::Distance { length, .. } => {
-                // A parabola in time for bodies that move uniformly: a short approach on a long step is not lost.
-                let (distance, _) = view.relative(places[0], places[1]);
-                let distance = distance.map(|x| x / length);
-                dot(distance, distance) - 1.0
-            }
-            What::Plane { point, normal, .. } => dot(*normal, view.about_point(places[0], *point).0),
-            What::Apsis { about, .. } => {
-                let (distance, velocity) = Self::orbit(about, view, places);
-                dot(distance, velocity)
-            }
-            What::Energy(level) => energy(view, around, ticker)? - level,
-            What::Function(function) => {
-                let particles = around.scene.particles;
-                let (mut position, mut velocity) = (vec![0.0; 3 * particles], vec![0.0; 3 * particles]);
-                let origin = view.origin.at(view.elapsed);
-                for (place, &body) in around.bodies.iter().enumerate() {
-                    let [x, v] = view.state(place, &origin);
-                    for c in 0..3 {
-                        (position[3 * body + c], velocity[3 * body + c]) = (x[c].0, v[c].0);
-                    }
-                }
-                function(around.scene.t0 + view.elapsed, &position, &velocity)?
-            }
-        })
+    ) -> Result<Sight> {
+        let origin = if self.asks_where() { view.origin.at(view.elapsed) } else { Moved::NOWHERE };
+        let mut sight = self.sight_of(view.bodies, places, &origin);
+        match &self.what {
+            What::Distance { .. } | What::Plane { .. } | What::Apsis { .. } => {}
+            What::Energy(level) => sight.value = energy(view, around, ticker)? - level,
+            What::Function(function) => sight.value = call(&**function, view, around)?,
+        }
+        Ok(sight)
     }
 
     /// Below what its value is zero for all that its arithmetic can tell.
-    pub fn rounding(&self, view: &View<'_>, places: &[usize]) -> f64 {
+    pub fn rounding(&self, sight: &Sight) -> f64 {
         let size = |x: [f64; 3]| dot(x, x).sqrt();
         8.0 * f64::EPSILON
             * match &self.what {
                 What::Distance { .. } => 1.0,
-                What::Plane { point, .. } => size(*point) + size(view.about_point(places[0], *point).0),
-                What::Apsis { about, .. } => {
-                    let (distance, velocity) = Self::orbit(about, view, places);
-                    size(distance) * size(velocity)
-                }
+                What::Plane { point, .. } => size(*point) + size(sight.distance),
+                What::Apsis { .. } => size(sight.distance) * size(sight.velocity),
                 What::Energy(level) => level.abs(),
                 What::Function(_) => 0.0,
             }
-    }
-
-    fn orbit(about: &Focus, view: &View<'_>, places: &[usize]) -> ([f64; 3], [f64; 3]) {
-        match about {
-            Focus::Body(_) => view.relative(places[0], places[1]),
-            Focus::Point(point) => view.about_point(places[0], *point),
-        }
-    }
-
-    /// The rates of its value at both ends of a step `h`, where they follow from the states there.
-    pub fn rates(&self, ends: [&View<'_>; 2], h: f64, places: &[usize]) -> Option<[f64; 2]> {
-        match &self.what {
-            What::Distance { length, .. } => Some(ends.map(|view| {
-                let (distance, velocity) = view.relative(places[0], places[1]);
-                2.0 * dot(distance.map(|x| x / length), velocity.map(|x| x / length))
-            })),
-            What::Plane { point, normal, .. } => {
-                Some(ends.map(|view| dot(*normal, view.about_point(places[0], *point).1)))
-            }
-            What::Apsis { about, .. } => {
-                let [(x0, v0), (x1, v1)] = ends.map(|view| Self::orbit(about, view, places));
-                // Accelerations of the cubic through both ends.
-                let mean = |c: usize| 6.0 * (x1[c] - x0[c]) / h;
-                let start = core::array::from_fn(|c| (mean(c) - 4.0 * v0[c] - 2.0 * v1[c]) / h);
-                let end = core::array::from_fn(|c| (2.0 * v0[c] + 4.0 * v1[c] - mean(c)) / h);
-                Some([dot(v0, v0) + dot(x0, start), dot(v1, v1) + dot(x1, end)])
-            }
-            What::Energy(_) | What::Function(_) => None,
-        }
     }
 
     /// Refuses what cannot be looked at.
@@ -313,6 +230,19 @@ impl Event {
 /// By name, with what was expected and what came.
 pub fn check(events: &[Event], particles: usize) -> Result<()> {
     events.iter().enumerate().try_for_each(|(index, event)| event.check(index, particles))
+}
+
+fn call(function: &Function, view: &View<'_>, around: &Surroundings<'_>) -> Result<f64> {
+    let particles = around.scene.particles;
+    let (mut position, mut velocity) = (vec![0.0; 3 * particles], vec![0.0; 3 * particles]);
+    let origin = view.origin.at(view.elapsed);
+    for (place, &body) in around.bodies.iter().enumerate() {
+        let [x, v] = view.state(place, &origin);
+        for c in 0..3 {
+            (position[3 * body + c], velocity[3 * body + c]) = (x[c].0, v[c].0);
+        }
+    }
+    function(around.scene.t0 + view.elapsed, &position, &velocity)
 }
 
 fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {

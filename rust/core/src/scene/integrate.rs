@@ -99,74 +99,88 @@ pub fn run(job: &Job<'_>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
 /// # Errors
 /// As [`run`].
 pub fn run_units(job: &Job<'_>, units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    if !job.plan.guided {
-        return run_apart(job, units, ticker);
-    }
     // Bodies that are looked at together record nothing, and nobody follows them.
-    let (guided, watched): (Vec<Unit>, Vec<Unit>) =
-        units.into_iter().partition(|unit| !unit.recorded.is_empty());
-    let mut reports = run_guided(job, guided, ticker)?;
-    if !watched.is_empty() {
-        reports.extend(run_apart(job, watched, ticker)?);
+    let (mut guided, mut apart): (Vec<Unit>, Vec<Unit>) =
+        units.into_iter().partition(|unit| job.plan.guided && !unit.recorded.is_empty());
+    let (over, inside) = job.plan.threads;
+    ticker.control().add_total(guided.len() as u64 * adaptive::PROGRESS_PER_UNIT);
+    let guided = Guided::new(job, &mut guided);
+    let runs = alike(job, &mut apart);
+    ticker.control().add_total(job.total_progress(&runs));
+    let first = guided.chunks();
+    let reports = for_chunks(over, first + runs.len(), ticker, |chunk, ticker| {
+        match (chunk.checked_sub(first), &job.plan.method.scheme) {
+            (None, _) => {
+                let (guides, followers) = guided.chunk(chunk);
+                adaptive::run(job, guides, followers, inside, ticker)
+            }
+            (Some(chunk), Scheme::Embedded(_)) => adaptive::run(job, runs[chunk], &[], inside, ticker),
+            (Some(chunk), _) => fixed::run(job, runs[chunk], inside, ticker),
+        }
+    })?;
+    let mut reports: Vec<Report> = reports.into_iter().flatten().collect();
+    if job.plan.guided {
+        // The first that did not finish tells how a copy ended: the same on any number of threads.
+        reports.sort_by_key(|report| {
+            (report.unit.copy, report.unit.make_up, report.unit.bodies.first().copied())
+        });
     }
     Ok(reports)
 }
 
-/// As [`run_units`], of units that nobody follows.
-fn run_apart(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    // Units share lanes with units of the same make-up; massive bodies alone differ from those with
-    // massless ones beside them.
+/// Units that nobody follows, in runs of one make-up: massive bodies alone differ from those with massless ones beside
+/// them, and only units that are alike share lanes.
+fn alike<'u>(job: &Job<'_>, units: &'u mut [Unit]) -> Vec<&'u [Unit]> {
     units.sort_by_key(|unit| unit.make_up);
-    let (over, inside) = job.plan.threads;
-    let lanes = job.plan.layout.units();
+    let (over, lanes) = (job.plan.threads.0, job.plan.layout.units());
     let per_chunk = units.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
     // Full states, once there is more than one for every thread.
     let per_chunk =
         if per_chunk > lanes { per_chunk.next_multiple_of(job.plan.layout.in_lockstep()) } else { per_chunk };
-    let mut runs: Vec<&[Unit]> = Vec::new();
-    for run in units.chunk_by(|a, b| a.make_up == b.make_up) {
-        runs.extend(run.chunks(per_chunk));
-    }
-    ticker.control().add_total(job.total_progress(&runs));
-    let reports = for_chunks(over, runs.len(), ticker, |chunk, ticker| match &job.plan.method.scheme {
-        Scheme::Embedded(_) => adaptive::run(job, runs[chunk], &[], inside, ticker),
-        _ => fixed::run(job, runs[chunk], inside, ticker),
-    })?;
-    Ok(reports.into_iter().flatten().collect())
+    units.chunk_by(|a, b| a.make_up == b.make_up).flat_map(|run| run.chunks(per_chunk)).collect()
 }
 
-/// As [`run_units`], of massive bodies and massless ones that follow them. Whatever the pieces, massless bodies have the
-/// same bits: each depends on the massive ones and itself.
-fn run_guided(job: &Job<'_>, mut units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Result<Vec<Report>> {
-    let (over, inside) = job.plan.threads;
-    ticker.control().add_total(units.len() as u64 * adaptive::PROGRESS_PER_UNIT);
-    units.sort_by_key(|unit| (unit.copy, unit.make_up));
-    let (mut guides, mut followers): (Vec<Unit>, Vec<&[Unit]>) = (Vec::new(), Vec::new());
-    for of_copy in units.chunk_by(|a, b| a.copy == b.copy) {
-        let (first, active) = (&of_copy[0], job.plan.active.len());
-        let massless = &of_copy[usize::from(!first.follows)..];
-        let guide = if first.follows { job.plan.guide(first.copy, false) } else { first.clone() };
-        let pieces = job.plan.pieces(massless.len(), over);
-        // An event ends it for all pieces at the same step: what they cost is the same on any number of threads.
-        let once_more = Unit { recorded: active..active, ..guide.clone() };
-        guides.push(guide);
-        // Whole lanes for all but the last piece.
-        let mut pieces = massless.chunks(massless.len().div_ceil(pieces).next_multiple_of(WIDTH).max(WIDTH));
-        followers.push(pieces.next().unwrap_or_default());
-        for piece in pieces {
-            guides.push(once_more.clone());
-            followers.push(piece);
+/// Massive bodies and the massless ones that follow them. Whatever the pieces, massless bodies have the same bits: each
+/// depends on the massive ones and itself.
+struct Guided<'u> {
+    guides: Vec<Unit>,
+    followers: Vec<&'u [Unit]>,
+    per_chunk: usize,
+}
+
+impl<'u> Guided<'u> {
+    fn new(job: &Job<'_>, units: &'u mut [Unit]) -> Self {
+        let over = job.plan.threads.0;
+        units.sort_by_key(|unit| (unit.copy, unit.make_up));
+        let (mut guides, mut followers): (Vec<Unit>, Vec<&[Unit]>) = (Vec::new(), Vec::new());
+        for of_copy in units.chunk_by(|a, b| a.copy == b.copy) {
+            let (first, active) = (&of_copy[0], job.plan.active.len());
+            let massless = &of_copy[usize::from(!first.follows)..];
+            let guide = if first.follows { job.plan.guide(first.copy, false) } else { first.clone() };
+            let pieces = job.plan.pieces(massless.len(), over);
+            // An event ends it for all pieces at the same step: what they cost is the same on any number of threads.
+            let once_more = Unit { recorded: active..active, ..guide.clone() };
+            guides.push(guide);
+            // Whole lanes for all but the last piece.
+            let mut pieces =
+                massless.chunks(massless.len().div_ceil(pieces).next_multiple_of(WIDTH).max(WIDTH));
+            followers.push(pieces.next().unwrap_or_default());
+            for piece in pieces {
+                guides.push(once_more.clone());
+                followers.push(piece);
+            }
         }
+        let lanes = job.plan.layout.units();
+        let per_chunk = guides.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
+        Self { guides, followers, per_chunk }
     }
-    let lanes = job.plan.layout.units();
-    let per_chunk = guides.len().div_ceil(lanes * over * 4).clamp(1, UNITS_PER_CHUNK / WIDTH) * lanes;
-    let chunks = guides.len().div_ceil(per_chunk);
-    let reports = for_chunks(over, chunks, ticker, |chunk, ticker| {
-        let own = chunk * per_chunk..((chunk + 1) * per_chunk).min(guides.len());
-        adaptive::run(job, &guides[own.clone()], &followers[own], inside, ticker)
-    })?;
-    let mut reports: Vec<Report> = reports.into_iter().flatten().collect();
-    // The first that did not finish tells how a copy ended: the same on any number of threads.
-    reports.sort_by_key(|report| (report.unit.copy, report.unit.make_up, report.unit.bodies[0]));
-    Ok(reports)
+
+    fn chunks(&self) -> usize {
+        self.guides.len().div_ceil(self.per_chunk)
+    }
+
+    fn chunk(&self, chunk: usize) -> (&[Unit], &[&'u [Unit]]) {
+        let own = chunk * self.per_chunk..((chunk + 1) * self.per_chunk).min(self.guides.len());
+        (&self.guides[own.clone()], &self.followers[own])
+    }
 }

@@ -5,6 +5,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Element;
 use crate::numerics::real::Real;
 use crate::ode::nystrom::{Row, nystrom_weights};
+use crate::ode::passes::extension::Weigh;
 use crate::ode::passes::stages::Term;
 use crate::ode::runge_kutta::coupling;
 use crate::ode::system::Form;
@@ -59,18 +60,11 @@ impl<S: Element> Between<S> {
 
     /// The weights at the fraction `theta` of the step.
     pub(super) fn weigh(&self, theta: S, into: &mut Row<S>) {
-        let rest = S::one() - theta;
         into.fraction = theta;
-        for (terms, coefficients) in [&mut into.position, &mut into.velocity].into_iter().zip(&self.weights) {
+        for (terms, basis) in [&mut into.position, &mut into.velocity].into_iter().zip(&self.weights) {
             terms.clear();
-            terms.extend(coefficients.iter().enumerate().map(|(stage, row)| {
-                let mut weight = S::zero();
-                for (index, &coefficient) in row.iter().enumerate().rev() {
-                    let factor = if index % 2 == 0 { theta } else { rest };
-                    weight = factor * (coefficient + weight);
-                }
-                Term { stage, weight }
-            }));
+            terms.extend((0..basis.len()).map(|stage| Term { stage, weight: S::zero() }));
+            S::pass(Weigh { terms, basis, theta: &theta });
         }
     }
 }

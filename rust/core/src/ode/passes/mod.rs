@@ -1,6 +1,7 @@
 //! The loops over a state that integrators are made of, each written once ([`Pass`](crate::numerics::element::Pass)).
 
 pub mod errors;
+pub mod extension;
 pub mod multistep;
 pub mod rates;
 pub mod stages;

@@ -23,6 +23,14 @@ fn view_terms<S, V: View<S>>(terms: &[Term<S>]) -> &[Term<V>] {
     unsafe { core::slice::from_raw_parts(terms.as_ptr().cast(), terms.len()) }
 }
 
+/// As [`view_terms`], to be changed.
+#[inline(always)]
+pub(super) fn view_terms_mut<S, V: View<S>>(terms: &mut [Term<S>]) -> &mut [Term<V>] {
+    const { assert!(size_of::<Term<V>>() == size_of::<Term<S>>() && align_of::<V>() <= align_of::<S>()) }
+    // SAFETY: as in `view_terms`.
+    unsafe { core::slice::from_raw_parts_mut(terms.as_mut_ptr().cast(), terms.len()) }
+}
+
 /// The weights of stages, and their derivatives one after another.
 #[derive(Clone, Copy, Debug)]
 pub struct Weighted<'a, S> {

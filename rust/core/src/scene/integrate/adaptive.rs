@@ -15,7 +15,7 @@ mod stuck;
 
 use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
-use super::events::Watch;
+use super::events::{Abreast, Watch};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result};
 use crate::error::Error;
@@ -129,6 +129,8 @@ struct Run<'a> {
     clock: Clock<Lanes>,
     trial: Box<dyn Trial<Lanes>>,
     cost: Cost,
+    /// The events of the units in the lanes, if they are looked for side by side.
+    abreast: Option<Abreast<'a>>,
     /// Those that follow the units in the lanes.
     followers: Option<Followers<'a>>,
     /// What of the time of each lane the clock counts: all of it, or a step of those that it follows.
@@ -165,6 +167,7 @@ impl<'a> Run<'a> {
             outputs: Arc::clone(outputs),
             first,
             state,
+            abreast: None,
             followers: None,
             part: Part {
                 from: Lanes::zero(),
@@ -225,6 +228,10 @@ impl<'a> Run<'a> {
         let counts = Counts { evaluations: self.cost.start, ..Counts::default() };
         let watched = self.job.watched();
         let watch = if watched { Watch::begin(self.job, &unit, (&self.state, lane), ticker)? } else { None };
+        if let (Some(watch), Layout::Batched) = (&watch, self.layout) {
+            self.abreast = self.abreast.take().or_else(|| Abreast::of(watch));
+            self.abreast.iter_mut().for_each(|abreast| abreast.begin(lane, &unit));
+        }
         let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
         self.record_start(&mut slot, lane, ticker)?;
         if self.end() == 0.0 {

@@ -5,10 +5,13 @@
 //! is located on the solution itself: the continuous extension of an adaptive method, a shadow step of one with fixed
 //! steps. Both are read and leave no trace, so events change no bit of a run.
 
+mod abreast;
+mod bodies;
+mod clear;
 mod inside;
 mod search;
 
-use super::super::events::{Event, Moving, Surroundings, View};
+use super::super::events::{Event, Moving, Sight, Surroundings, View};
 use super::super::unit::Prepared;
 use super::{Ending, Job, Report};
 use crate::error::Result;
@@ -16,10 +19,10 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
 use crate::ode::state::State;
 use crate::parallel::Ticker;
+pub(super) use abreast::Abreast;
+use bodies::Bodies;
+use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use search::Search;
-
-/// How far the cubic must keep clear of zero, as a part of its range: that much the function may differ from it.
-const CLEARANCE: f64 = 0.5;
 
 /// A zero that was found.
 #[derive(Clone, Debug)]
@@ -70,20 +73,20 @@ impl Span {
 /// The events of one unit under watch.
 pub(super) struct Watch<'a> {
     job: &'a Job<'a>,
-    /// Their places among all events, and those of their bodies in `before`.
+    /// Their places among all events, and those of their bodies among the ones that are looked at.
     events: Vec<(usize, Vec<usize>)>,
-    /// The bodies that are looked at, by their places in the unit.
-    slots: Vec<usize>,
-    /// The same by their indices in the scene.
-    bodies: Vec<usize>,
+    bodies: Bodies,
     massive: bool,
-    /// Bodies and values at the last node, and room for the bodies at the next one and inside a step.
+    /// Bodies and what the events see of them at the last node, and room for those at the next one and inside a step.
     before: Vec<Moving>,
     after: Vec<Moving>,
     inside: Vec<Moving>,
-    /// The terms of each coordinate of each body on the step at hand.
+    sights: Vec<Sight>,
+    next: Vec<Sight>,
+    /// The events that may have zeros in the step at hand.
+    suspects: Vec<usize>,
+    /// The terms of each coordinate of each body on that step.
     terms: Vec<[f64; 2]>,
-    values: Vec<f64>,
     /// Zeros of each event so far.
     counts: Vec<u64>,
     found: Vec<Found>,
@@ -119,78 +122,119 @@ impl<'a> Watch<'a> {
             });
             events.push((index, places.collect()));
         }
+        let nowhere = vec![Moving::default(); slots.len()];
         let mut watch = Self {
             job,
-            bodies: slots.iter().map(|&slot| unit.unit.bodies[slot]).collect(),
+            bodies: Bodies::new(job, unit, &slots, (state, lane)),
             massive: unit.unit.bodies.len() < scene.particles,
-            before: Vec::new(),
-            after: Vec::new(),
-            inside: Vec::new(),
+            before: nowhere.clone(),
+            after: nowhere.clone(),
+            inside: nowhere,
+            sights: vec![Sight::default(); events.len()],
+            next: vec![Sight::default(); events.len()],
+            suspects: Vec::new(),
             terms: Vec::new(),
-            values: Vec::new(),
             counts: vec![0; events.len()],
             found: Vec::new(),
             stopped: false,
-            slots,
             events,
         };
-        watch.read(unit, state, lane);
-        core::mem::swap(&mut watch.before, &mut watch.after);
-        let view = watch.view(unit, &watch.before, job.begun());
-        let mut values = Vec::with_capacity(watch.events.len());
+        watch.bodies.read(state, &mut watch.before);
         for event in 0..watch.events.len() {
-            let value = watch.value(unit, event, &view, ticker)?;
+            let mut sight = watch.sight(unit, event, (&watch.before, job.begun()), ticker)?;
             // What starts at zero has not come there.
-            let (what, places) = watch.event(event);
-            values.push(if value.abs() <= what.rounding(&view, places) { 0.0 } else { value });
+            if sight.value.abs() <= watch.event(event).0.rounding(&sight) {
+                sight.value = 0.0;
+            }
+            watch.sights[event] = sight;
         }
-        watch.values = values;
         Ok(Some(Box::new(watch)))
     }
 
+    #[inline]
     fn event(&self, event: usize) -> (&'a Event, &[usize]) {
         let (index, places) = &self.events[event];
         (&self.job.plan.events[*index], places)
     }
 
-    /// Reads the bodies that are looked at into `after`.
-    fn read(&mut self, unit: &Prepared, state: &State<Lanes>, lane: usize) {
-        let components = unit.shape.components;
-        let rows = state.q().len() / components;
-        let units = self.job.plan.units;
-        let (length, speed) = (units.length, -units.velocity());
-        self.after.clear();
-        for &slot in &self.slots {
-            let (row, lane) = unit.locate(slot, lane);
-            let mut moving = Moving::default();
-            for c in 0..components {
-                let at = c * rows + row;
-                moving.position[c] = scale(state.q()[at].0[lane], length);
-                moving.position_rest[c] = scale(state.q_compensation()[at].0[lane], length);
-                moving.velocity[c] = scale(state.v()[at].0[lane], speed);
-                moving.velocity_rest[c] = scale(state.v_compensation()[at].0[lane], speed);
-            }
-            self.after.push(moving);
-        }
-    }
-
-    fn view<'v>(&self, unit: &Prepared, bodies: &'v [Moving], elapsed: f64) -> View<'v> {
+    /// What an event sees of these bodies after this time.
+    #[inline]
+    fn sight(
+        &self,
+        unit: &Prepared,
+        event: usize,
+        (bodies, elapsed): (&[Moving], f64),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Sight> {
         let elapsed = scale(elapsed, self.job.plan.units.time);
-        View { bodies, origin: unit.origin, elapsed }
-    }
-
-    fn value(&self, unit: &Prepared, event: usize, view: &View<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let view = View { bodies, origin: &unit.origin, elapsed };
         let around = Surroundings {
             scene: self.job.scene,
             copy: unit.unit.copy,
-            bodies: &self.bodies,
+            bodies: &self.bodies.indices,
             massive: self.massive,
         };
         let (event, places) = self.event(event);
-        event.value(view, places, &around, ticker)
+        event.sight(&view, places, &around, ticker)
     }
 
-    /// Looks into a step that leads to the state in a lane.
+    /// Comes to the end of a step; whether there may be zeros in it, and it must be looked into before the next.
+    ///
+    /// # Errors
+    /// Those of the functions.
+    pub(super) fn step(
+        &mut self,
+        unit: &Prepared,
+        span: Span,
+        state: &State<Lanes>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<bool> {
+        self.bodies.read(state, &mut self.after);
+        let h = scale(span.to - span.from, self.job.plan.units.time);
+        self.suspects.clear();
+        for event in 0..self.events.len() {
+            let sight = self.sight(unit, event, (&self.after, span.to), ticker)?;
+            let ends = [&self.sights[event], &sight];
+            let clear = self.event(event).0.rates(ends, h).is_some_and(|rates| {
+                let cubic = cubic(ends.map(|end| end.value), rates, h);
+                keeps_clear(cubic) || keeps_clear_after_all(cubic)
+            });
+            if !clear {
+                self.suspects.push(event);
+            }
+            self.next[event] = sight;
+        }
+        let suspected = !self.suspects.is_empty();
+        if !suspected {
+            self.go_on();
+        }
+        Ok(suspected)
+    }
+
+    /// Turns to the beginning of a step, if the last that was come to the end of is not the one before it.
+    ///
+    /// # Errors
+    /// Those of the functions.
+    pub(super) fn turn_to(
+        &mut self,
+        unit: &Prepared,
+        elapsed: f64,
+        state: &State<Lanes>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.bodies.read(state, &mut self.before);
+        for event in 0..self.events.len() {
+            self.sights[event] = self.sight(unit, event, (&self.before, elapsed), ticker)?;
+        }
+        Ok(())
+    }
+
+    fn go_on(&mut self) {
+        core::mem::swap(&mut self.before, &mut self.after);
+        core::mem::swap(&mut self.sights, &mut self.next);
+    }
+
+    /// Looks into the step that was come to the end of, which leads to the state in a lane.
     ///
     /// # Errors
     /// Those of the functions and of the evaluations that the inside of the step takes.
@@ -202,23 +246,11 @@ impl<'a> Watch<'a> {
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        self.read(unit, after, lane);
+        self.ask(step, ticker)?;
         let mut zeros: Vec<(f64, usize)> = Vec::new();
-        let mut asked = false;
-        for event in 0..self.events.len() {
-            let views = [self.view(unit, &self.before, span.from), self.view(unit, &self.after, span.to)];
-            let value = self.value(unit, event, &views[1], ticker)?;
-            let ends = [self.values[event], value];
-            let clear = self.keeps_clear(event, &views, ends);
-            self.values[event] = value;
-            if clear {
-                continue;
-            }
-            if !asked {
-                self.ask(unit, after, lane, step, ticker)?;
-                asked = true;
-            }
-            let mut search = Search { watch: self, unit, event, span, lane, ends };
+        for event in core::mem::take(&mut self.suspects) {
+            let ends = [self.sights[event].value, self.next[event].value];
+            let mut search = Search { watch: self, unit, event, span, ends };
             zeros.extend(search.zeros(step, ticker)?.into_iter().map(|theta| (theta, event)));
         }
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -237,21 +269,8 @@ impl<'a> Watch<'a> {
                 break;
             }
         }
-        core::mem::swap(&mut self.before, &mut self.after);
+        self.go_on();
         Ok(())
-    }
-
-    /// Whether the cubic through the values and the rates at both ends keeps clear of zero: its coefficients in
-    /// Bernstein's basis have one sign, and are no nearer to zero than the clearance.
-    fn keeps_clear(&self, event: usize, [before, after]: &[View<'_>; 2], [start, end]: [f64; 2]) -> bool {
-        let (event, places) = self.event(event);
-        let h = after.elapsed - before.elapsed;
-        let Some(rates) = event.rates([before, after], h, places) else { return false };
-        let hull = [start, start + h * rates[0] / 3.0, end - h * rates[1] / 3.0, end];
-        let least = hull.into_iter().fold(f64::INFINITY, f64::min);
-        let most = hull.into_iter().fold(f64::NEG_INFINITY, f64::max);
-        let clearance = CLEARANCE * (most - least);
-        least > clearance || most < -clearance
     }
 
     /// What was found, and the ending of a unit that an event has stopped, in the report.

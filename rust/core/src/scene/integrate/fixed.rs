@@ -1,12 +1,13 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
+use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
-use super::events::{Interpolant, Span, Watch};
+use super::events::{Abreast, Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result, held};
 use crate::error::Error;
 use crate::numerics::element::Shape;
-use crate::numerics::lanes::Lanes;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
 use crate::ode::fixed::{self, Ended, Place, Recorder, Taken};
@@ -82,8 +83,19 @@ fn lockstep(
             }
         }
     }
+    let mut abreast: Vec<Abreast<'_>> = Vec::new();
+    if plan.layout == Layout::Batched && watches.len() == units.len() {
+        for (lane, (watch, unit)) in watches.iter().zip(&prepared).enumerate() {
+            if lane % WIDTH == 0 {
+                abreast.extend(watch.as_ref().and_then(|watch| Abreast::of(watch)));
+            }
+            abreast.get_mut(lane / WIDTH).into_iter().for_each(|abreast| abreast.begin(lane, unit));
+        }
+    }
     let mut records = Records {
         job,
+        before: (!abreast.is_empty()).then(|| state.clone()),
+        abreast,
         step: scale(dt, -unit_of_time),
         between: None,
         watched: watches.iter().any(Option::is_some),
@@ -129,6 +141,9 @@ struct Records<'a> {
     between: Option<State<Lanes>>,
     /// Whether any unit has events.
     watched: bool,
+    /// The events of eight units after another, if they are looked for side by side, and the last node.
+    abreast: Vec<Abreast<'a>>,
+    before: Option<State<Lanes>>,
     /// The events of each unit.
     watches: Vec<Option<Box<Watch<'a>>>>,
     /// What looking for them took, which each unit pays for itself.
@@ -181,8 +196,13 @@ impl Recorder<Lanes> for Records<'_> {
             Some((past, state)) => (Span { from: here, to: here + past }, state, 0.0),
         };
         let between = self.between.get_or_insert_with(|| present.clone());
+        let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
+        let mut blocks = [[Bits(0xff); 2]; 2];
+        for (block, abreast) in blocks.iter_mut().zip(&mut self.abreast) {
+            *block = abreast.step(Bits(0xff), &length, after);
+        }
         let mut inside =
-            Shadow { stepper, system, node, present, between, back, length: span.to - span.from };
+            Shadow { stepper, system, node, present, between, last: None, back, length: span.to - span.from };
         let mut going = false;
         for (lane, unit) in self.units.iter().enumerate() {
             let watch = self.watches.get_mut(lane).and_then(Option::as_mut);
@@ -192,8 +212,21 @@ impl Recorder<Lanes> for Records<'_> {
             }
             match watch {
                 Some(watch) => {
+                    let [looked_at, in_step] = blocks[lane / WIDTH % 2].map(|lanes| lanes.lane(lane % WIDTH));
+                    if !looked_at {
+                        going = true;
+                        continue;
+                    }
                     let before = inside.system.evaluations();
-                    watch.look(unit, span, (after, lane), &mut inside, ticker)?;
+                    // A unit pays for what it looks at, whatever was looked at for another one.
+                    inside.last = None;
+                    if let (false, Some(earlier)) = (in_step, &self.before) {
+                        let earlier = if past.is_some() { present } else { earlier };
+                        watch.turn_to(unit, span.from, earlier, ticker)?;
+                    }
+                    if watch.step(unit, span, after, ticker)? {
+                        watch.look(unit, span, (after, lane), &mut inside, ticker)?;
+                    }
                     let evaluations = inside.system.evaluations();
                     self.looks[lane] += evaluations - before;
                     going |= !watch.stopped;
@@ -204,6 +237,9 @@ impl Recorder<Lanes> for Records<'_> {
                 }
                 None => going = true,
             }
+        }
+        if let (None, Some(before)) = (past, &mut self.before) {
+            before.copy_from(present);
         }
         Ok(going)
     }
@@ -259,6 +295,8 @@ struct Shadow<'r> {
     node: u64,
     present: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
+    /// The fraction of the step that it was taken to last.
+    last: Option<f64>,
     /// How far before the node the step begins.
     back: f64,
     length: f64,
@@ -266,9 +304,14 @@ struct Shadow<'r> {
 
 impl Interpolant for Shadow<'_> {
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
+        if self.last == Some(theta) {
+            return Ok(self.between);
+        }
+        self.last = None;
         let past = if self.back == 0.0 { theta * self.length } else { (theta - 1.0) * self.back };
         self.between.copy_from(self.present);
         self.stepper.between(self.node, past, self.between, self.system, ticker)?;
+        self.last = Some(theta);
         Ok(self.between)
     }
 

@@ -53,7 +53,9 @@ pub(super) fn gather(
     let mut behind: Vec<&Report> = Vec::new();
     for report in reports {
         let outcome = &outcomes[part.member(report.unit.copy)];
+        // Of a unit that only looks for events nobody asks where it is.
         if outcome.ending != Ending::Finished
+            && !report.unit.recorded.is_empty()
             && (report.ending == Ending::NotFinite || report.time != outcome.time)
         {
             behind.push(report);

@@ -1,8 +1,9 @@
 //! Events of an adaptive run: looked for on each step that is about to be kept, on its continuous extension.
 
 use super::super::events::{Interpolant, Span};
-use super::{Result, Run};
-use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use super::{Result, Run, Slot};
+use crate::numerics::lanes::{Bits, Lanes};
+use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 use crate::ode::step_control::Outcome;
@@ -20,13 +21,10 @@ struct Inside<'r> {
     terms: Vec<(usize, Vec<[Lanes; 2]>)>,
     outcome: &'r Outcome<Lanes>,
     ready: bool,
-    /// Whether the lane at hand has looked inside.
-    used: bool,
 }
 
 impl Inside<'_> {
     fn ready(&mut self, ticker: &mut Ticker<'_>) -> Result<()> {
-        self.used = true;
         if !self.ready {
             self.trial.dense(self.outcome, self.system, self.state, ticker)?;
             self.ready = true;
@@ -74,7 +72,31 @@ impl Run<'_> {
         dense: Bits,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { trial, forces, state, between, slots, clock, .. } = self;
+        if !outcome.accepted.any() {
+            return Ok(());
+        }
+        let Self { job, trial, forces, state, between, slots, clock, abreast, .. } = self;
+        let span = |lane: usize| Span { from: outcome.from.0[lane], to: clock.elapsed.0[lane] };
+        let [looked_at, in_step] = match abreast {
+            Some(abreast) => {
+                let length = |lane| scale(span(lane).to - span(lane).from, job.plan.units.time);
+                abreast.step(outcome.accepted, &Lanes(core::array::from_fn(length)), trial.next())
+            }
+            None => [outcome.accepted, Bits(0xff)],
+        };
+        let mut suspects = Bits(0);
+        for (lane, slot) in slots.iter_mut().enumerate().filter(|&(lane, _)| looked_at.lane(lane)) {
+            let Some(Slot { unit, watch: Some(watch), .. }) = slot else { continue };
+            if !in_step.lane(lane) {
+                watch.turn_to(unit, span(lane).from, state, ticker)?;
+            }
+            if watch.step(unit, span(lane), trial.next(), ticker)? {
+                suspects = suspects.or(Bits(1 << lane));
+            }
+        }
+        if !suspects.any() {
+            return Ok(());
+        }
         // The end of the step is read while its inside is asked for.
         let after = trial.next().clone();
         let mut inside = Inside {
@@ -85,20 +107,12 @@ impl Run<'_> {
             terms: Vec::new(),
             outcome,
             ready: dense.any(),
-            used: false,
         };
-        let mut charged = Bits(0);
-        for (lane, slot) in slots.iter_mut().enumerate().take(WIDTH) {
-            let Some(slot) = slot else { continue };
-            let Some(watch) = slot.watch.as_mut().filter(|_| outcome.accepted.lane(lane)) else { continue };
-            inside.used = false;
-            let span = Span { from: outcome.from.0[lane], to: clock.elapsed.0[lane] };
-            watch.look(&slot.unit, span, (&after, lane), &mut inside, ticker)?;
-            if inside.used && !dense.lane(lane) {
-                charged = charged.or(Bits(1 << lane));
-            }
+        for (lane, slot) in slots.iter_mut().enumerate().filter(|&(lane, _)| suspects.lane(lane)) {
+            let Some(Slot { unit, watch: Some(watch), .. }) = slot else { continue };
+            watch.look(unit, span(lane), (&after, lane), &mut inside, ticker)?;
         }
-        self.charge(charged);
+        self.charge(suspects.and(dense.not()));
         Ok(())
     }
 }

@@ -1,52 +1,29 @@
 //! The bodies that events look at, inside a step: on the polynomials of an adaptive method, on cubics through both ends, or in
 //! the state of a shadow step.
 
-use super::super::super::unit::Prepared;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
 use crate::numerics::double_double::two_sum;
-use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::scale;
-use crate::ode::state::State;
 use crate::parallel::Ticker;
 
 impl Watch<'_> {
     /// Asks for the polynomials of the bodies that are looked at.
-    pub(super) fn ask(
-        &mut self,
-        unit: &Prepared,
-        state: &State<Lanes>,
-        lane: usize,
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
-        let components = unit.shape.components;
-        let rows = state.q().len() / components;
+    pub(super) fn ask(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<()> {
         self.terms.clear();
-        for &slot in &self.slots {
-            let (row, lane) = unit.locate(slot, lane);
-            for c in 0..components {
-                step.polynomial(c * rows + row, lane, &mut self.terms, ticker)?;
-            }
+        for (coordinate, lane) in self.bodies.coordinates() {
+            step.polynomial(coordinate, lane, &mut self.terms, ticker)?;
         }
         let exponent = -self.job.plan.units.acceleration();
         self.terms.iter_mut().flatten().for_each(|term| *term = scale(*term, exponent));
         Ok(())
     }
 
-    /// Reads a state inside the step.
-    pub(super) fn read_inside(&mut self, unit: &Prepared, state: &State<Lanes>, lane: usize) {
-        core::mem::swap(&mut self.after, &mut self.inside);
-        self.read(unit, state, lane);
-        core::mem::swap(&mut self.after, &mut self.inside);
-    }
-
     /// Places the bodies inside the step: on the polynomial, or on the cubics through both ends if there is none.
     pub(super) fn place(&mut self, components: usize, span: Span, theta: f64) {
         let h = scale(span.to - span.from, self.job.plan.units.time);
         let rest = 1.0 - theta;
-        let count = self.terms.len() / (self.slots.len() * components).max(1);
-        self.inside.clear();
+        let count = self.terms.len() / (self.before.len() * components).max(1);
         for (body, (before, after)) in self.before.iter().zip(&self.after).enumerate() {
             let mut moving = *before;
             for c in 0..components {
@@ -70,7 +47,7 @@ impl Watch<'_> {
                 let (v, left) = two_sum(start, faster);
                 (moving.velocity[c], moving.velocity_rest[c]) = (v, left + before.velocity_rest[c]);
             }
-            self.inside.push(moving);
+            self.inside[body] = moving;
         }
     }
 }

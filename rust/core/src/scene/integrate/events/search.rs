@@ -1,6 +1,7 @@
 //! The zeros of one event in one step: the function is sampled along it; where it changes its sign, or comes near zero and
 //! turns, the zero is located on the solution itself.
 
+use super::super::super::events::Sight;
 use super::super::super::unit::Prepared;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
@@ -14,6 +15,9 @@ const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875
 /// down to round-off.
 const SECTIONS: usize = 40;
 
+/// Secants after which a zero is sought in another way.
+const SECANTS: usize = 6;
+
 /// A part of a step at whose ends a function has different signs.
 type Bracket = [(f64, f64); 2];
 
@@ -23,7 +27,6 @@ pub(super) struct Search<'s, 'a> {
     pub(super) unit: &'s Prepared,
     pub(super) event: usize,
     pub(super) span: Span,
-    pub(super) lane: usize,
     pub(super) ends: [f64; 2],
 }
 
@@ -37,8 +40,7 @@ impl Search<'_, '_> {
     pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
         let mut points = vec![(0.0, self.ends[0])];
         for theta in SAMPLES {
-            self.watch.place(self.unit.shape.components, self.span, theta);
-            points.push((theta, self.value_inside(theta, ticker)?));
+            points.push((theta, self.sight_between(theta, ticker)?.value));
         }
         points.push((1.0, self.ends[1]));
         let mut brackets: Vec<Bracket> = Vec::new();
@@ -54,13 +56,21 @@ impl Search<'_, '_> {
                 brackets.extend(self.turn(left, middle, right, step, ticker)?);
             }
         }
+        // Upwards along the run backwards is downwards in time.
         let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
+        let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
         let mut zeros = Vec::new();
+        if let (true, &[bracket]) = (self.watch.terms.is_empty(), &brackets[..])
+            && crosses(self.ends[0], self.ends[1])
+        {
+            if counts(self.ends[0]) {
+                zeros.push(self.one_zero(bracket, step, ticker)?);
+            }
+            return Ok(zeros);
+        }
         for bracket in brackets {
             let Some([a, b]) = self.settled(bracket, step, ticker)? else { continue };
-            // Upwards along the run backwards is downwards in time.
-            let up = if a.1 < 0.0 { 1.0 } else { -1.0 };
-            if direction * up >= 0.0 {
+            if counts(a.1) {
                 zeros.push(zero([a, b], |theta| self.value_at(theta, step, ticker))?);
             }
         }
@@ -68,6 +78,41 @@ impl Search<'_, '_> {
         zeros.sort_by(f64::total_cmp);
         zeros.dedup();
         Ok(zeros)
+    }
+
+    /// The one zero of a step between whose nodes there are but shadow steps, where the cubics have it in this bracket. Each
+    /// shadow step costs as much as a step, and the cubics are near: a few secants do.
+    fn one_zero(
+        &mut self,
+        bracket: Bracket,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let mut theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
+        let mut slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
+        let mut whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
+        let mut last: Option<(f64, f64)> = None;
+        for _ in 0..SECANTS {
+            if !(whole[0].0 < theta && theta < whole[1].0) {
+                break;
+            }
+            let sight = self.sight_at(theta, step, ticker)?;
+            let (value, rounding) = (sight.value, self.watch.event(self.event).0.rounding(&sight));
+            if value.abs() <= 0.25 * rounding {
+                return Ok(theta);
+            }
+            whole[usize::from(crosses(whole[0].1, value))] = (theta, value);
+            if let Some((other, at_other)) = last.filter(|(_, value)| value.abs() > 1e3 * rounding) {
+                slope = (value - at_other) / (theta - other);
+            }
+            let next = theta - value / slope;
+            if (next - theta).abs() <= f64::EPSILON * theta {
+                return Ok(theta);
+            }
+            last = Some((theta, value));
+            theta = next;
+        }
+        zero(whole, |theta| self.value_at(theta, step, ticker))
     }
 
     /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
@@ -124,17 +169,28 @@ impl Search<'_, '_> {
 
     /// On the polynomial, or on the solution where there is none.
     fn value_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
-        if self.watch.terms.is_empty() {
-            self.watch.read_inside(self.unit, step.at(theta, ticker)?, self.lane);
-        } else {
-            self.watch.place(self.unit.shape.components, self.span, theta);
-        }
-        self.value_inside(theta, ticker)
+        Ok(self.sight_at(theta, step, ticker)?.value)
     }
 
-    fn value_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
-        let view = self.watch.view(self.unit, &self.watch.inside, self.span.at(theta));
-        self.watch.value(self.unit, self.event, &view, ticker)
+    fn sight_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Sight> {
+        if self.watch.terms.is_empty() {
+            let state = step.at(theta, ticker)?;
+            self.watch.bodies.read(state, &mut self.watch.inside);
+            self.sight_inside(theta, ticker)
+        } else {
+            self.sight_between(theta, ticker)
+        }
+    }
+
+    /// On the polynomial, or on the cubics where there is none.
+    fn sight_between(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
+        self.watch.place(self.unit.shape.components, self.span, theta);
+        self.sight_inside(theta, ticker)
+    }
+
+    fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
+        let bodies = (&self.watch.inside[..], self.span.at(theta));
+        self.watch.sight(self.unit, self.event, bodies, ticker)
     }
 }
 
