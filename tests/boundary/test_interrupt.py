@@ -285,3 +285,38 @@ def test_ctrl_c_leaves_bodies_that_do_not_interact_at_one_time() -> None:
         1,
     )
     assert line == "True True\n"
+
+
+SLOW_TO_BEGIN = {
+    "springs": """
+        n = 30_000
+        place = rng.normal(size=(n, 3)) + np.arange(n)[:, None]
+        springs = vv.Spring(np.arange(n - 1), np.arange(1, n), 1.0, 0.1)
+        scene = vv.Scene(vv.Particles(np.ones(n), place), springs)
+        call = lambda: scene.run(t=1000.0, method="dop853", threads=threads)
+        """,
+}
+
+
+@needs_signals
+@pytest.mark.parametrize("what", SLOW_TO_BEGIN)
+def test_ctrl_c_is_answered_where_much_is_prepared(what: str) -> None:
+    """A list of springs is gone through once, not for every spring."""
+    code = "import numpy as np, visviva as vv\nrng = np.random.default_rng(0)\n" + textwrap.dedent(SLOW_TO_BEGIN[what])
+    code += textwrap.dedent(
+        """
+        print("ready", flush=True)
+        try:
+            call()
+        except KeyboardInterrupt as error:
+            print(type(error).__name__, flush=True)
+        """
+    )
+    best = float("inf")
+    for _ in range(3):
+        elapsed, line = interrupted_child(code, 1)
+        assert line == "Interrupted\n"
+        best = min(best, elapsed)
+        if best < PROMISE:
+            break
+    assert best < PROMISE

@@ -1,5 +1,7 @@
 """The command line, as a person meets it."""
 
+import os
+import platform
 import subprocess
 import sys
 from pathlib import Path
@@ -21,8 +23,16 @@ def test_methods_lists_every_method(capsys: pytest.CaptureFixture[str]) -> None:
 def test_info(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["info"]) == 0
     shown = capsys.readouterr().out
-    for word in ("version: ", "simd", "threads: ", "profile: "):
+    for word in ("version: ", "simd", "fused multiply add: ", "threads: ", "profile: "):
         assert word in shown
+
+
+def test_info_says_what_it_costs_to_do_without_fused_multiply_add() -> None:
+    environment = {**os.environ, "VISVIVA_SIMD": "portable"}
+    command = [sys.executable, "-m", "visviva", "info"]
+    shown = subprocess.run(command, env=environment, capture_output=True, text=True, check=True).stdout
+    slow = platform.machine().lower() in ("x86_64", "amd64")
+    assert ("ten times" in shown) == slow
 
 
 def test_demo_makes_tables_and_pictures(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

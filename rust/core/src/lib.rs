@@ -20,3 +20,4 @@ pub mod units;
 pub mod words;
 
 pub use error::{Error, Result};
+pub(crate) use numerics::simd::tiered;

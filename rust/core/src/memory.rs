@@ -21,17 +21,41 @@ pub fn check(argument: &str, what: &str, bytes: Option<usize>, cure: &str) -> Re
     }
 }
 
+/// What to do where an argument asks for more than fits.
+const CURE: &str = "ask for fewer at a time";
+
+/// The values, for which there is room or the argument is refused.
+///
+/// # Errors
+/// As [`check`].
+pub fn collected<T>(argument: &str, what: &str, values: impl ExactSizeIterator<Item = T>) -> Result<Vec<T>> {
+    let mut all = room(argument, what, Some(values.len()))?;
+    all.extend(values);
+    Ok(all)
+}
+
+/// An empty vector with room for so many values.
+///
+/// # Errors
+/// As [`check`].
+pub fn room<T>(argument: &str, what: &str, len: Option<usize>) -> Result<Vec<T>> {
+    let bytes = len.and_then(|len| len.checked_mul(size_of::<T>()));
+    check(argument, what, bytes, CURE)?;
+    let mut values = Vec::new();
+    values.try_reserve_exact(len.unwrap_or(0)).map_err(|_| refusal(argument, what, bytes, CURE))?;
+    Ok(values)
+}
+
 /// Empty vectors with room for so many numbers each.
 ///
 /// # Errors
 /// As [`check`].
 pub fn reserved<const K: usize>(argument: &str, what: &str, len: Option<usize>) -> Result<[Vec<f64>; K]> {
-    let cure = "ask for fewer at a time";
     let bytes = len.and_then(|len| len.checked_mul(K * size_of::<f64>()));
-    check(argument, what, bytes, cure)?;
+    check(argument, what, bytes, CURE)?;
     let mut vectors = [const { Vec::new() }; K];
     for vector in &mut vectors {
-        vector.try_reserve_exact(len.unwrap_or(0)).map_err(|_| refusal(argument, what, bytes, cure))?;
+        vector.try_reserve_exact(len.unwrap_or(0)).map_err(|_| refusal(argument, what, bytes, CURE))?;
     }
     Ok(vectors)
 }

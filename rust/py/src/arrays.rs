@@ -13,12 +13,13 @@ use numpy::npyffi::NPY_ARRAY_ALIGNED;
 use numpy::{Element, IntoPyArray, PyArray, PyArrayDyn, PyReadonlyArrayDyn, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use visviva_core::Error;
+use visviva_core::memory::collected;
 use visviva_core::scene::room::give_back;
 
 /// The values in row-major order and the shape, which must match `shape` wherever that says a length.
 ///
 /// # Errors
-/// `InvalidInput` with the name of the argument.
+/// `InvalidInput` with the name of the argument, also where there is no memory for the copy.
 pub(crate) fn copied<T: Element + Copy, const D: usize>(
     name: &str,
     array: &PyReadonlyArrayDyn<'_, T>,
@@ -39,7 +40,14 @@ pub(crate) fn copied<T: Element + Copy, const D: usize>(
         return Err(refused("the array is not aligned in memory; pass a copy of it".to_owned()));
     }
     let view = array.as_array();
-    let values = view.as_slice().map_or_else(|| view.iter().copied().collect(), <[T]>::to_vec);
+    let what = "a copy of it";
+    let values = view
+        .as_slice()
+        .map_or_else(
+            || collected(name, what, view.iter().copied()),
+            |all| collected(name, what, all.iter().copied()),
+        )
+        .map_err(|error| raised(array.py(), error))?;
     Ok((values, found))
 }
 

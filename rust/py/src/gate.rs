@@ -116,8 +116,9 @@ fn finished<T>(
     match (result, pending) {
         (Ok(value), None) => {
             let (done, total) = control.progress();
-            reported(py, progress, done, total)?;
-            Ok(Outcome { value, pending: None })
+            // What came after the last look: Python would raise it on the way out, bare and without the value.
+            let pending = watched(py, progress, done, total).err();
+            Ok(Outcome { value, pending })
         }
         (Ok(value), pending) => Ok(Outcome { value, pending }),
         // A defect of ours is not hidden by the wish to stop.

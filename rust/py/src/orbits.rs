@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use visviva_core::memory::reserved;
+use visviva_core::memory::{collected, reserved, room};
 use visviva_core::nbody::anomalies::convert;
 use visviva_core::nbody::constants::{self, ConicConstants};
 use visviva_core::nbody::elements::{Elements, free_fall_time};
@@ -70,23 +70,28 @@ const CONSTANTS: Columns<ConicConstants> = &[
 /// `count` vectors of an argument.
 fn vectors(name: &str, array: &Array<'_>, count: usize) -> PyResult<Vec<Vector3<f64>>> {
     let (values, _) = copied(name, array, [Some(count), Some(3)])?;
-    Ok(values.chunks_exact(3).map(Vector3::from_column_slice).collect())
+    let vectors = values.chunks_exact(3).map(Vector3::from_column_slice);
+    collected(name, "a copy of it", vectors).map_err(|error| raised(array.py(), error))
 }
 
-/// One result per orbit; a refusal says which orbit it is about.
-fn each<T>(count: usize, ticker: &mut Ticker<'_>, mut one: impl FnMut(usize) -> Result<T>) -> Result<Vec<T>> {
+/// One result per orbit; a refusal says which orbit it is about, or that there are more of them than there is memory for.
+fn each<T>(
+    (argument, count): (&str, usize),
+    ticker: &mut Ticker<'_>,
+    mut one: impl FnMut(usize) -> Result<T>,
+) -> Result<Vec<T>> {
     let which = |index: usize, error| match error {
         Error::InvalidInput { argument, message } if count > 1 => {
             Error::invalid(&argument, format!("{message} (entry {index} of {count})"))
         }
         other => other,
     };
-    (0..count)
-        .map(|index| {
-            ticker.tick()?;
-            one(index).map_err(|error| which(index, error))
-        })
-        .collect()
+    let mut found = room(argument, &format!("the results of {count} orbits"), Some(count))?;
+    for index in 0..count {
+        ticker.tick()?;
+        found.push(one(index).map_err(|error| which(index, error))?);
+    }
+    Ok(found)
 }
 
 fn column(py: Python<'_>, values: Vec<f64>) -> PyResult<Column<'_>> {
@@ -98,9 +103,17 @@ fn column(py: Python<'_>, values: Vec<f64>) -> PyResult<Column<'_>> {
 fn table<'py, T>(py: Python<'py>, columns: Columns<T>, found: &[T]) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (name, of) in columns {
-        dict.set_item(name, column(py, found.iter().map(of).collect())?)?;
+        let values = collected(name, "a number of each orbit", found.iter().map(of));
+        dict.set_item(name, column(py, values.map_err(|error| raised(py, error))?)?)?;
     }
     Ok(dict)
+}
+
+/// The coordinates of a vector of each orbit.
+fn flat(name: &str, vectors: impl ExactSizeIterator<Item = Vector3<f64>>) -> Result<Vec<f64>> {
+    let mut values = room(name, "a vector of each orbit", vectors.len().checked_mul(3))?;
+    vectors.for_each(|vector| values.extend(vector.iter()));
+    Ok(values)
 }
 
 /// `count` numbers of each of several arguments.
@@ -127,12 +140,12 @@ pub(crate) fn orbit_elements<'py>(
     let position = vectors("position", &position, count)?;
     let velocity = vectors("velocity", &velocity, count)?;
     let found = compute(py, 0, None, |ticker| {
-        each(count, ticker, |i| Elements::from_state(mu[i], position[i], velocity[i]))
+        each(("position", count), ticker, |i| Elements::from_state(mu[i], position[i], velocity[i]))
     })?
     .whole(py)?;
     let dict = table(py, ELEMENTS, &found)?;
     for (name, of) in ELEMENT_VECTORS {
-        let values = found.iter().flat_map(|elements| <[f64; 3]>::from(of(elements))).collect();
+        let values = flat(name, found.iter().map(of)).map_err(|error| raised(py, error))?;
         dict.set_item(name, moved(py, values, &[count, 3])?)?;
     }
     Ok(dict)
@@ -177,13 +190,14 @@ pub(crate) fn orbit_state<'py>(
         argument_of_pericenter: w[k],
     };
     let states = compute(py, 0, None, |ticker| {
-        each(count, ticker, |k| state_from_elements(mu[k], shape(k), kind(anomaly[k])))
+        each((name, count), ticker, |k| state_from_elements(mu[k], shape(k), kind(anomaly[k])))
     })?
     .whole(py)?;
-    let flat = |part: fn(&State) -> Vector3<f64>| {
-        states.iter().flat_map(|state| <[f64; 3]>::from(part(state))).collect()
+    let vectors = |part: fn(&State) -> Vector3<f64>| {
+        let values = flat(name, states.iter().map(part)).map_err(|error| raised(py, error))?;
+        moved(py, values, &[count, 3])
     };
-    Ok((moved(py, flat(|state| state.0), &[count, 3])?, moved(py, flat(|state| state.1), &[count, 3])?))
+    Ok((vectors(|state| state.0)?, vectors(|state| state.1)?))
 }
 
 /// Position and velocity, (T, N, 3) each, of N orbits at T times since their epoch.
@@ -205,7 +219,7 @@ pub(crate) fn orbit_propagate<'py>(
             "positions and velocities at all these times",
             count.checked_mul(length).and_then(|n| n.checked_mul(3)),
         )?;
-        let orbits = each(count, ticker, |i| KeplerOrbit::new(mu[i], r[i], v[i]))?;
+        let orbits = each(("position", count), ticker, |i| KeplerOrbit::new(mu[i], r[i], v[i]))?;
         for &time in &times {
             for orbit in &orbits {
                 let (r, v) = orbit.state(time);
@@ -231,9 +245,10 @@ pub(crate) fn orbit_anomaly<'py>(
     repulsive: bool,
 ) -> PyResult<Column<'py>> {
     let (count, [anomaly, e]) = together([("anomaly", &anomaly), ("eccentricity", &eccentricity)])?;
-    let values =
-        compute(py, 0, None, |ticker| each(count, ticker, |i| convert(name, anomaly[i], e[i], repulsive)))?
-            .whole(py)?;
+    let values = compute(py, 0, None, |ticker| {
+        each(("anomaly", count), ticker, |i| convert(name, anomaly[i], e[i], repulsive))
+    })?
+    .whole(py)?;
     column(py, values)
 }
 
@@ -246,7 +261,8 @@ pub(crate) fn orbit_period<'py>(
 ) -> PyResult<Column<'py>> {
     let (count, [mu, a]) = together([("mu", &mu), ("semi_major_axis", &semi_major_axis)])?;
     let values =
-        compute(py, 0, None, |ticker| each(count, ticker, |i| constants::period(mu[i], a[i])))?.whole(py)?;
+        compute(py, 0, None, |ticker| each(("mu", count), ticker, |i| constants::period(mu[i], a[i])))?
+            .whole(py)?;
     column(py, values)
 }
 
@@ -259,9 +275,10 @@ pub(crate) fn orbit_free_fall_time<'py>(
     end: Array<'py>,
 ) -> PyResult<Column<'py>> {
     let (count, [mu, start, end]) = together([("mu", &mu), ("start", &start), ("end", &end)])?;
-    let values =
-        compute(py, 0, None, |ticker| each(count, ticker, |i| free_fall_time(mu[i], start[i], end[i])))?
-            .whole(py)?;
+    let values = compute(py, 0, None, |ticker| {
+        each(("mu", count), ticker, |i| free_fall_time(mu[i], start[i], end[i]))
+    })?
+    .whole(py)?;
     column(py, values)
 }
 
@@ -278,7 +295,7 @@ pub(crate) fn conic_from_state<'py>(
     let r = vectors("position", &position, count)?;
     let v = vectors("velocity", &velocity, count)?;
     let found = compute(py, 0, None, |ticker| {
-        each(count, ticker, |i| ConicConstants::from_state(mass[i], strength[i], r[i], v[i]))
+        each(("position", count), ticker, |i| ConicConstants::from_state(mass[i], strength[i], r[i], v[i]))
     })?
     .whole(py)?;
     table(py, CONSTANTS, &found)
@@ -300,7 +317,9 @@ pub(crate) fn conic_from_constants<'py>(
         ("energy", &energy),
     ])?;
     let found = compute(py, 0, None, |ticker| {
-        each(count, ticker, |i| ConicConstants::from_constants(mass[i], strength[i], l[i], energy[i]))
+        each(("angular_momentum", count), ticker, |i| {
+            ConicConstants::from_constants(mass[i], strength[i], l[i], energy[i])
+        })
     })?
     .whole(py)?;
     table(py, CONSTANTS, &found)

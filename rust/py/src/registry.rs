@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
+use visviva_core::memory::reserved;
 use visviva_core::potentials::Potential;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::registry;
@@ -161,7 +162,8 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
         }
         Kind::Vector | Kind::AxialVector | Kind::Point => {
             let (values, _) = copied(name, &get::<Column<'_>>(description, name)?, [Some(3)])?;
-            Value::Vector([values[0], values[1], values[2]])
+            let vector = <[f64; 3]>::try_from(&values[..]);
+            Value::Vector(vector.map_err(|_| raised(py, Error::invalid(name, "expected three numbers")))?)
         }
         Kind::Potential => {
             Value::Potential(described_potential(&get::<Bound<'_, PyDict>>(description, name)?)?)
@@ -184,6 +186,9 @@ fn get<'py, T: for<'a> FromPyObject<'a, 'py, Error: Into<PyErr>>>(
 type Column<'py> = PyReadonlyArrayDyn<'py, f64>;
 type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 
+/// Distances between two looks at whether somebody asks to stop.
+const AT_A_TIME: usize = 1024;
+
 /// V(r), −dV/dr and d²V/dr² of a potential at each distance.
 #[pyfunction]
 pub(crate) fn potential<'py>(
@@ -193,6 +198,17 @@ pub(crate) fn potential<'py>(
 ) -> PyResult<(Values<'py>, Values<'py>, Values<'py>)> {
     let potential = described_potential(description)?;
     let (r, shape) = copied("r", &r, [None])?;
-    let [value, force, curvature] = compute(py, 0, None, |_| Ok(potential.evaluate(&r)))?.whole(py)?;
+    let [value, force, curvature] = compute(py, 0, None, |ticker| {
+        let mut all: [Vec<f64>; 3] =
+            reserved("r", "three numbers at each of these distances", Some(r.len()))?;
+        for some in r.chunks(AT_A_TIME) {
+            ticker.tick()?;
+            for (all, part) in all.iter_mut().zip(potential.evaluate(some)) {
+                all.extend(part);
+            }
+        }
+        Ok(all)
+    })?
+    .whole(py)?;
     Ok((moved(py, value, &shape)?, moved(py, force, &shape)?, moved(py, curvature, &shape)?))
 }

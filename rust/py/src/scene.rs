@@ -26,7 +26,7 @@ use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 #[pyfunction]
 pub(crate) fn plan<'py>(py: Python<'py>, asked: Asked<'py>) -> PyResult<Bound<'py, PyDict>> {
     let (scene, request, _) = asked.prepared(None)?;
-    let plan = compute(py, 0, None, |_| plan_scene(&scene, &request))?.whole(py)?;
+    let plan = compute(py, 0, None, |ticker| plan_scene(&scene, &request, ticker))?.whole(py)?;
     plan_dict(py, &plan)
 }
 

@@ -11,6 +11,7 @@ use numpy::{PyArray1, PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList, PyTuple};
 use std::sync::{Mutex, PoisonError};
+use visviva_core::memory::check;
 use visviva_core::ode::events::{Condition, Events, Zeros};
 use visviva_core::ode::extension::View;
 use visviva_core::ode::initial_value::{Request, Solution, solve};
@@ -178,10 +179,17 @@ pub(crate) struct Asked<'py> {
 impl Asked<'_> {
     fn request(&self, py: Python<'_>) -> PyResult<Request> {
         let outputs = self.t_eval.as_ref().map(|t| PyResult::Ok(copied("t_eval", t, [None])?.0));
+        let y0 = copied("y0", &self.y0, [None])?.0;
+        if let Some(times) = &outputs {
+            let times = times.as_ref().map_or(0, Vec::len);
+            let bytes = times.checked_mul(y0.len()).and_then(|n| n.checked_mul(size_of::<f64>()));
+            let what = format!("states of {} numbers at {times} times", y0.len());
+            check("t_eval", &what, bytes, "ask for fewer times").map_err(|error| raised(py, error))?;
+        }
         Ok(Request {
             method: solver(&self.method).map_err(|error| raised(py, error))?,
             span: self.span,
-            y0: copied("y0", &self.y0, [None])?.0,
+            y0,
             rtol: self.rtol.clone(),
             atol: self.atol.clone(),
             first_step: self.first_step,

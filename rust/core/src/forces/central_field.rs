@@ -118,14 +118,20 @@ impl ForceTerm for CentralField {
     fn center(&self) -> Option<[f64; 3]> {
         Some(self.center)
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let (potential, center) = (self.potential.scaled(units), units.take_vector(self.center, [1, 0, 0]));
         let mut strongest = 0.0_f64;
         for &(_, mass, position) in bodies {
             let [_, force, _] = potential.evaluate(&[distance(position, center)]);
             strongest = strongest.max(force[0].abs() / mass);
+            ticker.tick()?;
         }
-        strongest
+        Ok(strongest)
     }
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         self.potential.inverse_distance_strength().map(|k| (k, self.center))

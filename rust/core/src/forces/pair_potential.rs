@@ -140,7 +140,12 @@ impl ForceTerm for PairPotential {
         let fine = |force: &&f64| force.is_finite() && **force != 0.0;
         force.first().filter(fine).map(|&force| (length + mass - exponent(force)).div_euclid(2))
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: crate::units::Units) -> f64 {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: crate::units::Units,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let potential = self.potential.scaled(units);
         let mut strongest = 0.0_f64;
         for (at, &(_, mass, position)) in bodies.iter().enumerate() {
@@ -151,8 +156,9 @@ impl ForceTerm for PairPotential {
                 .fold(f64::MAX, f64::min);
             let [_, force, _] = potential.evaluate(&[nearest]);
             strongest = force.iter().fold(strongest, |m, force| m.max(force.abs() / mass));
+            ticker.tick()?;
         }
-        strongest
+        Ok(strongest)
     }
 }
 

@@ -59,7 +59,12 @@ struct Spring {
 
 /// Springs, in the order in which they act.
 #[derive(Debug)]
-struct Springs(Vec<Spring>);
+struct Springs {
+    springs: Vec<Spring>,
+    /// Each end and the place of its spring in the list, in the order of the bodies: there may be as many springs as
+    /// bodies, and units as springs.
+    ends: Vec<(usize, usize)>,
+}
 
 impl Springs {
     fn new(values: &[Value]) -> Result<Self> {
@@ -79,7 +84,36 @@ impl Springs {
             k: k[at.min(k.len() - 1)],
             length: length[at.min(length.len() - 1)],
         });
-        Ok(Self(springs.collect()))
+        let springs: Vec<Spring> = springs.collect();
+        let each = springs.iter().enumerate();
+        let mut ends: Vec<(usize, usize)> =
+            each.flat_map(|(at, spring)| [(spring.ends.0, at), (spring.ends.1, at)]).collect();
+        ends.sort_unstable();
+        Ok(Self { springs, ends })
+    }
+
+    /// The springs at a body, by their places in the list.
+    fn at(&self, body: usize) -> impl Iterator<Item = usize> {
+        let from = self.ends.partition_point(|&(other, _)| other < body);
+        self.ends.iter().skip(from).take_while(move |&&(other, _)| other == body).map(|&(_, at)| at)
+    }
+
+    /// The springs between some of these bodies, in the order in which they act, and the places of their ends among them.
+    fn between(&self, bodies: impl Iterator<Item = usize>) -> impl Iterator<Item = (Spring, (usize, usize))> {
+        let mut places: Vec<(usize, usize)> = bodies.enumerate().map(|(place, body)| (body, place)).collect();
+        places.sort_unstable();
+        let mut own: Vec<usize> = places.iter().flat_map(|&(body, _)| self.at(body)).collect();
+        own.sort_unstable();
+        own.dedup();
+        own.into_iter().filter_map(move |at| {
+            let spring = *self.springs.get(at)?;
+            let place = |end: usize| {
+                let found = places.binary_search_by_key(&end, |&(body, _)| body).ok()?;
+                places.get(found).map(|&(_, place)| place)
+            };
+            // Those between bodies of other systems act there.
+            Some((spring, (place(spring.ends.0)?, place(spring.ends.1)?)))
+        })
     }
 }
 
@@ -100,17 +134,14 @@ impl ForceTerm for Springs {
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let bodies = context.first().bodies;
         let packed = context.arrangement == Arrangement::Packed;
-        let place = |body: usize| {
-            let slot = bodies.iter().position(|&other| other == body)?;
+        let place = |slot: usize| {
             let (row, lane) = packed_place(slot, context.active);
-            Some(if packed { row * WIDTH + lane } else { slot })
+            if packed { row * WIDTH + lane } else { slot }
         };
-        // Those between bodies of other systems act there.
-        let own = self.0.iter().filter_map(|spring| {
-            let ends = (place(spring.ends.0)?, place(spring.ends.1)?);
+        let own = self.between(bodies.iter().copied()).map(|(spring, (i, j))| {
             let (k, length) =
                 (context.units.take(spring.k, STIFFNESS), context.units.take(spring.length, [1, 0, 0]));
-            Some(Spring { ends, k, length })
+            Spring { ends: (place(i), place(j)), k, length }
         });
         let inverse_mass = context.per_body(|system, slot| 1.0 / system.mass[slot]);
         Box::new(Kernel {
@@ -129,7 +160,7 @@ impl ForceTerm for Springs {
     ) -> Result<(Scaled, Scaled)> {
         let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
         let unit = bodies.units.length;
-        for spring in &self.0 {
+        for spring in &self.springs {
             let [from, to] = [spring.ends.0, spring.ends.1].map(|body| bodies.vector(Of::Position, body));
             let d: Vector = core::array::from_fn(|c| to[c] - from[c]);
             let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
@@ -142,7 +173,7 @@ impl ForceTerm for Springs {
     }
 
     fn validate(&self, view: &Bodies<'_>) -> Result<()> {
-        for spring in &self.0 {
+        for spring in &self.springs {
             let (i, j) = spring.ends;
             for (name, body) in [("i", i), ("j", j)] {
                 if body >= view.particles {
@@ -168,13 +199,13 @@ impl ForceTerm for Springs {
         Ok(())
     }
     fn needs_mass(&self, particle: usize) -> bool {
-        self.0.iter().any(|spring| spring.ends.0 == particle || spring.ends.1 == particle)
+        self.at(particle).next().is_some()
     }
     fn acts(&self, _: &Bodies<'_>) -> bool {
-        self.0.iter().any(|spring| spring.k != 0.0)
+        self.springs.iter().any(|spring| spring.k != 0.0)
     }
     fn coupling(&self) -> Coupling {
-        Coupling::Listed(self.0.iter().map(|spring| spring.ends).collect())
+        Coupling::Listed(self.springs.iter().map(|spring| spring.ends).collect())
     }
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING
@@ -184,17 +215,16 @@ impl ForceTerm for Springs {
     }
     /// 1/ω of the stiffest spring on the mass.
     fn unit_of_time(&self, _: i32, mass: i32) -> Option<i32> {
-        let stiffest = self.0.iter().map(|spring| spring.k).fold(0.0, f64::max);
+        let stiffest = self.springs.iter().map(|spring| spring.k).fold(0.0, f64::max);
         (stiffest > 0.0).then(|| (mass - exponent(stiffest)).div_euclid(2))
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
-        let find = |body: usize| bodies.iter().find(|(index, ..)| *index == body);
-        let of = |spring: &Spring| {
-            let (&(_, m, x), &(_, n, y)) = (find(spring.ends.0)?, find(spring.ends.1)?);
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        let of = |(spring, (i, j)): (Spring, (usize, usize))| {
+            let (&(_, m, x), &(_, n, y)) = (bodies.get(i)?, bodies.get(j)?);
             let extension = distance(x, y) - units.take(spring.length, [1, 0, 0]);
             Some(units.take(spring.k, STIFFNESS) * extension.abs() / m.min(n))
         };
-        self.0.iter().filter_map(of).fold(0.0, f64::max)
+        Ok(self.between(bodies.iter().map(|&(body, ..)| body)).filter_map(of).fold(0.0, f64::max))
     }
 }
 

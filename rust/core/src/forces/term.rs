@@ -198,8 +198,11 @@ pub trait ForceTerm: Debug + Send + Sync {
     }
     /// The largest acceleration that it gives to one of some bodies at rest, by which a step is chosen if nothing else
     /// tells: their places in the scene, masses and positions in those units.
-    fn strongest(&self, _: &[(usize, f64, [f64; 3])], _: Units) -> f64 {
-        0.0
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    fn strongest(&self, _: &[(usize, f64, [f64; 3])], _: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        Ok(0.0)
     }
     /// The largest rate at which it slows down or turns such a body, or changes in time: nothing it does to a body by itself
     /// takes longer than one over it.

@@ -70,8 +70,8 @@ impl ForceTerm for Uniform {
     fn keeps_plane(&self) -> bool {
         self.g[2] == 0.0
     }
-    fn strongest(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
-        distance(units.take_vector(self.g, ACCELERATION), [0.0; 3])
+    fn strongest(&self, _: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        Ok(distance(units.take_vector(self.g, ACCELERATION), [0.0; 3]))
     }
     fn as_uniform(&self) -> Option<[f64; 3]> {
         Some(self.g)

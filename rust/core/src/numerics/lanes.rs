@@ -1,7 +1,8 @@
 //! Eight `f64` side by side: the logical width of every kernel on every tier.
 //!
-//! [`Lanes`] is how lanes lie in memory and the portable arithmetic on them; [`Avx2`] and [`Avx512`]
+//! [`Lanes`] is how lanes lie in memory and the portable arithmetic on them; `Avx2` and `Avx512`
 //! have the same layout and the same results, so a slice of one can be viewed as a slice of another.
+//! Those two stay within the crate: their instructions may run only where `tiered!` has seen that there are any.
 
 use super::double_double::{DoubleDouble, two_product};
 use super::real::{Mask, Real};
@@ -54,8 +55,8 @@ impl Bits {
     }
 }
 
-/// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`].
-pub trait Vector8: Real<Mask = Bits> {
+/// A tier's eight lanes. Same size, alignment and meaning as [`Lanes`], which only the types of this room promise.
+pub trait Vector8: Real<Mask = Bits> + sealed::Sealed {
     /// How many of them a processor's registers hold.
     const REGISTERS: usize;
     /// A slice of lanes seen as this tier's.
@@ -247,6 +248,13 @@ impl Real for Lanes {
     }
 }
 
+/// What nobody outside the room can say of a type.
+mod sealed {
+    pub trait Sealed {}
+}
+
+impl sealed::Sealed for Lanes {}
+
 impl Vector8 for Lanes {
     const REGISTERS: usize = 4;
     #[inline(always)]
@@ -281,9 +289,9 @@ mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
 #[cfg(target_arch = "x86_64")]
-pub use avx2::Avx2;
+pub(crate) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
-pub use avx512::Avx512;
+pub(crate) use avx512::Avx512;
 
 #[cfg(test)]
 mod tests;

@@ -117,7 +117,6 @@ pub fn prefetch(address: *const f64) {
 /// `name::<P>(argument)`, which calls `body::<V, P>(argument)` with `V` the tier's
 /// [`Vector8`](crate::numerics::lanes::Vector8).
 /// The body must be `#[inline(always)]`, else it is compiled without the tier's instructions.
-#[macro_export]
 macro_rules! tiered {
     ($(
         $(#[$meta:meta])*
@@ -154,3 +153,5 @@ macro_rules! tiered {
         }
     )+};
 }
+
+pub(crate) use tiered;

@@ -30,7 +30,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         events: Vec::new(),
         threads,
     };
-    let mut plan = Plan::new(scene, &request)?;
+    let mut plan = Plan::new(scene, &request, ticker)?;
     if plan.groups == Groups::All {
         // Whatever the layout of a run would be: this is one state of one unit.
         plan.layout = Layout::Packed;
@@ -42,7 +42,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
     };
     let mut result = vec![[0.0; 3]; scene.particles];
     for unit in plan.unit_list() {
-        let prepared = Prepared::new(&plan, scene, unit);
+        let prepared = Prepared::new(&plan, scene, unit, ticker)?;
         let mut dynamics = unit::dynamics(&plan, &[&prepared], threads);
         let shape = dynamics.shape;
         let mut state = prepared.blank_state(1);

@@ -13,6 +13,7 @@ use crate::memory;
 use crate::numerics::real::Real;
 use crate::ode::Method;
 use crate::ode::fixed::{Place, place};
+use crate::parallel::Ticker;
 use crate::registry;
 
 /// What the numbers mean; another number as soon as they mean something else.
@@ -179,13 +180,20 @@ impl Continuation {
         core::array::from_fn(|c| self.held.numbers[at + c])
     }
 
-    /// Whether what is held is the state of the scene, to the bit: `start` and `plan` are of the copies `members` of it.
-    pub fn agrees(&self, scene: &Scene, start: &Scene, plan: &Plan, members: Option<&[usize]>) -> bool {
+    /// Whether what is held is the state of the scene, to the bit: `start` and `plan` are of the copies `members` of it. Of no
+    /// use to a caller who asks to stop.
+    pub fn agrees(
+        &self,
+        scene: &Scene,
+        (start, plan): (&Scene, &Plan),
+        members: Option<&[usize]>,
+        ticker: &mut Ticker<'_>,
+    ) -> bool {
         let elapsed = scene.t0 - self.t0;
         let fits = self.held.slots >= scene.particles + beside(plan);
         fits && plan.unit_list().into_iter().filter(|unit| !unit.recorded.is_empty()).all(|unit| {
             let copy = members.map_or(unit.copy, |members| members[unit.copy]);
-            let unit = Prepared::new(plan, start, unit);
+            let Ok(unit) = Prepared::new(plan, start, unit, ticker) else { return false };
             unit.unit.recorded.clone().all(|slot| {
                 let [q, q_rest, v, v_rest] = core::array::from_fn(|block| {
                     self.point(plan, scene.particles, (copy, &unit.unit), block, slot)

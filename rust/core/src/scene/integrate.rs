@@ -68,8 +68,8 @@ impl Job<'_> {
         scale(self.plan.dt.unwrap_or(0.0), -self.plan.units.time) * self.plan.from as f64
     }
 
-    fn prepare(&self, unit: &Unit) -> Prepared {
-        Prepared::new(self.plan, self.scene, unit.clone())
+    fn prepare(&self, unit: &Unit, ticker: &mut Ticker<'_>) -> Result<Prepared> {
+        Prepared::new(self.plan, self.scene, unit.clone(), ticker)
     }
 
     /// Progress is counted in steps if they are fixed, else in parts of each unit's time.

@@ -23,6 +23,7 @@ use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
 use crate::ode::Method;
 use crate::ode::system::{Form, Needs};
+use crate::parallel::Ticker;
 use crate::registry::METHODS;
 use std::sync::Arc;
 
@@ -94,9 +95,11 @@ impl Plan {
     /// Plans a run.
     ///
     /// # Errors
-    /// As [`Scene::validate`] and [`Request::check`]: bad input is refused here, before anything runs.
-    pub fn new(scene: &Scene, request: &Request) -> Result<Self> {
+    /// As [`Scene::validate`] and [`Request::check`]: bad input is refused here, before anything runs. When the caller asks
+    /// to stop.
+    pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
+        ticker.tick()?;
         let Checked { method, automatic, direction, dt } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
@@ -113,7 +116,7 @@ impl Plan {
         // Events are looked for on steps.
         let closed_forms = automatic && request.events.is_empty();
         let solutions =
-            if closed_forms { Solutions::of(scene) } else { Solutions::integration(scene.copies) };
+            if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
         let frame = if solutions.integrates() { Frame::of(&forces) } else { Frame::Given };
         // What accelerates all alike moves the origin, and nothing relative to it.
@@ -189,7 +192,7 @@ impl Plan {
             let threads = threads.min(rows.div_ceil(rows_per_chunk(self.particles)));
             return (if work < STATES_FOR_THREADS { 1 } else { threads }, 1);
         }
-        let units = self.unit_list().len();
+        let units = self.copies * self.watched_kinds().len();
         let together =
             if self.guided { self.copies * self.pieces(self.passive.len(), threads) } else { units };
         let groups = together.div_ceil(self.layout.units());
@@ -245,13 +248,23 @@ impl Plan {
 
     /// The units of the integration, in the order in which they are begun.
     pub fn unit_list(&self) -> Vec<Unit> {
-        let mut kinds = self.kinds();
-        self.watch(&mut kinds);
-        let kinds = &kinds;
+        let kinds = &self.watched_kinds();
         (0..self.copies)
             .flat_map(|copy| kinds.iter().enumerate().map(move |(index, kind)| (copy, index, kind)))
             .map(|(copy, index, kind)| Unit { copy, leads: index == 0, ..kind.clone() })
             .collect()
+    }
+
+    /// The first of them.
+    pub fn first_unit(&self) -> Option<Unit> {
+        self.watched_kinds().into_iter().next().map(|kind| Unit { leads: true, ..kind })
+    }
+
+    /// The units of each copy.
+    fn watched_kinds(&self) -> Vec<Unit> {
+        let mut kinds = self.kinds();
+        self.watch(&mut kinds);
+        kinds
     }
 
     /// What each copy is made of: a unit for each group of bodies.

@@ -105,7 +105,7 @@ impl Part<'_> {
     /// Whether columns can be derived at the record.
     fn tells(&self) -> bool {
         !self.plan.solutions.integrates()
-            || self.plan.unit_list().first().is_some_and(|unit| unit.is_whole(self.scene))
+            || self.plan.first_unit().is_some_and(|unit| unit.is_whole(self.scene))
     }
 }
 
@@ -115,7 +115,7 @@ impl Part<'_> {
 /// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
-    let begun = Begun::of(scene, request)?;
+    let begun = Begun::of(scene, request, ticker)?;
     let parts = begun.parts(scene);
     let plan = &begun.plan;
     let derived = request.derived();

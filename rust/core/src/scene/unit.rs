@@ -15,11 +15,13 @@ use super::Scene;
 use super::frame::{Origin, Units};
 use super::layout::Layout;
 use super::plan::Plan;
+use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
 use crate::forces::term::Coupling;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
+use crate::parallel::Ticker;
 use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
@@ -95,7 +97,10 @@ pub struct Prepared {
 
 impl Prepared {
     /// Brings a unit of a scene into the plan's units.
-    pub fn new(plan: &Plan, scene: &Scene, unit: Unit) -> Self {
+    ///
+    /// # Errors
+    /// Only errors of the library itself. If the caller asks to stop, it has no size.
+    pub fn new(plan: &Plan, scene: &Scene, unit: Unit, ticker: &mut Ticker<'_>) -> Result<Self> {
         let units = plan.units;
         let origin = plan.origin_of(scene, &unit);
         let layout = plan.layout_of(&unit);
@@ -134,8 +139,12 @@ impl Prepared {
             scratch: RefCell::default(),
         };
         if plan.method.adaptive() {
-            prepared.measure(plan);
+            match prepared.measure(plan, ticker) {
+                // Nothing is integrated any more, but its start can be recorded.
+                Ok(()) | Err(Error::Interrupted) => {}
+                Err(other) => return Err(other),
+            }
         }
-        prepared
+        Ok(prepared)
     }
 }

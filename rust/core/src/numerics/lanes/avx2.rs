@@ -107,7 +107,7 @@ impl Binary for Avx2Half {
 /// Eight lanes in two 256-bit registers.
 #[derive(Clone, Copy, Debug)]
 #[repr(C, align(64))]
-pub struct Avx2(Avx2Half, Avx2Half);
+pub(crate) struct Avx2(Avx2Half, Avx2Half);
 
 operators!(Avx2:
     |a: Avx2, b: Avx2| Avx2(a.0 + b.0, a.1 + b.1),
@@ -177,6 +177,8 @@ impl Real for Avx2 {
         scaled_by(self, coefficient)
     }
 }
+
+impl super::sealed::Sealed for Avx2 {}
 
 impl Vector8 for Avx2 {
     const REGISTERS: usize = 8;

@@ -13,7 +13,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 /// Eight lanes in one 512-bit register.
 #[derive(Clone, Copy, Debug)]
 #[repr(transparent)]
-pub struct Avx512(__m512d);
+pub(crate) struct Avx512(__m512d);
 
 // SAFETY (all blocks of this file): see the module header.
 operators!(Avx512:
@@ -75,6 +75,8 @@ impl Real for Avx512 {
         scaled_by(self, coefficient)
     }
 }
+
+impl super::sealed::Sealed for Avx512 {}
 
 impl Vector8 for Avx512 {
     const REGISTERS: usize = 32;

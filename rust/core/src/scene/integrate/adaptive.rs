@@ -52,7 +52,7 @@ pub(super) fn run(
 ) -> Result<Vec<Report>> {
     let elapsed = |&t: &f64| scale(t - job.scene.t0, -job.plan.units.time);
     let outputs: Arc<[f64]> = job.times.iter().map(elapsed).collect();
-    let first = job.prepare(&units[0]);
+    let first = job.prepare(&units[0], ticker)?;
     let own = Forces::Own(unit::dynamics(job.plan, &[&first], threads));
     let mut run = Run::new(job, first, own, &outputs)?;
     run.waiting = units.iter().enumerate();
@@ -200,13 +200,15 @@ impl<'a> Run<'a> {
         for lane in 0..self.layout.units() {
             while self.slots[lane].is_none() {
                 let Some((index, unit)) = self.waiting.next() else { break };
-                let unit = self.job.prepare(unit);
+                let unit = self.job.prepare(unit, ticker)?;
                 if let Some(followers) = &mut self.followers {
                     followers.take_up(lane, index, &unit, ticker)?;
                 }
                 self.put(lane, index, unit, ticker)?;
             }
         }
+        // A unit that was prepared when somebody had asked to stop takes no step.
+        ticker.tick()?;
         Ok(core::mem::replace(&mut self.part.fresh, Bits(0)))
     }
 

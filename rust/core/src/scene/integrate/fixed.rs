@@ -45,7 +45,8 @@ fn lockstep(
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
     let (plan, t0) = (job.plan, job.scene.t0);
-    let prepared: Vec<Prepared> = units.iter().map(|unit| job.prepare(unit)).collect();
+    let prepared: Vec<Prepared> =
+        units.iter().map(|unit| job.prepare(unit, ticker)).collect::<Result<_>>()?;
     let views: Vec<&Prepared> = prepared.iter().collect();
     let mut dynamics = unit::dynamics(plan, &views, threads);
     let dt = plan.dt.unwrap_or(plan.direction);

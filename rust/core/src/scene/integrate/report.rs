@@ -91,4 +91,20 @@ impl Job<'_> {
         }
         Report { unit: unit.unit.clone(), ending, rows, counts, time, states, found: Vec::new(), held: None }
     }
+
+    /// The report of a unit that was interrupted before it began: where it was at the start.
+    pub(super) fn not_begun(&self, unit: &Unit) -> Report {
+        let (positions, velocities) = (self.scene.positions(unit.copy), self.scene.velocities(unit.copy));
+        let recorded = unit.bodies.get(unit.recorded.clone()).unwrap_or_default();
+        Report {
+            unit: unit.clone(),
+            ending: Ending::Interrupted,
+            rows: 0,
+            counts: Counts::default(),
+            time: self.scene.t0,
+            states: recorded.iter().map(|&body| [positions[body], velocities[body]]).collect(),
+            found: Vec::new(),
+            held: None,
+        }
+    }
 }

@@ -55,9 +55,6 @@ impl Plan {
 
     /// Whether an event is looked for in a unit of its own.
     pub(super) fn watches_apart(&self) -> bool {
-        let mut kinds = self.kinds();
-        let own = kinds.len();
-        self.watch(&mut kinds);
-        kinds.len() > own
+        self.watched_kinds().len() > self.kinds().len()
     }
 }

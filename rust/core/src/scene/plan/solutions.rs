@@ -2,8 +2,10 @@
 
 use super::super::Scene;
 use crate::closed_forms::{ClosedForm, Member};
+use crate::error::Result;
 use crate::forces::ForceTerm;
 use crate::forces::term::Bodies;
+use crate::parallel::Ticker;
 use crate::registry::CLOSED_FORMS;
 
 /// A closed form, or none for an integration.
@@ -19,17 +21,21 @@ pub struct Solutions {
 
 impl Solutions {
     /// What the registry has for the members of a scene.
-    pub fn of(scene: &Scene) -> Self {
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    pub fn of(scene: &Scene, ticker: &mut Ticker<'_>) -> Result<Self> {
         let members = scene.copies;
         let solution = |copy: usize| {
+            ticker.tick()?;
             let member = member(scene, copy);
-            CLOSED_FORMS.iter().copied().find(|form| (form.applies)(&member))
+            Ok(CLOSED_FORMS.iter().copied().find(|form| (form.applies)(&member)))
         };
-        let mut each: Vec<Solution> = (0..members).map(solution).collect();
+        let mut each: Vec<Solution> = (0..members).map(solution).collect::<Result<_>>()?;
         if each.windows(2).all(|pair| pair[0] == pair[1]) {
             each.truncate(1);
         }
-        Self { each, members }
+        Ok(Self { each, members })
     }
 
     /// Step by step.

@@ -8,15 +8,16 @@ use super::super::request::Request;
 use super::patterns::patterns;
 use super::{Kept, Part};
 use crate::error::Result;
+use crate::parallel::Ticker;
 
 /// The plan of a run.
 ///
 /// # Errors
 /// As [`Plan::new`].
-pub fn plan(scene: &Scene, request: &Request) -> Result<Plan> {
+pub fn plan(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Plan> {
     match scene.continuation {
-        None => Plan::new(scene, request),
-        Some(_) => Ok(Begun::of(scene, request)?.plan),
+        None => Plan::new(scene, request, ticker),
+        Some(_) => Ok(Begun::of(scene, request, ticker)?.plan),
     }
 }
 
@@ -31,26 +32,27 @@ pub(super) struct Begun {
 
 impl Begun {
     /// Plans a run.
-    pub(super) fn of(scene: &Scene, request: &Request) -> Result<Self> {
+    pub(super) fn of(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         if let (Some(start), Some(from)) = (Continuation::start(scene, request), &scene.continuation) {
             // What is wrong with the request is told of the scene as it is.
             let _ = request.check(scene)?;
-            let mut begun = Self::planned(&start, request)?;
+            let mut begun = Self::planned(&start, request, ticker)?;
             begun.plans.iter_mut().chain([&mut begun.plan]).for_each(|plan| plan.from = from.node);
             begun.start = Some(start);
-            let agrees = |part: &Part<'_>| from.agrees(scene, part.scene, part.plan, part.members);
-            if begun.parts(scene).iter().all(agrees) {
+            let mut parts = begun.parts(scene).into_iter();
+            if parts.all(|part| from.agrees(scene, (part.scene, part.plan), part.members, ticker)) {
+                drop(parts);
                 return Ok(begun);
             }
         }
-        Self::planned(scene, request)
+        Self::planned(scene, request, ticker)
     }
 
-    fn planned(scene: &Scene, request: &Request) -> Result<Self> {
-        let plan = Plan::new(scene, request)?;
-        let groups = patterns(scene, &plan);
-        let plans =
-            groups.iter().flatten().map(|(_, part)| Plan::new(part, request)).collect::<Result<_>>()?;
+    fn planned(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
+        let plan = Plan::new(scene, request, ticker)?;
+        let groups = patterns(scene, &plan, ticker)?;
+        let plans = groups.iter().flatten().map(|(_, part)| Plan::new(part, request, ticker));
+        let plans = plans.collect::<Result<_>>()?;
         Ok(Self { start: None, plan, groups, plans })
     }
 

@@ -4,21 +4,31 @@
 use super::super::Scene;
 use super::super::frame::Units;
 use super::super::plan::Plan;
+use crate::error::Result;
+use crate::parallel::Ticker;
 use std::collections::BTreeMap;
 
 /// Copies that have closed forms, and copies that are integrated with the same set of massless bodies and the same units,
 /// and their scenes; `None` if that is all of them.
 ///
 /// They are run apart, so that each has the bits it has alone, and a wild one spoils no other.
-pub(super) fn patterns(scene: &Scene, plan: &Plan) -> Option<Vec<(Vec<usize>, Scene)>> {
+///
+/// # Errors
+/// When the caller asks to stop.
+pub(super) fn patterns(
+    scene: &Scene,
+    plan: &Plan,
+    ticker: &mut Ticker<'_>,
+) -> Result<Option<Vec<(Vec<usize>, Scene)>>> {
     if !plan.solutions.integrates() {
-        return None;
+        return Ok(None);
     }
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
-    let units: Vec<Units> = (0..scene.copies).map(|copy| plan.units_of(scene, copy)).collect();
+    let units = |copy| ticker.tick().map(|()| plan.units_of(scene, copy));
+    let units: Vec<Units> = (0..scene.copies).map(units).collect::<Result<_>>()?;
     let alike = |copy: usize| units[copy] == units[0] && pattern(copy).eq(pattern(0));
     if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
-        return None;
+        return Ok(None);
     }
     let mut groups: BTreeMap<Option<(Vec<bool>, Units)>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
@@ -26,7 +36,7 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan) -> Option<Vec<(Vec<usize>, Sc
         let key = integrated.then(|| (pattern(copy).collect(), units[copy]));
         groups.entry(key).or_default().push(copy);
     }
-    Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect())
+    Ok(Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect()))
 }
 
 /// Some copies of a scene.

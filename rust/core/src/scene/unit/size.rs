@@ -3,13 +3,20 @@
 use super::super::distance;
 use super::super::frame;
 use super::{Origin, Plan, Prepared};
+use crate::error::Result;
+use crate::forces::term::ForceTerm;
+use crate::parallel::Ticker;
+use std::sync::Arc;
 
 /// Above this many bodies the smallest separation is estimated from the mean density instead.
 const ALL_PAIRS: usize = 8192;
 
 impl Prepared {
     /// Finds the unit's reference and size.
-    pub(super) fn measure(&mut self, plan: &Plan) {
+    ///
+    /// # Errors
+    /// When the caller asks to stop.
+    pub(super) fn measure(&mut self, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<()> {
         self.reference = self.find_reference(plan);
         let mut extent = 0.0_f64;
         let mut speed = 0.0_f64;
@@ -17,8 +24,8 @@ impl Prepared {
             extent = extent.max(distance(*x, self.reference.center));
             speed = speed.max(distance(*v, self.reference.drift));
         }
-        let separation = self.smallest_separation(plan, extent);
-        let field = self.field_strength(plan);
+        let separation = self.smallest_separation(plan, extent, ticker)?;
+        let field = self.field_strength(plan, ticker)?;
         let length = if separation > 0.0 && separation.is_finite() {
             separation
         } else {
@@ -33,6 +40,7 @@ impl Prepared {
         let span = self.units.take(plan.span, [0, 0, 1]);
         let slow = if span > 0.0 { length / span } else { 1.0 };
         self.size = (length, if velocity > 0.0 { velocity } else { slow });
+        Ok(())
     }
 
     /// A length for a body that is where distances are measured from: what it passes and falls before the forces on it
@@ -80,10 +88,10 @@ impl Prepared {
     }
 
     /// Of bodies that attract each other; of bodies that do not, their distance from the reference.
-    fn smallest_separation(&self, plan: &Plan, extent: f64) -> f64 {
+    fn smallest_separation(&self, plan: &Plan, extent: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
         let (active, bodies) = (self.unit.active, self.position.len());
         if active == 0 || bodies < 2 {
-            return extent;
+            return Ok(extent);
         }
         let mut separation = f64::INFINITY;
         if bodies > ALL_PAIRS {
@@ -94,16 +102,20 @@ impl Prepared {
                 for j in i + 1..bodies {
                     separation = separation.min(distance(self.position[i], self.position[j]));
                 }
+                ticker.tick()?;
             }
         }
         let length = plan.forces.iter().map(|force| force.length()).fold(0.0, f64::max);
-        separation.max(self.units.take(length, [1, 0, 0]))
+        Ok(separation.max(self.units.take(length, [1, 0, 0])))
     }
 
     /// The largest acceleration that a force gives to a body of the unit, at rest where it is.
-    fn field_strength(&self, plan: &Plan) -> f64 {
+    fn field_strength(&self, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<f64> {
         let bodies = self.bodies();
-        plan.forces.iter().map(|force| force.strongest(&bodies, self.units)).fold(0.0, f64::max)
+        let of = |most: f64, force: &Arc<dyn ForceTerm>| {
+            Ok(most.max(force.strongest(&bodies, self.units, ticker)?))
+        };
+        plan.forces.iter().try_fold(0.0, of)
     }
 
     /// Place in the scene, mass and position of each body.

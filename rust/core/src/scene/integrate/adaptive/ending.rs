@@ -7,8 +7,7 @@ use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Mask;
 use crate::ode::step_control::Outcome;
 use crate::parallel::Ticker;
-use crate::scene::integrate::Job;
-use crate::scene::integrate::report::{Counts, Ending, Report};
+use crate::scene::integrate::report::{Ending, Report};
 use crate::scene::unit::Unit;
 use std::collections::BTreeSet;
 
@@ -109,16 +108,8 @@ impl<'a> Run<'a> {
             let first = |unit: &Unit| unit.bodies.get(unit.recorded.start).copied();
             let name = |unit: &Unit| (unit.copy, unit.make_up, first(unit));
             let begun: BTreeSet<_> = reports.iter().map(|report| name(&report.unit)).collect();
-            reports.extend(all.filter(|unit| !begun.contains(&name(unit))).map(|unit| not_begun(job, unit)));
+            reports.extend(all.filter(|unit| !begun.contains(&name(unit))).map(|unit| job.not_begun(unit)));
         }
         reports
     }
-}
-
-/// The report of a unit that was interrupted before it began.
-fn not_begun(job: &Job<'_>, unit: &Unit) -> Report {
-    let prepared = job.prepare(unit);
-    let mut state = prepared.blank_state(1);
-    prepared.write(&mut state, 0);
-    job.report(&prepared, &state, 0, job.scene.t0, Ending::Interrupted, 0, Counts::default())
 }

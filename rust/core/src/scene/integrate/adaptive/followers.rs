@@ -59,7 +59,7 @@ impl<'a> Followers<'a> {
     ) -> Result<()> {
         let Some(units) = self.units.get(index) else { return Ok(()) };
         for (place, unit) in units.iter().enumerate() {
-            let mut unit = self.job.prepare(unit);
+            let mut unit = self.job.prepare(unit, ticker)?;
             measure(&mut unit, guide, self.job);
             let (run, lane) = match self.job.plan.layout {
                 Layout::Packed => (place / WIDTH, place % WIDTH),
