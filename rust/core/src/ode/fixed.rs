@@ -153,10 +153,10 @@ pub fn run<S: Element>(
                         return Err(error);
                     }
                 };
-                if (node - from) % PROGRESS_STEPS == 0 {
+                if (node - from).is_multiple_of(PROGRESS_STEPS) {
                     ticker.advance(PROGRESS_STEPS);
                 }
-                if (node - from) % WATCH_STEPS == 0 {
+                if (node - from).is_multiple_of(WATCH_STEPS) {
                     stepper.settle(state);
                     if !recorder.goes_on(state) {
                         return Ok(());

@@ -166,7 +166,7 @@ mod tests {
         }
         fn acceleration(
             &mut self,
-            t: f64,
+            t: &f64,
             q: &[f64],
             _: &[f64],
             a: &mut [f64],

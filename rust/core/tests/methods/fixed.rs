@@ -43,8 +43,8 @@ fn a_run_stops_at_its_step_limit_and_records_nodes_to_the_bit() {
         let places = [(0, None), (3, Some(0.01)), (3, Some(0.02)), (17, None), (25, None)]
             .map(|(node, past)| Place { node, past });
         let mut stepper = fixed_stepper(method, h, &dynamics, &state);
-        let Ended { steps, outcome } =
-            run(&mut *stepper, 20, &mut state, &mut dynamics, places.into_iter(), &mut ticker, &mut seen);
+        let Ended { steps, outcome, .. } =
+            run(&mut *stepper, 0, 20, &mut state, &mut dynamics, places.into_iter(), &mut ticker, &mut seen);
         outcome.unwrap();
         let seen = seen.0;
         assert_eq!((steps, seen.len()), (20, 4), "{}", method.name);

@@ -75,8 +75,16 @@ fn error_between_nodes(method: &'static Method, make: Make, t: f64, steps: usize
     let mut seen = Keep(Vec::new());
     let places = [Place { node: steps as u64, past: Some(0.375 * h) }];
     let mut stepper = fixed_stepper(method, h, &dynamics, &state);
-    let ended =
-        run(&mut *stepper, u64::MAX, &mut state, &mut dynamics, places.into_iter(), &mut ticker, &mut seen);
+    let ended = run(
+        &mut *stepper,
+        0,
+        u64::MAX,
+        &mut state,
+        &mut dynamics,
+        places.into_iter(),
+        &mut ticker,
+        &mut seen,
+    );
     ended.outcome.unwrap();
     assert_eq!(ended.steps, steps as u64);
     distance(&seen.0[0].1, &reference(make, t + 0.375 * h, 2048))

@@ -108,7 +108,7 @@ mod tests {
         fn evaluations(&self) -> u64 {
             0
         }
-        fn rate(&mut self, t: f64, y: &[f64], rate: &mut [f64], _: &mut Ticker<'_>) -> Result<()> {
+        fn rate(&mut self, t: &f64, y: &[f64], rate: &mut [f64], _: &mut Ticker<'_>) -> Result<()> {
             assert_eq!((y.len(), rate.len()), (self.0, self.0));
             rate.iter_mut().zip(y).for_each(|(rate, y)| *rate = t - y * y);
             Ok(())
@@ -130,9 +130,9 @@ mod tests {
                 let tolerance = vec![1e-6; y.len()];
                 let errors = RateErrors { terms: &errors, end: true, atol: &tolerance, rtol: &tolerance };
                 let ticker = &mut Ticker::quiet(&control);
-                stages.evaluate(0, 0.5, &state, &mut system, ticker)?;
+                stages.evaluate(0, &0.5, &state, &mut system, ticker)?;
                 let states = (&state, &mut next);
-                let sizes = stages.rate_step((0.5, &0.125), states, Some(errors), &mut system, ticker)?;
+                let sizes = stages.rate_step((&0.5, &0.125), states, Some(errors), &mut system, ticker)?;
                 Ok((next, sizes))
             };
             let numbers: Vec<f64> = (0..9).map(|i| f64::from(i) / 8.0 - 0.3).collect();

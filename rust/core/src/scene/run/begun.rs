@@ -5,7 +5,7 @@ use super::super::continuation::Continuation;
 use super::super::integrate::Report;
 use super::super::plan::Plan;
 use super::super::request::Request;
-use super::patterns::patterns;
+use super::patterns::{Pattern, patterns};
 use super::{Kept, Part};
 use crate::error::Result;
 use crate::parallel::Ticker;
@@ -26,7 +26,7 @@ pub(super) struct Begun {
     /// The scene that is planned from, if it is another.
     start: Option<Scene>,
     pub(super) plan: Plan,
-    groups: Option<Vec<(Vec<usize>, Scene)>>,
+    groups: Option<Vec<Pattern>>,
     plans: Vec<Plan>,
 }
 

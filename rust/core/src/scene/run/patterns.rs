@@ -8,6 +8,9 @@ use crate::error::Result;
 use crate::parallel::Ticker;
 use std::collections::BTreeMap;
 
+/// Some copies, by their places among all, and the scene that they make.
+pub(super) type Pattern = (Vec<usize>, Scene);
+
 /// Copies that have closed forms, and copies that are integrated with the same set of massless bodies and the same units,
 /// and their scenes; `None` if that is all of them.
 ///
@@ -15,11 +18,7 @@ use std::collections::BTreeMap;
 ///
 /// # Errors
 /// When the caller asks to stop.
-pub(super) fn patterns(
-    scene: &Scene,
-    plan: &Plan,
-    ticker: &mut Ticker<'_>,
-) -> Result<Option<Vec<(Vec<usize>, Scene)>>> {
+pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<Option<Vec<Pattern>>> {
     if !plan.solutions.integrates() {
         return Ok(None);
     }

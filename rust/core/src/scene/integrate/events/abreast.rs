@@ -47,7 +47,7 @@ impl<'a> Abreast<'a> {
 
     /// A unit begins in a lane.
     pub(in super::super) fn begin(&mut self, lane: usize, unit: &Prepared) {
-        let bit = Bits(1 << lane % WIDTH);
+        let bit = Bits(1 << (lane % WIDTH));
         self.fresh = self.fresh.or(bit);
         self.elsewhere = self.elsewhere.and(bit.not());
         if unit.origin.is_elsewhere() && self.events.iter().any(|seen| seen.event.asks_where()) {
