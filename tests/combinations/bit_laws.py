@@ -220,8 +220,11 @@ def _legs(start: Any, t: tuple[float, ...], cuts: list[float], how: dict[str, An
 
 @law
 def a_run_goes_on_with_the_bits_of_the_whole(recipe: Recipe) -> None:
-    """From a node, with the same method and step: in any number of legs, an ensemble or a member of one alone."""
-    case = recipe.case()
+    """From a node, with the same method and step: in any number of legs, an ensemble or a member of one alone.
+
+    Without events that end the run: each leg counts its zeros anew.
+    """
+    case = replace(recipe, terminal=0).case()
     step = case.how.get("dt")
     if step is None:
         raise Refused("no fixed step")

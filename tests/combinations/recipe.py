@@ -208,6 +208,9 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
     crowd = draw(_some((12, st.just(0)), (1, st.sampled_from([70, 130, 210])))) if members == 0 and bodies < 8 else 0
     powers = st.integers(-60, 60) if mild else st.integers(-330, 330)
     names = sorted(FORCES)
+    events = draw(_some((3, st.just(())), (1, _events())))
+    # The energy of N bodies is a precise sum over N² pairs, at some twenty places of every step.
+    events = tuple(event for event in events if event[0] != "energy" or bodies <= 8)
     return Recipe(
         method=draw(st.sampled_from(["auto", *METHODS])),
         bodies=bodies,
@@ -230,7 +233,7 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         decades=draw(st.integers(5, 12)),
         outputs=draw(st.integers(0, 6)),
         columns=tuple(draw(st.lists(st.sampled_from(COLUMNS), unique=True, min_size=1))),
-        events=draw(_some((3, st.just(())), (1, _events()))),
+        events=events,
         terminal=draw(_some((2, st.just(0)), (1, st.integers(1, 2)))),
         t0=draw(_some((2, st.just(0.0)), (1, st.floats(-100.0, 100.0)))),
         backward=draw(_some((2, st.just(False)), (1, st.just(True)))),

@@ -80,15 +80,18 @@ fn adaptive<S: Controlled + ClosedKernel>(problem: Problem<S>) -> Vec<(&'static 
             support::adaptive(method, &dynamics, dynamics.shape, &state, 1e-9, 1e3);
         let all = S::Mask::splat(true);
         trial.start(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
-        let count = allocations(|| {
-            for _ in 0..10 {
+        // What looks between steps is made at the first look, once.
+        let mut steps = |count: u64| {
+            for _ in 0..count {
                 let outcome =
                     trial.attempt(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
                 trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
                 trial.at(&state, outcome.h, S::splat(0.5), &mut between);
                 trial.keep(outcome.accepted, &mut state);
             }
-        });
+        };
+        steps(1);
+        let count = allocations(|| steps(10));
         counts.push((method.name, count));
     }
     counts
