@@ -282,6 +282,7 @@ def test_free_motion_is_a_number_wherever_it_is_one() -> None:
 # What went wrong is said as it is.
 
 
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")
 @pytest.mark.parametrize("why", [{"max_step": 5e-324}, {"atol": 1e308}])
 def test_a_step_that_falls_to_zero_far_from_any_encounter_is_not_called_one(why: dict[str, float]) -> None:
     scene = vv.Scene(scattered(3), SOFT)
@@ -293,6 +294,7 @@ def test_a_step_that_falls_to_zero_far_from_any_encounter_is_not_called_one(why:
         pass
 
 
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # none is asked for
 @pytest.mark.parametrize("method", [method.name for method in METHODS if method.adaptive])
 @pytest.mark.parametrize("end", [1.0, 1e8, -1e50, 1e70])
 def test_where_any_error_is_allowed_the_run_is_one_step(method: str, end: float) -> None:
