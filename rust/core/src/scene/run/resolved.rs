@@ -20,6 +20,9 @@ const MANY_EVALUATIONS: u64 = 2_000;
 /// More massive bodies are not looked at.
 const MOST: usize = 2_000;
 
+/// Smaller energies may be products with masses that are not normal numbers, and have no digits to be off by.
+const LEAST: f64 = 1e-290;
+
 /// Fills in the errors of the energies.
 ///
 /// # Errors
@@ -67,7 +70,10 @@ pub(super) fn look(
         let change = kinetic_end.plus(potential_end).plus(kinetic.plus(potential).times(-1.0));
         // Of the two potential energies the larger: what falls from rest where the potential is zero begins with nothing.
         let size = larger(absolute(potential), absolute(potential_end));
-        outcome.energy_error = change.over(kinetic.plus(size)).to_f64().abs();
+        let whole = kinetic.plus(size);
+        if whole.to_f64() >= LEAST {
+            outcome.energy_error = change.over(whole).to_f64().abs();
+        }
     }
     Ok(())
 }
