@@ -35,7 +35,9 @@ def closed_scenes(draw: st.DrawFn) -> vv.Scene:
     masses[masses < 1e-3] = 0.0
     bodies = vv.Particles(masses, draw(arrays((count, 3), -2.0, 2.0)), draw(arrays((count, 3), -1.0, 1.0)))
     softening = draw(st.floats(0.5, 1.0))
-    return vv.Scene(bodies, vv.Gravity(draw(st.floats(0.25, 1.0)), softening=softening), t0=draw(st.floats(-4.0, 4.0, width=32)))
+    return vv.Scene(
+        bodies, vv.Gravity(draw(st.floats(0.25, 1.0)), softening=softening), t0=draw(st.floats(-4.0, 4.0, width=32))
+    )
 
 
 @cache
