@@ -232,7 +232,7 @@ impl<'a> Run<'a> {
         let watch = if watched { Watch::begin(self.job, &unit, (&self.state, lane), ticker)? } else { None };
         if let (Some(watch), Layout::Batched) = (&watch, self.layout) {
             self.abreast = self.abreast.take().or_else(|| Abreast::of(watch));
-            self.abreast.iter_mut().for_each(|abreast| abreast.begin(lane, &unit));
+            self.abreast.iter_mut().for_each(|abreast| abreast.begin(lane, &unit, watch));
         }
         let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
         self.record_start(&mut slot, lane, ticker)?;

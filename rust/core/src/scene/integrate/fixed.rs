@@ -84,18 +84,21 @@ fn lockstep(
             }
         }
     }
-    let mut abreast: Vec<Abreast<'_>> = Vec::new();
+    let mut abreast: Vec<Option<Abreast<'_>>> = Vec::new();
     if plan.layout == Layout::Batched && watches.len() == units.len() {
-        for (lane, (watch, unit)) in watches.iter().zip(&prepared).enumerate() {
-            if lane % WIDTH == 0 {
-                abreast.extend(watch.as_ref().and_then(|watch| Abreast::of(watch)));
+        for (watches, units) in watches.chunks(WIDTH).zip(prepared.chunks(WIDTH)) {
+            let mut eight = watches.iter().flatten().next().and_then(|watch| Abreast::of(watch));
+            for (lane, (watch, unit)) in watches.iter().zip(units).enumerate() {
+                if let (Some(eight), Some(watch)) = (&mut eight, watch) {
+                    eight.begin(lane, unit, watch);
+                }
             }
-            abreast.get_mut(lane / WIDTH).into_iter().for_each(|abreast| abreast.begin(lane, unit));
+            abreast.push(eight);
         }
     }
     let mut records = Records {
         job,
-        before: (!abreast.is_empty()).then(|| state.clone()),
+        before: abreast.iter().any(Option::is_some).then(|| state.clone()),
         abreast,
         step: scale(dt, -unit_of_time),
         between: None,
@@ -143,7 +146,7 @@ struct Records<'a> {
     /// Whether any unit has events.
     watched: bool,
     /// The events of eight units after another, if they are looked for side by side, and the last node.
-    abreast: Vec<Abreast<'a>>,
+    abreast: Vec<Option<Abreast<'a>>>,
     before: Option<State<Lanes>>,
     /// The events of each unit.
     watches: Vec<Option<Box<Watch<'a>>>>,
@@ -200,7 +203,9 @@ impl Recorder<Lanes> for Records<'_> {
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
         let mut blocks = [[Bits(0xff); 2]; 2];
         for (block, abreast) in blocks.iter_mut().zip(&mut self.abreast) {
-            *block = abreast.step(Bits(0xff), &length, after);
+            if let Some(abreast) = abreast {
+                *block = abreast.step(Bits(0xff), &length, after);
+            }
         }
         let mut inside =
             Shadow { stepper, system, node, present, between, last: None, back, length: span.to - span.from };

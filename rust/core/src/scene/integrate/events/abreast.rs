@@ -11,7 +11,7 @@ use crate::scene::frame::Moved;
 use crate::scene::unit::Prepared;
 use crate::tiered;
 
-/// The events of eight units of one make-up, one in each lane.
+/// The events of eight units of one make-up, one in each lane. Those of the first are told side by side.
 pub(in super::super) struct Abreast<'a> {
     events: Vec<Seen<'a>>,
     bodies: Bodies,
@@ -19,8 +19,11 @@ pub(in super::super) struct Abreast<'a> {
     sights: Vec<Sight<Lanes>>,
     /// The lanes whose units have seen nothing yet.
     fresh: Bits,
-    /// The lanes whose origin is elsewhere, where an event asks where a body is: they are always looked at one by one.
-    elsewhere: Bits,
+    /// The lanes that are always looked at one by one: whose units have other events, bodies on which nothing acts together
+    /// being alike without that, or whose origin is elsewhere where an event asks where a body is.
+    one_by_one: Bits,
+    /// Which events these are, and their bodies.
+    watched: Vec<(usize, Vec<usize>)>,
 }
 
 /// An event, and where its bodies lie: the first coordinate of each among those of a state.
@@ -42,16 +45,18 @@ impl<'a> Abreast<'a> {
             events.push(Seen { event, places: [first, last].map(|body| watch.bodies.row(body)) });
         }
         let sights = vec![Sight::default(); events.len()];
-        Some(Self { events, bodies: watch.bodies.clone(), sights, fresh: Bits(0), elsewhere: Bits(0) })
+        let (bodies, watched) = (watch.bodies.clone(), watch.events.clone());
+        Some(Self { events, bodies, sights, fresh: Bits(0), one_by_one: Bits(0xff), watched })
     }
 
     /// A unit begins in a lane.
-    pub(in super::super) fn begin(&mut self, lane: usize, unit: &Prepared) {
+    pub(in super::super) fn begin(&mut self, lane: usize, unit: &Prepared, watch: &Watch<'_>) {
         let bit = Bits(1 << (lane % WIDTH));
         self.fresh = self.fresh.or(bit);
-        self.elsewhere = self.elsewhere.and(bit.not());
-        if unit.origin.is_elsewhere() && self.events.iter().any(|seen| seen.event.asks_where()) {
-            self.elsewhere = self.elsewhere.or(bit);
+        self.one_by_one = self.one_by_one.and(bit.not());
+        let moved = unit.origin.is_elsewhere() && self.events.iter().any(|seen| seen.event.asks_where());
+        if moved || watch.events != self.watched {
+            self.one_by_one = self.one_by_one.or(bit);
         }
     }
 
@@ -62,7 +67,7 @@ impl<'a> Abreast<'a> {
         self.fresh = self.fresh.and(lanes.not());
         let suspects = suspects(self, lanes, h, state);
         // Those that are looked at on every step have seen every node.
-        [suspects.or(fresh).or(self.elsewhere).and(lanes), fresh.or(self.elsewhere)]
+        [suspects.or(fresh).or(self.one_by_one).and(lanes), fresh.or(self.one_by_one)]
     }
 }
 
