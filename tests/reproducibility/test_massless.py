@@ -196,3 +196,18 @@ def test_columns_are_those_of_the_massive_bodies() -> None:
     planets = OUTER.run(t=TIMES, method="dop853", record=columns)
     assert np.array_equal(out.energy, planets.energy)
     assert np.array_equal(out.angular_momentum, planets.angular_momentum)
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+@pytest.mark.parametrize("field", [(), (vv.UniformField((0.0, 0.0, 1e-9)),), (vv.LinearDrag(1e6),)], ids=repr)
+def test_springs_between_the_massive_couple_no_massless_body(method: str, field: tuple[Any, ...]) -> None:
+    """A spring needs masses at its ends. Beside one, massless bodies were integrated in groups, by common steps."""
+    forces = (GRAVITY, vv.Spring(4, 5, k=1e-12, length=1.0), *field)
+    how = {"t": [500.0, 2000.0], "method": method, "rtol": 1e-7}
+    massive = vv.Scene(OUTER.particles, *forces).run(**how)
+    for threads in (1, 3):
+        every = beside_planets(range(130), *forces).run(threads=threads, **how)
+        assert np.array_equal(every.position[:, :MASSIVE], massive.position)
+        for index in (0, 64, 129):
+            alone = beside_planets([index], *forces).run(**how)
+            assert same(every, MASSIVE + index, alone, MASSIVE), f"body {index} on {threads} threads"

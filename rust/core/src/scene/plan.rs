@@ -352,10 +352,12 @@ fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
     ))
 }
 
-/// Whether massless bodies feel the force along a path of the massive ones, or without them.
+/// Whether massless bodies feel the force along a path of the massive ones, or without them; listed pairs have mass.
 fn guides(force: &Arc<dyn ForceTerm>) -> bool {
-    force.coupling() == Coupling::None
-        || (force.coupling() == Coupling::AllPairs && force.as_newtonian().is_some())
+    match force.coupling() {
+        Coupling::None | Coupling::Listed(_) => true,
+        Coupling::AllPairs => force.as_newtonian().is_some(),
+    }
 }
 
 /// The forces that do anything in this scene.
