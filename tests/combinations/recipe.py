@@ -10,6 +10,7 @@ those, too, are asked of it.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -130,6 +131,7 @@ def _span(scene: vv.Scene, *, tame: bool) -> float:
     return (0.25 if tame else 1.0) * span
 
 
+@lru_cache(maxsize=8)  # every law asks for it again
 def _case(recipe: Recipe) -> Case:
     scene = _scene(recipe)
     # A step that is a power of two and a start that is a multiple of it: every node is exact.

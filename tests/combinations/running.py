@@ -7,6 +7,7 @@ import pickle
 import subprocess
 import sys
 import warnings
+from collections import deque
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,23 @@ def _bits(**arrays: Any) -> Bits:
     }
 
 
+_LATEST: deque[tuple[Any, tuple[float, ...], dict[str, Any], tuple[Any, str]]] = deque(maxlen=4)
+
+
 def execute(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> tuple[Any, str]:
-    """The result, also of a run that failed on the way, and how it ended: "" or the name of the refusal."""
+    """The result, also of a run that failed on the way, and how it ended: "" or the name of the refusal.
+
+    Most laws ask for the run as the recipe has it: the last few are kept.
+    """
+    for other, times, options, found in _LATEST:
+        if other is start and times == t and options == how:
+            return found
+    found = _execute(start, t, how)
+    _LATEST.append((start, t, how, found))
+    return found
+
+
+def _execute(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> tuple[Any, str]:
     with warnings.catch_warnings(action="ignore"):
         try:
             return start.run(t=list(t), **how), ""
