@@ -4,11 +4,13 @@
 //! copy, of the method's own order (a multistep method's is of the kind that starts it). So does an end that is
 //! not a node.
 
+use super::ahead::Ahead;
 use super::state::State;
 use super::stepper::Stepper;
 use super::system::System;
 use crate::error::Result;
 use crate::numerics::element::Element;
+use crate::numerics::lanes::Bits;
 use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::numerics::real::Real;
 use crate::parallel::Ticker;
@@ -70,6 +72,17 @@ pub trait Recorder<S: Element> {
         None
     }
 
+    /// Whether it is told by [`suspects`](Self::suspects) which steps must be looked into; the first one is, always.
+    fn looks_ahead(&self) -> bool {
+        false
+    }
+
+    /// Which of the steps between successive nodes must be looked into.
+    fn suspects(&mut self, nodes: &[State<S>]) -> Bits {
+        let _ = nodes;
+        Bits(0xff)
+    }
+
     /// Looks into the step that led to the present node, or into a part of the next one; `false` ends the run.
     ///
     /// # Errors
@@ -91,10 +104,14 @@ pub struct Taken<'a, S: Element> {
     pub present: &'a State<S>,
     /// The state that the run has come to past the present node, and how far past; else it has come to the node.
     pub past: Option<(f64, &'a State<S>)>,
+    /// The state from which the step led, if those before it were not looked into.
+    pub before: Option<&'a State<S>>,
     /// To take shadow steps from the present node.
     pub stepper: &'a mut dyn Stepper<S>,
     /// For those steps.
     pub system: &'a mut dyn System<S>,
+    /// Evaluations of steps that were taken again.
+    pub repeated: u64,
 }
 
 /// How a run ended.
@@ -106,8 +123,66 @@ pub struct Ended {
     pub steps: u64,
     /// Whether all that the stepper holds belongs to that node: not if a step was broken off.
     pub stands: bool,
+    /// Evaluations of steps that were taken again.
+    pub repeated: u64,
     /// `Ok` at the last output time, or where the most steps were taken or the recorder gave up; else what ended it.
     pub outcome: Result<()>,
+}
+
+/// What advances what, and how far it has come.
+pub(super) struct Walk<'a, S: Element> {
+    pub(super) stepper: &'a mut dyn Stepper<S>,
+    pub(super) state: &'a mut State<S>,
+    pub(super) system: &'a mut dyn System<S>,
+    pub(super) node: u64,
+    /// As in [`Ended`].
+    pub(super) stands: bool,
+    /// As in [`Ended`].
+    pub(super) repeated: u64,
+    /// The state before a step that may be broken off.
+    before: Option<State<S>>,
+}
+
+impl<S: Element> Walk<'_, S> {
+    /// Takes a step, or up to so many.
+    ///
+    /// # Errors
+    /// Those of an evaluation; the state is that of the last node.
+    #[inline(always)]
+    pub(super) fn step(&mut self, at_most: u64, ticker: &mut Ticker<'_>) -> Result<()> {
+        if let Some(before) = &mut self.before {
+            self.stepper.settle(self.state);
+            before.copy_from(self.state);
+        }
+        match self.stepper.step(self.node, at_most, self.state, self.system, ticker) {
+            Ok(steps) => self.node += steps,
+            Err(error) => {
+                self.stands = false;
+                // Some methods change the state in place: half a step is taken back.
+                if let Some(before) = &self.before {
+                    self.state.copy_from(before);
+                }
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// Has the last step looked into, from the state before it if that is not known to have been.
+    ///
+    /// # Errors
+    /// Whatever ends the run.
+    pub(super) fn look(
+        &mut self,
+        before: Option<&State<S>>,
+        ticker: &mut Ticker<'_>,
+        recorder: &mut impl Recorder<S>,
+    ) -> Result<bool> {
+        let Self { node, repeated, .. } = *self;
+        let (stepper, system) = (&mut *self.stepper, &mut *self.system);
+        let step = Taken { node, present: self.state, past: None, before, stepper, system, repeated };
+        recorder.look(step, ticker)
+    }
 }
 
 /// Advances `state`, with the stepper at the node `from`, through the places of the outputs, in order, and hands each
@@ -122,77 +197,84 @@ pub fn run<S: Element>(
     ticker: &mut Ticker<'_>,
     recorder: &mut impl Recorder<S>,
 ) -> Ended {
-    let mut node = from;
-    let mut stands = true;
+    let before = system.stops_midway().then(|| state.clone());
+    let mut walk = Walk { stepper, state, system, node: from, stands: true, repeated: 0, before };
+    let outcome = through(&mut walk, max_steps, places, ticker, recorder);
+    let Walk { node, stands, repeated, .. } = walk;
+    Ended { node, steps: node - from, stands, repeated, outcome }
+}
+
+#[inline(always)]
+fn through<S: Element>(
+    walk: &mut Walk<'_, S>,
+    max_steps: u64,
+    places: impl Iterator<Item = Place>,
+    ticker: &mut Ticker<'_>,
+    recorder: &mut impl Recorder<S>,
+) -> Result<()> {
+    let from = walk.node;
     let last = from.saturating_add(max_steps);
-    let outcome = (|| {
-        let mut between = None;
-        let watches = recorder.watches();
-        let mut before = system.stops_midway().then(|| state.clone());
-        for (index, place) in places.enumerate() {
-            while node < place.node {
-                if node == last {
-                    stepper.settle(state);
-                    return Ok(());
-                }
-                if let Some(before) = &mut before {
-                    stepper.settle(state);
-                    before.copy_from(state);
-                }
-                let at_most =
-                    (place.node.min(last) - node).min(PROGRESS_STEPS - (node - from) % PROGRESS_STEPS);
-                let at_most = if watches.is_some() { 1 } else { at_most };
-                node += match stepper.step(node, at_most, state, system, ticker) {
-                    Ok(steps) => steps,
-                    Err(error) => {
-                        stands = false;
-                        // Some methods change the state in place: half a step is taken back.
-                        if let Some(before) = &before {
-                            state.copy_from(before);
-                        }
-                        return Err(error);
-                    }
-                };
-                if (node - from).is_multiple_of(PROGRESS_STEPS) {
-                    ticker.advance(PROGRESS_STEPS);
-                }
-                if (node - from).is_multiple_of(WATCH_STEPS) {
-                    stepper.settle(state);
-                    if !recorder.goes_on(state) {
-                        return Ok(());
-                    }
-                }
-                if watches.is_some() {
-                    stepper.settle(state);
-                    let step = Taken { node, present: state, past: None, stepper: &mut *stepper, system };
-                    if !recorder.look(step, ticker)? {
-                        return Ok(());
-                    }
-                }
-                if let Err(error) = ticker.tick() {
-                    stepper.settle(state);
-                    return Err(error);
-                }
+    let mut between = None;
+    let watches = recorder.watches();
+    let mut ahead = if recorder.looks_ahead() { Ahead::new(walk.state) } else { None };
+    for (index, place) in places.enumerate() {
+        while walk.node < place.node {
+            if walk.node == last {
+                walk.stepper.settle(walk.state);
+                return Ok(());
             }
-            stepper.settle(state);
-            let reached: &State<S> = match place.past {
-                None => state,
-                Some(past) => {
-                    let between = between.get_or_insert_with(|| state.clone());
-                    between.copy_from(state);
-                    stepper.between(node, past, between, system, ticker)?;
-                    &*between
+            let past = walk.node - from;
+            let at_most = (place.node.min(last) - walk.node).min(PROGRESS_STEPS - past % PROGRESS_STEPS);
+            let going = match &mut ahead {
+                _ if watches.is_none() => {
+                    walk.step(at_most, ticker)?;
+                    true
+                }
+                // What starts at zero is told from what comes there in the first step alone.
+                Some(ahead) if past > 0 => ahead.advance(at_most, walk, ticker, recorder)?,
+                _ => {
+                    walk.step(1, ticker)?;
+                    walk.stepper.settle(walk.state);
+                    walk.look(None, ticker, recorder)?
                 }
             };
-            if let (true, Some(past)) = (watches == Some(index), place.past) {
-                let past = Some((past, reached));
-                let step = Taken { node, present: state, past, stepper: &mut *stepper, system };
-                let _: bool = recorder.look(step, ticker)?;
+            let past = walk.node - from;
+            if past.is_multiple_of(PROGRESS_STEPS) {
+                ticker.advance(PROGRESS_STEPS);
             }
-            recorder.record(index, reached, ticker)?;
+            if !going {
+                return Ok(());
+            }
+            if past.is_multiple_of(WATCH_STEPS) {
+                walk.stepper.settle(walk.state);
+                if !recorder.goes_on(walk.state) {
+                    return Ok(());
+                }
+            }
+            if let Err(error) = ticker.tick() {
+                walk.stepper.settle(walk.state);
+                return Err(error);
+            }
         }
-        ticker.advance((node - from) % PROGRESS_STEPS);
-        Ok(())
-    })();
-    Ended { node, steps: node - from, stands, outcome }
+        let Walk { node, repeated, .. } = *walk;
+        let (stepper, state, system) = (&mut *walk.stepper, &mut *walk.state, &mut *walk.system);
+        stepper.settle(state);
+        let reached: &State<S> = match place.past {
+            None => state,
+            Some(past) => {
+                let between = between.get_or_insert_with(|| state.clone());
+                between.copy_from(state);
+                stepper.between(node, past, between, system, ticker)?;
+                &*between
+            }
+        };
+        if let (true, Some(past)) = (watches == Some(index), place.past) {
+            let past = Some((past, reached));
+            let step = Taken { node, present: state, past, before: None, stepper, system, repeated };
+            let _: bool = recorder.look(step, ticker)?;
+        }
+        recorder.record(index, reached, ticker)?;
+    }
+    ticker.advance((walk.node - from) % PROGRESS_STEPS);
+    Ok(())
 }

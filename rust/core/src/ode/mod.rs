@@ -7,6 +7,7 @@
 //! [`registry::METHODS`](crate::registry::METHODS). The property suite (order conditions, measured
 //! order, symplecticity, reversal, momentum) is driven by what the method declares about itself.
 
+mod ahead;
 pub mod boris;
 pub mod embedded;
 pub mod equal_steps;

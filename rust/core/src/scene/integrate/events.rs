@@ -6,6 +6,7 @@
 //! steps. Both are read and leave no trace, so events change no bit of a run.
 
 mod abreast;
+mod along;
 mod bodies;
 mod clear;
 mod inside;
@@ -20,6 +21,7 @@ use crate::numerics::power_of_two::scale;
 use crate::ode::state::State;
 use crate::parallel::Ticker;
 pub(super) use abreast::Abreast;
+pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
 use search::Search;

@@ -2,14 +2,14 @@
 
 use super::super::layout::Layout;
 use super::super::unit::{self, Prepared, Unit};
-use super::events::{Abreast, Interpolant, Span, Watch};
+use super::events::{Abreast, Along, Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
 use super::{Job, Result, held};
 use crate::error::Error;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 use crate::ode::fixed::{self, Ended, Place, Recorder, Taken};
 use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
@@ -96,8 +96,13 @@ fn lockstep(
             abreast.push(eight);
         }
     }
+    let along = match (plan.layout, &watches[..]) {
+        (Layout::Packed, [Some(watch)]) => Along::of(watch, &prepared[0]),
+        _ => None,
+    };
     let mut records = Records {
         job,
+        along,
         before: abreast.iter().any(Option::is_some).then(|| state.clone()),
         abreast,
         step: scale(dt, -unit_of_time),
@@ -112,7 +117,7 @@ fn lockstep(
         rows: 0,
         last: None,
     };
-    let Ended { node, steps, stands, outcome } = fixed::run(
+    let Ended { node, steps, stands, repeated, outcome } = fixed::run(
         &mut **stepper,
         plan.from,
         job.max_steps,
@@ -127,7 +132,8 @@ fn lockstep(
         Err(Error::Interrupted) => Ending::Interrupted,
         Err(other) => return Err(other),
     };
-    let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() };
+    // What it takes is told, not what was done twice.
+    let counts = Counts { steps, rejected: 0, evaluations: dynamics.evaluations() - repeated };
     let ended = place(&job.end()).past.is_none() || records.last.is_none();
     let mut reports = records.reports(state, t0 + node as f64 * dt, &short, counts);
     if job.keeps && stands && ended && node > 0 {
@@ -145,6 +151,8 @@ struct Records<'a> {
     between: Option<State<Lanes>>,
     /// Whether any unit has events.
     watched: bool,
+    /// The events of the only unit, if they are looked for in several steps side by side.
+    along: Option<Along<'a>>,
     /// The events of eight units after another, if they are looked for side by side, and the last node.
     abreast: Vec<Option<Abreast<'a>>>,
     before: Option<State<Lanes>>,
@@ -192,8 +200,17 @@ impl Recorder<Lanes> for Records<'_> {
         (self.watched && !self.job.times.is_empty()).then(|| self.job.times.len() - 1)
     }
 
+    fn looks_ahead(&self) -> bool {
+        self.along.is_some()
+    }
+
+    fn suspects(&mut self, nodes: &[State<Lanes>]) -> Bits {
+        let h = scale(self.step, self.job.plan.units.time);
+        self.along.as_mut().map_or(Bits(0xff), |along| along.suspects(nodes, h))
+    }
+
     fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {
-        let Taken { node, present, past, stepper, system } = taken;
+        let Taken { node, present, past, before, stepper, system, repeated } = taken;
         let here = self.step * node as f64;
         let (span, after, back) = match past {
             None => (Span { from: self.step * (node - 1) as f64, to: here }, present, self.step),
@@ -201,7 +218,8 @@ impl Recorder<Lanes> for Records<'_> {
         };
         let between = self.between.get_or_insert_with(|| present.clone());
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
-        let mut blocks = [[Bits(0xff); 2]; 2];
+        // Whose watches must look, and which of them are where the step begins.
+        let mut blocks = [[Bits(0xff), Bits::splat(self.along.is_none())]; 2];
         for (block, abreast) in blocks.iter_mut().zip(&mut self.abreast) {
             if let Some(abreast) = abreast {
                 *block = abreast.step(Bits(0xff), &length, after);
@@ -223,21 +241,25 @@ impl Recorder<Lanes> for Records<'_> {
                         going = true;
                         continue;
                     }
-                    let before = inside.system.evaluations();
+                    let begun = inside.system.evaluations();
                     // A unit pays for what it looks at, whatever was looked at for another one.
                     inside.last = None;
-                    if let (false, Some(earlier)) = (in_step, &self.before) {
-                        let earlier = if past.is_some() { present } else { earlier };
+                    // Who has not seen every node turns to where the step begins.
+                    let earlier = match past {
+                        None => before.or(self.before.as_ref()),
+                        Some(_) => Some(present),
+                    };
+                    if let (false, Some(earlier)) = (in_step, earlier) {
                         watch.turn_to(unit, span.from, earlier, ticker)?;
                     }
                     if watch.step(unit, span, after, ticker)? {
                         watch.look(unit, span, (after, lane), &mut inside, ticker)?;
                     }
                     let evaluations = inside.system.evaluations();
-                    self.looks[lane] += evaluations - before;
+                    self.looks[lane] += evaluations - begun;
                     going |= !watch.stopped;
                     if watch.stopped {
-                        let counts = Counts { steps: node, rejected: 0, evaluations };
+                        let counts = Counts { steps: node, rejected: 0, evaluations: evaluations - repeated };
                         self.stopped[lane] = Some(paid_by(lane, counts, &self.looks));
                     }
                 }

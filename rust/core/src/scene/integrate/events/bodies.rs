@@ -66,10 +66,9 @@ impl Bodies {
         self.places[body] / WIDTH
     }
 
-    /// All their coordinates, body after body: the place of each among the coordinates of a state, and its lane there.
-    pub(super) fn coordinates(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.places.iter().flat_map(move |&place| {
-            (0..self.components).map(move |c| place + c * self.stride).map(|at| (at / WIDTH, at % WIDTH))
-        })
+    /// The places of all their coordinates among the numbers of a state, body after body.
+    #[inline]
+    pub(super) fn coordinates(&self) -> impl Iterator<Item = usize> {
+        self.places.iter().flat_map(move |&place| (0..self.components).map(move |c| place + c * self.stride))
     }
 }

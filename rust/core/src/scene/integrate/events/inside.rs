@@ -4,6 +4,7 @@
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
 use crate::numerics::double_double::two_sum;
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::power_of_two::scale;
 use crate::parallel::Ticker;
 
@@ -11,8 +12,8 @@ impl Watch<'_> {
     /// Asks for the polynomials of the bodies that are looked at.
     pub(super) fn ask(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<()> {
         self.terms.clear();
-        for (coordinate, lane) in self.bodies.coordinates() {
-            step.polynomial(coordinate, lane, &mut self.terms, ticker)?;
+        for at in self.bodies.coordinates() {
+            step.polynomial(at / WIDTH, at % WIDTH, &mut self.terms, ticker)?;
         }
         let exponent = -self.job.plan.units.acceleration();
         self.terms.iter_mut().flatten().for_each(|term| *term = scale(*term, exponent));
