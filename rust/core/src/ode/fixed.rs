@@ -77,9 +77,14 @@ pub trait Recorder<S: Element> {
         false
     }
 
-    /// Which of the steps between successive nodes must be looked into.
-    fn suspects(&mut self, nodes: &[State<S>]) -> Bits {
-        let _ = nodes;
+    /// Takes note of the state at a node: the first, the second … of up to nine.
+    fn note(&mut self, node: usize, state: &State<S>) {
+        let _ = (node, state);
+    }
+
+    /// Which of so many steps between those nodes must be looked into.
+    fn suspects(&mut self, steps: usize) -> Bits {
+        let _ = steps;
         Bits(0xff)
     }
 
@@ -166,6 +171,23 @@ impl<S: Element> Walk<'_, S> {
             }
         }
         Ok(())
+    }
+
+    /// Takes so many steps and shows each settled state that they lead to.
+    ///
+    /// # Errors
+    /// Those of an evaluation; the state is then of no node.
+    #[inline(always)]
+    pub(super) fn steps(
+        &mut self,
+        count: u64,
+        ticker: &mut Ticker<'_>,
+        each: &mut dyn FnMut(&State<S>),
+    ) -> Result<()> {
+        let outcome = self.stepper.steps(self.node, count, self.state, self.system, ticker, each);
+        self.node += count;
+        self.stands = outcome.is_ok();
+        outcome
     }
 
     /// Has the last step looked into, from the state before it if that is not known to have been.

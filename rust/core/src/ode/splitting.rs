@@ -135,6 +135,22 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         Ok(steps)
     }
 
+    fn steps(
+        &mut self,
+        node: u64,
+        count: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+        each: &mut dyn FnMut(&State<S>),
+    ) -> Result<()> {
+        for step in 0..count {
+            self.force.advance(&self.moves, (&self.nodes, node + step), state, system, ticker)?;
+            each(state);
+        }
+        Ok(())
+    }
+
     fn memory(&mut self, _: u64, each: &mut dyn FnMut(&mut [S])) {
         self.force.fresh = !self.force.last_idle;
         if self.force.fresh {

@@ -33,6 +33,27 @@ pub trait Stepper<S: Element>: Send {
         ticker: &mut Ticker<'_>,
     ) -> Result<u64>;
 
+    /// Advances the state at `node` by so many steps, and shows each settled state that they lead to.
+    ///
+    /// # Errors
+    /// Those of an evaluation; state and stepper are then of no node.
+    fn steps(
+        &mut self,
+        node: u64,
+        count: u64,
+        state: &mut State<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+        each: &mut dyn FnMut(&State<S>),
+    ) -> Result<()> {
+        for taken in 0..count {
+            let _one = self.step(node + taken, 1, state, system, ticker)?;
+            self.settle(state);
+            each(state);
+        }
+        Ok(())
+    }
+
     /// Completes the state at the present node, which is to be read.
     fn settle(&mut self, state: &mut State<S>) {
         let _ = state;

@@ -204,9 +204,16 @@ impl Recorder<Lanes> for Records<'_> {
         self.along.is_some()
     }
 
-    fn suspects(&mut self, nodes: &[State<Lanes>]) -> Bits {
+    #[inline(always)]
+    fn note(&mut self, node: usize, state: &State<Lanes>) {
+        if let Some(along) = &mut self.along {
+            along.note(node, state);
+        }
+    }
+
+    fn suspects(&mut self, steps: usize) -> Bits {
         let h = scale(self.step, self.job.plan.units.time);
-        self.along.as_mut().map_or(Bits(0xff), |along| along.suspects(nodes, h))
+        self.along.as_ref().map_or(Bits(0xff), |along| along.suspects(steps, h))
     }
 
     fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {

@@ -3,7 +3,7 @@
 
 use super::super::super::events::{Event, Moving, Sight};
 use super::super::super::unit::Prepared;
-use super::clear::{cubic, keeps_clear};
+use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
 use super::{Bodies, Watch};
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::real::Mask;
@@ -16,6 +16,8 @@ pub(in super::super) struct Along<'a> {
     /// Each with the places of its bodies.
     events: Vec<(&'a Event, [usize; 2])>,
     bodies: Bodies,
+    /// Where each of their coordinates lies among the numbers of a state.
+    coordinates: Vec<usize>,
     /// Position, what it leaves out, velocity and what that leaves out, coordinate after coordinate, node after node.
     numbers: Vec<[[f64; WIDTH + 1]; 4]>,
 }
@@ -32,49 +34,66 @@ impl<'a> Along<'a> {
             events.push((event, [*bodies.first()?, *bodies.last()?]));
         }
         let bodies = watch.bodies.clone();
-        let numbers = vec![[[0.0; WIDTH + 1]; 4]; bodies.coordinates().count()];
-        Some(Self { events, bodies, numbers })
+        let coordinates: Vec<usize> = bodies.coordinates().collect();
+        let numbers = vec![[[0.0; WIDTH + 1]; 4]; coordinates.len()];
+        Some(Self { events, bodies, coordinates, numbers })
     }
 
-    /// The steps `h` (in the scene's units) between successive nodes in which there may be zeros.
-    pub(in super::super) fn suspects(&mut self, nodes: &[State<Lanes>], h: f64) -> Bits {
-        for (node, state) in nodes.iter().enumerate() {
-            let ((q, q_rest), (v, v_rest)) = (state.position(), state.velocity());
-            let [q, q_rest, v, v_rest] = [q, q_rest, v, v_rest].map(as_numbers);
-            for (numbers, at) in self.numbers.iter_mut().zip(self.bodies.coordinates()) {
-                numbers[0][node] = q[at];
-                numbers[1][node] = q_rest[at];
-                numbers[2][node] = v[at];
-                numbers[3][node] = v_rest[at];
+    /// Takes note of where the bodies are at a node.
+    #[inline(always)]
+    pub(in super::super) fn note(&mut self, node: usize, state: &State<Lanes>) {
+        let ((q, q_rest), (v, v_rest)) = (state.position(), state.velocity());
+        let [q, q_rest, v, v_rest] = [as_numbers(q), as_numbers(q_rest), as_numbers(v), as_numbers(v_rest)];
+        // All of one length, to be looked at once.
+        let (q_rest, v, v_rest) = (&q_rest[..q.len()], &v[..q.len()], &v_rest[..q.len()]);
+        for (numbers, &at) in self.numbers.iter_mut().zip(&self.coordinates) {
+            numbers[0][node] = q[at];
+            numbers[1][node] = q_rest[at];
+            numbers[2][node] = v[at];
+            numbers[3][node] = v_rest[at];
+        }
+    }
+
+    /// The steps `h` (in the scene's units), so many, in which there may be zeros.
+    pub(in super::super) fn suspects(&self, steps: usize, h: f64) -> Bits {
+        let mut suspects = Bits(0);
+        let mut cubics = [Lanes([0.0; WIDTH]); 4];
+        for index in 0..self.events.len() {
+            let near = near(self, index, h, &mut cubics);
+            // Lanes beyond the last step hold others of before.
+            for step in (0..steps).filter(|&step| near.lane(step)) {
+                if !keeps_clear_after_all(cubics.map(|lanes| lanes.0[step])) {
+                    suspects = suspects.or(Bits(1 << step));
+                }
             }
         }
-        // Lanes beyond the last step hold others of before.
-        let taken = (1_u16 << (nodes.len() - 1)) - 1;
-        suspects(self, h).and(Bits(taken as u8))
+        suspects
     }
 }
 
 tiered! {
-    fn suspects[][](along: &Along<'_>, h: f64) -> Bits = eight_steps;
+    fn near[][](along: &Along<'_>, event: usize, h: f64, cubics: &mut [Lanes; 4]) -> Bits = eight_steps;
 }
 
+/// The steps in which an event may be near zero, and the cubics through their ends.
 #[inline(always)]
-fn eight_steps<V: Vector8>(along: &Along<'_>, h: f64) -> Bits {
-    let mut suspects = Bits(0);
-    for (event, places) in &along.events {
-        let mut ends = [Sight::<V>::default(), Sight::default()];
-        for (end, sight) in ends.iter_mut().enumerate() {
-            let both = [moving::<V>(along, places[0], end), moving::<V>(along, places[1], end)];
-            *sight = event.sight_of(&both, &[0, 1], &Moved::NOWHERE);
-        }
-        let [before, after] = &ends;
-        let clear = match event.rates([before, after], V::splat(h)) {
-            Some(rates) => keeps_clear(cubic([before.value, after.value], rates, V::splat(h))),
-            None => Bits(0),
-        };
-        suspects = suspects.or(clear.not());
+fn eight_steps<V: Vector8>(along: &Along<'_>, event: usize, h: f64, cubics: &mut [Lanes; 4]) -> Bits {
+    let (event, places) = &along.events[event];
+    let mut ends = [Sight::<V>::default(), Sight::default()];
+    for (end, sight) in ends.iter_mut().enumerate() {
+        let both = [moving::<V>(along, places[0], end), moving::<V>(along, places[1], end)];
+        *sight = event.sight_of(&both, &[0, 1], &Moved::NOWHERE);
     }
-    suspects
+    let [before, after] = &ends;
+    let Some(rates) = event.rates([before, after], V::splat(h)) else { return Bits(0xff) };
+    let coefficients = cubic([before.value, after.value], rates, V::splat(h));
+    let near = keeps_clear(coefficients).not();
+    if near.any() {
+        for (into, lanes) in cubics.iter_mut().zip(coefficients) {
+            *into = lanes.store();
+        }
+    }
+    near
 }
 
 /// A body at the beginnings of the steps (0) or at their ends (1).

@@ -20,6 +20,20 @@ pub(super) fn cubic<S: Real>([start, end]: [S; 2], rates: [S; 2], h: S) -> [S; 4
     [start, start + third * rates[0], end - third * rates[1], end]
 }
 
+/// Value and slope of a cubic at a fraction of the step.
+pub(super) fn cubic_at([a, b, c, d]: [f64; 4], theta: f64) -> [f64; 2] {
+    let between = |from: f64, to: f64| from + theta * (to - from);
+    let [ab, bc, cd] = [between(a, b), between(b, c), between(c, d)];
+    let [abc, bcd] = [between(ab, bc), between(bc, cd)];
+    [between(abc, bcd), 3.0 * (bcd - abc)]
+}
+
+/// Whether a cubic rises or falls all along its step, and nowhere by less than half as fast as on the whole.
+pub(super) fn is_straight([a, b, c, d]: [f64; 4]) -> bool {
+    let (way, part) = (d - a, 1.0 / 6.0);
+    [b - a, c - b, d - c].into_iter().all(|third| third / way >= part)
+}
+
 /// Whether the coefficients tell that the function keeps clear of zero, however it may differ from the cubic.
 #[inline(always)]
 pub(super) fn keeps_clear<S: Real>([a, b, c, d]: [S; 4]) -> S::Mask {

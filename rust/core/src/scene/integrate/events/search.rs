@@ -3,8 +3,10 @@
 
 use super::super::super::events::Sight;
 use super::super::super::unit::Prepared;
+use super::clear::{cubic, cubic_at, is_straight};
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
+use crate::numerics::power_of_two::scale;
 use crate::ode::events::zero;
 use crate::parallel::Ticker;
 
@@ -17,6 +19,10 @@ const SECTIONS: usize = 40;
 
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
+
+/// How far a function may bend away from the cubic in the middle of a step through which it goes almost straight, as a part
+/// of its way: not by enough to turn.
+const BEND: f64 = 0.0625;
 
 /// A part of a step at whose ends a function has different signs.
 type Bracket = [(f64, f64); 2];
@@ -38,6 +44,18 @@ fn crosses(start: f64, end: f64) -> bool {
 impl Search<'_, '_> {
     /// The zeros, as fractions of the step.
     pub(super) fn zeros(&mut self, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<Vec<f64>> {
+        // Upwards along the run backwards is downwards in time.
+        let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
+        let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
+        if crosses(self.ends[0], self.ends[1])
+            && let Some((theta, slope)) = self.straight(ticker)?
+        {
+            let mut zeros = Vec::new();
+            if counts(self.ends[0]) {
+                zeros.push(self.one_zero(theta, slope, step, ticker)?);
+            }
+            return Ok(zeros);
+        }
         let mut points = vec![(0.0, self.ends[0])];
         for theta in SAMPLES {
             points.push((theta, self.sight_between(theta, ticker)?.value));
@@ -56,15 +74,14 @@ impl Search<'_, '_> {
                 brackets.extend(self.turn(left, middle, right, step, ticker)?);
             }
         }
-        // Upwards along the run backwards is downwards in time.
-        let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
-        let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
         let mut zeros = Vec::new();
         if let (true, &[bracket]) = (self.watch.terms.is_empty(), &brackets[..])
             && crosses(self.ends[0], self.ends[1])
         {
             if counts(self.ends[0]) {
-                zeros.push(self.one_zero(bracket, step, ticker)?);
+                let theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
+                let slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
+                zeros.push(self.one_zero(theta, slope, step, ticker)?);
             }
             return Ok(zeros);
         }
@@ -80,16 +97,42 @@ impl Search<'_, '_> {
         Ok(zeros)
     }
 
-    /// The one zero of a step between whose nodes there are but shadow steps, where the cubics have it in this bracket. Each
-    /// shadow step costs as much as a step, and the cubics are near: a few secants do.
+    /// Where the function is zero, and its slope there, if it goes almost straight from one sign to the other: told from the
+    /// ends of the step and its middle.
+    fn straight(&mut self, ticker: &mut Ticker<'_>) -> Result<Option<(f64, f64)>> {
+        let watch = &*self.watch;
+        let h = scale(self.span.to - self.span.from, watch.job.plan.units.time);
+        let Some(rates) =
+            watch.event(self.event).0.rates([&watch.sights[self.event], &watch.next[self.event]], h)
+        else {
+            return Ok(None);
+        };
+        let cubic = cubic(self.ends, rates, h);
+        if !is_straight(cubic) {
+            return Ok(None);
+        }
+        let off = self.sight_between(0.5, ticker)?.value - cubic_at(cubic, 0.5)[0];
+        if off.abs() > BEND * (self.ends[1] - self.ends[0]).abs() {
+            return Ok(None);
+        }
+        let value = |theta: f64| {
+            let bump = theta * (1.0 - theta);
+            cubic_at(cubic, theta)[0] + 16.0 * bump * bump * off
+        };
+        let theta = zero([(0.0, self.ends[0]), (1.0, self.ends[1])], |theta| Ok(value(theta)))?;
+        let slope = cubic_at(cubic, theta)[1] + 32.0 * theta * (1.0 - theta) * (1.0 - 2.0 * theta) * off;
+        Ok(Some((theta, slope)))
+    }
+
+    /// The one zero of a step, which is near `theta`, where the function has about that slope. Each shadow step costs as much
+    /// as a step: a few secants do.
     fn one_zero(
         &mut self,
-        bracket: Bracket,
+        mut theta: f64,
+        mut slope: f64,
         step: &mut dyn Interpolant,
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
-        let mut theta = zero(bracket, |theta| Ok(self.sight_between(theta, ticker)?.value))?;
-        let mut slope = (bracket[1].1 - bracket[0].1) / (bracket[1].0 - bracket[0].0);
         let mut whole = [(0.0, self.ends[0]), (1.0, self.ends[1])];
         let mut last: Option<(f64, f64)> = None;
         for _ in 0..SECANTS {
