@@ -77,9 +77,9 @@ pub trait Recorder<S: Element> {
         false
     }
 
-    /// Takes note of the state at a node: the first, the second … of up to nine.
-    fn note(&mut self, node: usize, state: &State<S>) {
-        let _ = (node, state);
+    /// Takes note of the state at a node, in the first, the second … of nine places.
+    fn note(&mut self, place: usize, node: u64, state: &State<S>) {
+        let _ = (place, node, state);
     }
 
     /// Which of so many steps between those nodes must be looked into.

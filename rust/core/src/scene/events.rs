@@ -7,7 +7,7 @@
 
 mod sight;
 
-pub use sight::{Moving, Sight};
+pub use sight::{Moving, Sight, apart};
 
 use super::Scene;
 use super::frame::{Moved, Origin, restored};

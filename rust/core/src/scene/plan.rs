@@ -67,7 +67,7 @@ pub struct Plan {
     pub frame: Frame,
     /// Forces that accelerate all alike, which the origin's motion takes out.
     pub alike: usize,
-    /// The time from the start to the end.
+    /// The time that is planned for: from the start to the end, or a step if all are equal.
     pub span: f64,
     /// Whether the method moves the massive bodies relative to the first one.
     pub relative: bool,
@@ -135,7 +135,9 @@ impl Plan {
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
         let layout = if batched { Layout::Batched } else { Layout::Packed };
-        let span = (request.times[request.times.len() - 1] - scene.t0).abs();
+        let whole = (request.times[request.times.len() - 1] - scene.t0).abs();
+        // Equal steps go on from where they ended: their units must not depend on where that was.
+        let span = dt.map_or(whole, f64::abs);
         let mut plan = Self {
             method,
             dt,

@@ -73,13 +73,19 @@ fn splat<S: Real>(x: [f64; 3]) -> [S; 3] {
     [S::splat(x[0]), S::splat(x[1]), S::splat(x[2])]
 }
 
+/// How far numbers are apart, each with what it leaves out.
+#[inline(always)]
+pub fn apart<S: Real>(a: (S, S), b: (S, S)) -> S {
+    (a.0 - b.0) + (a.1 - b.1)
+}
+
 /// Distance vector and relative velocity of two bodies.
 #[inline(always)]
 fn relative<S: Real>(a: &Moving<S>, b: &Moving<S>) -> [[S; 3]; 2] {
     let [mut distance, mut velocity] = [[S::zero(); 3]; 2];
     for c in 0..3 {
-        distance[c] = (a.position[c] - b.position[c]) + (a.position_rest[c] - b.position_rest[c]);
-        velocity[c] = (a.velocity[c] - b.velocity[c]) + (a.velocity_rest[c] - b.velocity_rest[c]);
+        distance[c] = apart((a.position[c], a.position_rest[c]), (b.position[c], b.position_rest[c]));
+        velocity[c] = apart((a.velocity[c], a.velocity_rest[c]), (b.velocity[c], b.velocity_rest[c]));
     }
     [distance, velocity]
 }
@@ -113,15 +119,29 @@ impl Event {
     /// What it sees of bodies that move about this origin; nothing if it looks at whole states.
     #[inline(always)]
     pub fn sight_of<S: Real>(&self, bodies: &[Moving<S>], places: &[usize], origin: &Moved) -> Sight<S> {
-        let [mut distance, mut velocity] = match &self.what {
-            What::Distance { .. } | What::Apsis { about: Focus::Body(_), .. } => {
-                relative(&bodies[places[0]], &bodies[places[1]])
-            }
+        if self.has_rates() {
+            // A single body is the first and the last.
+            let [first, last] = [places[0], places[places.len() - 1]];
+            self.seen(self.vectors([&bodies[first], &bodies[last]], origin))
+        } else {
+            Sight::default()
+        }
+    }
+
+    /// The distance vector and the velocity that it is a function of, of the body or the two that it looks at.
+    #[inline(always)]
+    pub fn vectors<S: Real>(&self, [first, last]: [&Moving<S>; 2], origin: &Moved) -> [[S; 3]; 2] {
+        match &self.what {
             What::Plane { point, .. } | What::Apsis { about: Focus::Point(point), .. } => {
-                about_point(&bodies[places[0]], *point, origin)
+                about_point(first, *point, origin)
             }
-            What::Energy(_) | What::Function(_) => return Sight::default(),
-        };
+            _ => relative(first, last),
+        }
+    }
+
+    /// What it sees, from those vectors.
+    #[inline(always)]
+    pub fn seen<S: Real>(&self, [mut distance, mut velocity]: [[S; 3]; 2]) -> Sight<S> {
         let value = match &self.what {
             What::Distance { length, .. } => {
                 let length = S::splat(*length);

@@ -97,7 +97,7 @@ fn lockstep(
         }
     }
     let along = match (plan.layout, &watches[..]) {
-        (Layout::Packed, [Some(watch)]) => Along::of(watch, &prepared[0]),
+        (Layout::Packed, [Some(watch)]) => Along::of(watch, scale(dt, -unit_of_time)),
         _ => None,
     };
     let mut records = Records {
@@ -205,15 +205,14 @@ impl Recorder<Lanes> for Records<'_> {
     }
 
     #[inline(always)]
-    fn note(&mut self, node: usize, state: &State<Lanes>) {
-        if let Some(along) = &mut self.along {
-            along.note(node, state);
+    fn note(&mut self, place: usize, node: u64, state: &State<Lanes>) {
+        if let (Some(along), [unit]) = (&mut self.along, &self.units[..]) {
+            along.note(place, unit, node, state);
         }
     }
 
     fn suspects(&mut self, steps: usize) -> Bits {
-        let h = scale(self.step, self.job.plan.units.time);
-        self.along.as_ref().map_or(Bits(0xff), |along| along.suspects(steps, h))
+        self.along.as_ref().map_or(Bits(0xff), |along| along.suspects(steps))
     }
 
     fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {

@@ -1,61 +1,97 @@
 //! One unit under watch along its steps: eight of them are come to the end of in one pass, and only those in which there may be
 //! zeros are looked into.
 
-use super::super::super::events::{Event, Moving, Sight};
+use super::super::super::events::{Event, Sight};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, keeps_clear, keeps_clear_after_all};
 use super::{Bodies, Watch};
-use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Mask;
 use crate::ode::state::State;
-use crate::scene::frame::Moved;
+use crate::scene::frame::Origin;
 use crate::tiered;
 
-/// The events of a unit and where its bodies are at nine nodes: steps lie in the lanes.
+/// The events of a unit, and what they are functions of at nine nodes: steps lie in the lanes.
 pub(in super::super) struct Along<'a> {
-    /// Each with the places of its bodies.
-    events: Vec<(&'a Event, [usize; 2])>,
+    events: Vec<Seen<'a>>,
     bodies: Bodies,
-    /// Where each of their coordinates lies among the numbers of a state.
-    coordinates: Vec<usize>,
-    /// Position, what it leaves out, velocity and what that leaves out, coordinate after coordinate, node after node.
-    numbers: Vec<[[f64; WIDTH + 1]; 4]>,
+    /// A step, in the plan's units.
+    step: f64,
+    unit_of_time: i32,
+}
+
+/// An event along the steps.
+struct Seen<'a> {
+    event: &'a Event,
+    /// Its bodies, among those that are looked at.
+    bodies: [usize; 2],
+    /// Its distance vector and its velocity, node after node.
+    vectors: [[[f64; WIDTH + 1]; 3]; 2],
+    /// Whether it looks at where a body is in the scene.
+    asks_where: bool,
+}
+
+impl Seen<'_> {
+    /// A function of its own: the room that it takes would burden the others.
+    #[inline(never)]
+    fn note_where(
+        &mut self,
+        place: usize,
+        (origin, step, node, unit_of_time): (&Origin, f64, u64, i32),
+        bodies: &Bodies,
+        state: &State<Lanes>,
+    ) {
+        let origin = origin.at(scale(step * node as f64, unit_of_time));
+        let body = bodies.one(self.bodies[0], state);
+        for (vectors, numbers) in self.vectors.iter_mut().zip(self.event.vectors([&body, &body], &origin)) {
+            for (vector, number) in vectors.iter_mut().zip(numbers) {
+                vector[place] = number;
+            }
+        }
+    }
 }
 
 impl<'a> Along<'a> {
     /// Of a unit under this watch, if what its events see follows from how its bodies move.
-    pub(in super::super) fn of(watch: &Watch<'a>, unit: &Prepared) -> Option<Self> {
+    pub(in super::super) fn of(watch: &Watch<'a>, step: f64) -> Option<Self> {
         let mut events = Vec::with_capacity(watch.events.len());
         for index in 0..watch.events.len() {
             let (event, bodies) = watch.event(index);
-            if !event.has_rates() || (event.asks_where() && unit.origin.is_elsewhere()) {
+            if !event.has_rates() {
                 return None;
             }
-            events.push((event, [*bodies.first()?, *bodies.last()?]));
+            let bodies = [*bodies.first()?, *bodies.last()?];
+            let vectors = [[[0.0; WIDTH + 1]; 3]; 2];
+            events.push(Seen { event, bodies, vectors, asks_where: event.asks_where() });
         }
-        let bodies = watch.bodies.clone();
-        let coordinates: Vec<usize> = bodies.coordinates().collect();
-        let numbers = vec![[[0.0; WIDTH + 1]; 4]; coordinates.len()];
-        Some(Self { events, bodies, coordinates, numbers })
+        let unit_of_time = watch.job.plan.units.time;
+        Some(Self { events, bodies: watch.bodies.clone(), step, unit_of_time })
     }
 
-    /// Takes note of where the bodies are at a node.
+    /// Takes note in one of nine places of how the bodies move at a node, to which so many steps have led.
     #[inline(always)]
-    pub(in super::super) fn note(&mut self, node: usize, state: &State<Lanes>) {
-        let ((q, q_rest), (v, v_rest)) = (state.position(), state.velocity());
-        let [q, q_rest, v, v_rest] = [as_numbers(q), as_numbers(q_rest), as_numbers(v), as_numbers(v_rest)];
-        // All of one length, to be looked at once.
-        let (q_rest, v, v_rest) = (&q_rest[..q.len()], &v[..q.len()], &v_rest[..q.len()]);
-        for (numbers, &at) in self.numbers.iter_mut().zip(&self.coordinates) {
-            numbers[0][node] = q[at];
-            numbers[1][node] = q_rest[at];
-            numbers[2][node] = v[at];
-            numbers[3][node] = v_rest[at];
+    pub(in super::super) fn note(&mut self, place: usize, unit: &Prepared, node: u64, state: &State<Lanes>) {
+        for seen in &mut self.events {
+            if seen.asks_where {
+                seen.note_where(
+                    place,
+                    (&unit.origin, self.step, node, self.unit_of_time),
+                    &self.bodies,
+                    state,
+                );
+                continue;
+            }
+            let [distances, velocities] = &mut seen.vectors;
+            self.bodies.apart(seen.bodies, state, |c, [distance, velocity]| {
+                (distances[c][place], velocities[c][place]) = (distance, velocity);
+            });
         }
     }
 
-    /// The steps `h` (in the scene's units), so many, in which there may be zeros.
-    pub(in super::super) fn suspects(&self, steps: usize, h: f64) -> Bits {
+    /// The steps, of so many between those nodes, in which there may be zeros.
+    pub(in super::super) fn suspects(&self, steps: usize) -> Bits {
+        let h = scale(self.step, self.unit_of_time);
         let mut suspects = Bits(0);
         let mut cubics = [Lanes([0.0; WIDTH]); 4];
         for index in 0..self.events.len() {
@@ -78,11 +114,14 @@ tiered! {
 /// The steps in which an event may be near zero, and the cubics through their ends.
 #[inline(always)]
 fn eight_steps<V: Vector8>(along: &Along<'_>, event: usize, h: f64, cubics: &mut [Lanes; 4]) -> Bits {
-    let (event, places) = &along.events[event];
+    let Seen { event, vectors, .. } = &along.events[event];
     let mut ends = [Sight::<V>::default(), Sight::default()];
     for (end, sight) in ends.iter_mut().enumerate() {
-        let both = [moving::<V>(along, places[0], end), moving::<V>(along, places[1], end)];
-        *sight = event.sight_of(&both, &[0, 1], &Moved::NOWHERE);
+        let mut at_end = [[V::zero(); 3]; 2];
+        for (into, numbers) in at_end.iter_mut().flatten().zip(vectors.iter().flatten()) {
+            *into = eight(numbers, end);
+        }
+        *sight = event.seen(at_end);
     }
     let [before, after] = &ends;
     let Some(rates) = event.rates([before, after], V::splat(h)) else { return Bits(0xff) };
@@ -94,22 +133,6 @@ fn eight_steps<V: Vector8>(along: &Along<'_>, event: usize, h: f64, cubics: &mut
         }
     }
     near
-}
-
-/// A body at the beginnings of the steps (0) or at their ends (1).
-#[inline(always)]
-fn moving<V: Vector8>(along: &Along<'_>, body: usize, end: usize) -> Moving<V> {
-    let Along { bodies, numbers, .. } = along;
-    let [length, speed] = [V::splat(bodies.factors[0]), V::splat(bodies.factors[1])];
-    let mut moving = Moving::default();
-    for c in 0..bodies.components {
-        let of = &numbers[body * bodies.components + c];
-        moving.position[c] = eight::<V>(&of[0], end) * length;
-        moving.position_rest[c] = eight::<V>(&of[1], end) * length;
-        moving.velocity[c] = eight::<V>(&of[2], end) * speed;
-        moving.velocity_rest[c] = eight::<V>(&of[3], end) * speed;
-    }
-    moving
 }
 
 /// The numbers of eight nodes, from the first or from the second on.

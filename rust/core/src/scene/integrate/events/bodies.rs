@@ -1,6 +1,6 @@
 //! The bodies that the events of a unit look at: where they lie in a state, and how they move there.
 
-use super::super::super::events::Moving;
+use super::super::super::events::{Moving, apart};
 use super::super::super::unit::Prepared;
 use super::Job;
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers};
@@ -47,17 +47,43 @@ impl Bodies {
     /// Reads them off a state.
     #[inline]
     pub(super) fn read(&self, state: &State<Lanes>, into: &mut [Moving]) {
+        for (body, moving) in into.iter_mut().enumerate().take(self.places.len()) {
+            *moving = self.one(body, state);
+        }
+    }
+
+    /// Reads one of them off a state.
+    #[inline(always)]
+    pub(super) fn one(&self, body: usize, state: &State<Lanes>) -> Moving {
         let [length, speed] = self.factors;
-        let ((q, q_rest), (v, v_rest)) = (state.position(), state.velocity());
-        let [q, q_rest, v, v_rest] = [q, q_rest, v, v_rest].map(as_numbers);
-        for (moving, &place) in into.iter_mut().zip(&self.places) {
-            for c in 0..self.components {
-                let at = place + c * self.stride;
-                moving.position[c] = q[at] * length;
-                moving.position_rest[c] = q_rest[at] * length;
-                moving.velocity[c] = v[at] * speed;
-                moving.velocity_rest[c] = v_rest[at] * speed;
-            }
+        let [q, q_rest, v, v_rest] = numbers(state);
+        let mut moving = Moving::default();
+        for c in 0..self.components {
+            let at = self.places[body] + c * self.stride;
+            moving.position[c] = q[at] * length;
+            moving.position_rest[c] = q_rest[at] * length;
+            moving.velocity[c] = v[at] * speed;
+            moving.velocity_rest[c] = v_rest[at] * speed;
+        }
+        moving
+    }
+
+    /// Distance vector and relative velocity of two of them, one component after the other.
+    #[inline(always)]
+    pub(super) fn apart(
+        &self,
+        [a, b]: [usize; 2],
+        state: &State<Lanes>,
+        mut each: impl FnMut(usize, [f64; 2]),
+    ) {
+        let [length, speed] = self.factors;
+        let [q, q_rest, v, v_rest] = numbers(state);
+        let (mut i, mut j) = (self.places[a], self.places[b]);
+        for c in 0..self.components {
+            let distance = apart((q[i], q_rest[i]), (q[j], q_rest[j]));
+            let velocity = apart((v[i], v_rest[i]), (v[j], v_rest[j]));
+            each(c, [distance * length, velocity * speed]);
+            (i, j) = (i + self.stride, j + self.stride);
         }
     }
 
@@ -71,4 +97,13 @@ impl Bodies {
     pub(super) fn coordinates(&self) -> impl Iterator<Item = usize> {
         self.places.iter().flat_map(move |&place| (0..self.components).map(move |c| place + c * self.stride))
     }
+}
+
+/// Coordinates and velocities of a state, each with what they leave out: all of one length, to be looked at once.
+#[inline(always)]
+fn numbers(state: &State<Lanes>) -> [&[f64]; 4] {
+    let ((q, q_rest), (v, v_rest)) = (state.position(), state.velocity());
+    let q = as_numbers(q);
+    let len = q.len();
+    [q, &as_numbers(q_rest)[..len], &as_numbers(v)[..len], &as_numbers(v_rest)[..len]]
 }
