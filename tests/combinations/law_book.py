@@ -1,4 +1,4 @@
-"""Where laws are listed: `bit_laws`, `event_laws`, `accuracy_laws` write them down, `stated_laws` has all of them."""
+"""Where laws are listed: `stated_laws` has all of them, the other files of laws write them down."""
 
 from __future__ import annotations
 

@@ -237,6 +237,9 @@ impl<'a> Run<'a> {
         let mut slot = Slot { unit, index, next_output: 0, counts, progress: 0, watch };
         self.record_start(&mut slot, lane, ticker)?;
         if self.end() == 0.0 {
+            if slot.unit.unit.reports() {
+                ticker.advance(PROGRESS_PER_UNIT);
+            }
             self.finish(slot, lane, self.job.scene.t0, Ending::Finished);
         } else {
             self.slots[lane] = Some(slot);

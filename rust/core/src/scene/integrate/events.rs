@@ -257,9 +257,10 @@ impl<'a> Watch<'a> {
         }
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (theta, event) in zeros {
-            let t = self.job.scene.t0 + scale(span.at(theta), self.job.plan.units.time);
+            // Of the state nothing is lost to the rounding of the time.
+            let elapsed = scale(span.at(theta), self.job.plan.units.time);
+            let t = self.job.scene.t0 + elapsed;
             let state = if theta == 1.0 { after } else { step.at(theta, ticker)? };
-            let elapsed = t - self.job.scene.t0;
             let states = (0..unit.unit.bodies.len()).map(|slot| {
                 let entry = unit.read(slot, state, lane, elapsed);
                 [entry.position, entry.velocity]
