@@ -23,6 +23,15 @@ def columns() -> list[str]:
     raise AssertionError("the core took '?' for a column")
 
 
+def solvers() -> list[str]:
+    """The methods of ``solve_ivp``, SciPy's names and ours, likewise."""
+    try:
+        vv.solve_ivp(lambda _, y: -y, (0.0, 1.0), [1.0], "?")  # type: ignore[arg-type]
+    except vv.InvalidInput as error:
+        return re.findall(r"\w+", error.message.removeprefix("expected one of").partition(", got")[0])
+    raise AssertionError("the core took '?' for a method")
+
+
 def literal(name: str, words: list[str]) -> str:
     """A type alias as ruff would lay it out."""
     quoted = [f'"{word}"' for word in words]
@@ -41,6 +50,7 @@ def main() -> int:
     before, rest = text.split(BEGIN)
     _, after = rest.split(END)
     names = literal("MethodName", ["auto", *sorted(method.name for method in vv.methods())])
+    names += literal("SolverName", sorted(solvers()))
     names += literal("ColumnName", sorted(columns()))
     wanted = before + BEGIN + names + END + after
     if "--check" in sys.argv:

@@ -19,6 +19,8 @@ from visviva.errors import Interrupted, InvalidInput
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import SolverName
+
 __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
 
 Function: TypeAlias = Callable[..., Any]
@@ -133,7 +135,7 @@ def solve_ivp(
     fun: Function | int,
     t_span: Sequence[float],
     y0: ArrayLike,
-    method: str | type = "RK45",
+    method: SolverName | type = "RK45",
     t_eval: ArrayLike | None = None,
     dense_output: bool = False,
     events: Function | Sequence[Function] | None = None,

@@ -1,6 +1,7 @@
-"""Types to annotate with: the names that `run` takes, and what it reports to.
+"""Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
-`MethodName` and `ColumnName` are written by ``tools/write_names.py`` from what the core has; a test compares.
+`MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
+has; a test compares.
 """
 
 from collections.abc import Callable
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from visviva._progress import Progress, Report
 
-__all__ = ["ColumnName", "EventFunction", "MethodName", "Progress", "Report"]
+__all__ = ["ColumnName", "EventFunction", "MethodName", "Progress", "Report", "SolverName"]
 
 EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], Any]
 """A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
@@ -29,6 +30,7 @@ MethodName: TypeAlias = Literal[
     "stormer13",
     "yoshida4",
 ]
+SolverName: TypeAlias = Literal["DOP853", "RK23", "RK45", "bogacki_shampine32", "dop853", "dormand_prince54", "rk4"]
 ColumnName: TypeAlias = Literal[
     "angular_momentum",
     "center_of_mass",

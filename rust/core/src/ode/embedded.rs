@@ -306,7 +306,11 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     }
 
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
-        state.take_over(&self.next, accepted);
+        if accepted.all() {
+            core::mem::swap(state, &mut self.next);
+        } else {
+            state.take_over(&self.next, accepted);
+        }
         self.stages.begin_with_end(accepted, self.end_stage());
     }
 

@@ -14,7 +14,6 @@ use super::state::State;
 use super::step_control::Rule;
 use super::system::{Form, System};
 use super::table::Table;
-use super::trial::Trial;
 use super::{Method, Scheme};
 use crate::error::{Error, Result};
 use crate::parallel::Ticker;
@@ -98,6 +97,12 @@ impl<F: Function> System<f64> for Equations<'_, F> {
         let t = if t > last { last } else { t };
         (self.function)(t, y, rate)
     }
+}
+
+/// A method at work, by its own type: a run is compiled for each.
+enum Work {
+    Embedded(Box<EmbeddedStep<f64>>),
+    Equal(Box<EqualSteps<f64>>),
 }
 
 impl Request {
@@ -189,7 +194,7 @@ impl Request {
     }
 
     /// The method at work.
-    fn trial(&self, system: &dyn System<f64>, state: &State<f64>) -> Result<Box<dyn Trial<f64>>> {
+    fn trial(&self, system: &dyn System<f64>, state: &State<f64>) -> Result<Work> {
         let method = self.method;
         let refused = |name: &str, why: String| Err(Error::invalid(name, why));
         match &method.scheme {
@@ -203,7 +208,7 @@ impl Request {
                 let max_step = self.max_step.unwrap_or(f64::INFINITY);
                 let mut rule = Rule::new(table.error_exponent, max_step);
                 rule.limits = LIMITS;
-                Ok(Box::new(EmbeddedStep::with_rule(table, system, state, rule)))
+                Ok(Work::Embedded(Box::new(EmbeddedStep::with_rule(table, system, state, rule))))
             }
             Scheme::RungeKutta(tableau) => {
                 let given = [
@@ -233,7 +238,7 @@ impl Request {
                         ),
                     );
                 }
-                Ok(Box::new(EqualSteps::new(tableau, self.direction() * dt, system, state)))
+                Ok(Work::Equal(Box::new(EqualSteps::new(tableau, self.direction() * dt, system, state))))
             }
             Scheme::Splitting(_) | Scheme::Boris(_) | Scheme::Multistep(_) => {
                 refused("method", format!("{} takes no equations y' = f(t, y)", method.name))
@@ -268,7 +273,14 @@ pub fn solve<'a>(
         }
     } else {
         let start = (request.span, request.first_step);
-        run(&mut *trial, &mut system, &mut state, &norm, start, &mut table, ticker)?
+        match &mut trial {
+            Work::Embedded(trial) => {
+                run(&mut **trial, &mut system, &mut state, &norm, start, &mut table, ticker)?
+            }
+            Work::Equal(trial) => {
+                run(&mut **trial, &mut system, &mut state, &norm, start, &mut table, ticker)?
+            }
+        }
     };
     let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
     let extension = table.extension.take();

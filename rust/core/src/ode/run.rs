@@ -115,8 +115,8 @@ impl Step<'_, '_> {
 ///
 /// # Errors
 /// Those of the system and of the recorder but [`Error::Interrupted`].
-pub fn run(
-    trial: &mut dyn Trial<f64>,
+pub fn run<T: Trial<f64>>(
+    trial: &mut T,
     system: &mut dyn System<f64>,
     state: &mut State<f64>,
     norm: &Norm<f64>,
@@ -128,8 +128,8 @@ pub fn run(
     if ending == Err(Error::Interrupted) { Ok(Ending::Interrupted) } else { ending }
 }
 
-fn steps(
-    trial: &mut dyn Trial<f64>,
+fn steps<T: Trial<f64>>(
+    trial: &mut T,
     system: &mut dyn System<f64>,
     state: &mut State<f64>,
     norm: &Norm<f64>,

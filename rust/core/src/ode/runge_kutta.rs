@@ -159,6 +159,7 @@ impl<S: Element> Stages<S> {
     ///
     /// # Errors
     /// Those of an evaluation.
+    #[inline]
     pub fn rate_step(
         &mut self,
         (t, h): (&S, &S),

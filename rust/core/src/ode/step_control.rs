@@ -165,9 +165,11 @@ pub trait Controlled: Element {
 macro_rules! controlled {
     ($($type:ty)+) => {$(
         impl Controlled for $type {
+            #[inline(always)]
             fn next_step(clock: &Clock<Self>, running: bool) -> Self {
                 clock.next_step(running).0
             }
+            #[inline(always)]
             fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: &Rule<Self>) -> Outcome<Self> {
                 clock.settle(running, size2, rule)
             }

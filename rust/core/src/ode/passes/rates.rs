@@ -4,7 +4,8 @@
 //! asks the system from within; how many numbers there are is known when compiled if they are few.
 
 use super::errors::{MeanErrors, PairTerm};
-use super::stages::{CompensatedRates, Rates, Weighted};
+use super::stages::{CompensatedRates, Rates, Term, Weighted};
+use super::updates::add_compensated;
 use crate::error::Result;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
 use crate::ode::nystrom::Row;
@@ -55,19 +56,21 @@ impl<S: Element> Pass<S> for RateStep<'_, '_, S> {
     fn run<V: View<S>>(self) -> Result<[S; 2]> {
         // Eight numbers in lanes are work enough without.
         match self.position.len() {
-            1 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 1),
-            2 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 2),
-            3 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 3),
-            4 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 4),
-            5 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 5),
-            6 if size_of::<S>() == size_of::<f64>() => step::<S, V>(self, 6),
-            n => step::<S, V>(self, n),
+            1 if size_of::<S>() == size_of::<f64>() => few::<S, V, 1>(self),
+            2 if size_of::<S>() == size_of::<f64>() => few::<S, V, 2>(self),
+            3 if size_of::<S>() == size_of::<f64>() => few::<S, V, 3>(self),
+            4 if size_of::<S>() == size_of::<f64>() => few::<S, V, 4>(self),
+            5 if size_of::<S>() == size_of::<f64>() => few::<S, V, 5>(self),
+            6 if size_of::<S>() == size_of::<f64>() => few::<S, V, 6>(self),
+            _ => many::<S, V>(self),
         }
     }
 }
 
+/// A step of any number of numbers.
 #[inline(always)]
-fn step<S: Element, V: View<S>>(pass: RateStep<'_, '_, S>, n: usize) -> Result<[S; 2]> {
+fn many<S: Element, V: View<S>>(pass: RateStep<'_, '_, S>) -> Result<[S; 2]> {
+    let n = pass.position.len();
     let RateStep { rows: (rows, end), time: (from, timed), h, y: (y, e), k, system, ticker, .. } = pass;
     let (y, position) = ((&y[..n], &e[..n]), &mut pass.position[..n]);
     for (stage, row) in rows.iter().enumerate().skip(1) {
@@ -87,6 +90,64 @@ fn step<S: Element, V: View<S>>(pass: RateStep<'_, '_, S>, n: usize) -> Result<[
         system.rate(&(from + *h), next, &mut k[rows.len() * n..][..n], ticker)?;
     }
     Ok(MeanErrors { y: y.0, next, atol, rtol, h, terms, k, stride: n }.run::<V>())
+}
+
+/// A step of `N` numbers, the same operations as of many.
+#[inline(always)]
+fn few<S: Element, V: View<S>, const N: usize>(pass: RateStep<'_, '_, S>) -> Result<[S; 2]> {
+    let RateStep { rows: (rows, end), time: (from, timed), h, y, k, system, ticker, .. } = pass;
+    let (y, e) = V::pair((&y.0[..N], &y.1[..N]));
+    let (k, step) = (k.as_chunks_mut::<N>().0, V::load(*h));
+    let mut position = [S::zero(); N];
+    for (stage, row) in rows.iter().enumerate().skip(1) {
+        let sums = weighted::<S, V, N>(&row.velocity, k);
+        let position_view = V::view_mut(&mut position);
+        for i in 0..N {
+            position_view[i] = y[i] + step.multiply_add(sums[i], e[i]);
+        }
+        let t = if timed { from + *h * row.fraction } else { from };
+        system.rate(&t, &position, &mut k[stage], ticker)?;
+    }
+    let sums = weighted::<S, V, N>(&end.velocity, k);
+    let (next, left_out) = (&mut pass.next.0[..N], &mut pass.next.1[..N]);
+    let (next_view, left_out) = V::pair_mut((&mut *next, left_out));
+    for i in 0..N {
+        (next_view[i], left_out[i]) = add_compensated(y[i], e[i], step * sums[i]);
+    }
+    let Some(RateErrors { terms, end, atol, rtol }) = pass.errors else {
+        return Ok([S::zero(); 2]);
+    };
+    if end {
+        system.rate(&(from + *h), next, &mut k[rows.len()], ticker)?;
+    }
+    let (y, k) = (&pass.y.0[..N], k.as_flattened());
+    Ok(MeanErrors { y, next, atol, rtol, h, terms, k, stride: N }.run::<V>())
+}
+
+/// `Σ weight·k[stage]` of `N` numbers, in the order of the terms.
+#[inline(always)]
+fn weighted<S: Element, V: View<S>, const N: usize>(terms: &[Term<S>], k: &[[S; N]]) -> [V; N] {
+    let mut sums = [V::zero(); N];
+    let Some((last, terms)) = terms.split_last() else { return sums };
+    for &Term { stage, weight } in terms {
+        let (weight, column) = (V::load(weight), V::view(&k[stage]));
+        for i in 0..N {
+            sums[i] = weight.multiply_add(column[i], sums[i]);
+        }
+    }
+    let (weight, column) = (V::load(last.weight), &k[last.stage]);
+    for i in 0..N {
+        sums[i] = weight.multiply_add(V::load(fresh(&column[i])), sums[i]);
+    }
+    sums
+}
+
+/// A number that was written a moment ago. A processor that reads several such numbers at once, each of which was written by
+/// itself, waits until all of them have reached the cache; so this one is read by itself too.
+#[inline(always)]
+pub(crate) fn fresh<S: Copy>(value: &S) -> S {
+    // SAFETY: what is borrowed can be read.
+    unsafe { core::ptr::from_ref(value).read_volatile() }
 }
 
 #[cfg(test)]
