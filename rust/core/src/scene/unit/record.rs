@@ -4,7 +4,7 @@
 //! unit is prepared; and packed bodies go eight at a time, coordinates into points by the tier's vectors.
 
 use super::super::columns::{Output, Run, Writer};
-use super::super::frame::{Moved, Units, restored};
+use super::super::frame::{Moved, Units, drifted, restored};
 use super::{Layout, Origin, Prepared, Unit};
 use crate::error::Result;
 use crate::forces::bodies::{Of, PreciseBodies};
@@ -23,7 +23,11 @@ pub(super) struct Reading {
     factors: [f64; 2],
     /// Whether they are relative to an origin that has to be added.
     moved: bool,
+    /// Place and velocity of that origin at the start, in the first lanes.
+    origin: [Lanes; 2],
     way: Way,
+    /// Whether columns are derived from rows that are all recorded.
+    whole: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -38,8 +42,20 @@ impl Reading {
     pub(super) fn new(unit: &Unit, layout: Layout, origin: &Origin, units: Units) -> Self {
         let moved = origin.is_elsewhere();
         let way = if layout == Layout::Packed { rows(unit).unwrap_or(Way::Bodies) } else { Way::Bodies };
-        Self { factors: [power_of_two(units.length), power_of_two(-units.velocity())], moved, way }
+        let first = |[x, y, z]: [f64; 3]| Lanes([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        Self {
+            factors: [power_of_two(units.length), power_of_two(-units.velocity())],
+            moved,
+            origin: [first(origin.center), first(origin.drift)],
+            whole: matches!(way, Way::Rows { start: 0, .. }) && unit.recorded.end >= derived_from(unit),
+            way,
+        }
     }
+}
+
+/// How many bodies columns are derived from: massless ones have no share in anything, unless there are no others.
+fn derived_from(unit: &Unit) -> usize {
+    if unit.active > 0 { unit.active } else { unit.bodies.len() }
 }
 
 /// The rows of a packed unit, if the particles of each follow each other in the scene. Massless ones begin a row of
@@ -73,11 +89,11 @@ impl Prepared {
     ) -> Result<bool> {
         // SAFETY: a particle is recorded from one unit (`run` looked), and one thread has the unit.
         let output = unsafe { writer.output(self.unit.copy, time) };
-        let finite = self.record_states(writer, &output, state, unit_lane, elapsed);
-        if writer.derives() && self.unit.leads && finite {
-            self.derive(writer, &output, state, unit_lane, elapsed, ticker)?;
+        if writer.derives() && self.unit.leads {
+            self.record_and_derive(writer, &output, state, unit_lane, elapsed, ticker)
+        } else {
+            Ok(self.record_states(writer, &output, state, unit_lane, elapsed))
         }
-        Ok(finite)
     }
 
     #[inline(always)]
@@ -126,9 +142,9 @@ impl Prepared {
 }
 
 impl Prepared {
-    /// Derives columns from the state and its compensation.
+    /// Records, and derives columns from the state and its compensation.
     #[inline(never)]
-    fn derive(
+    fn record_and_derive(
         &self,
         writer: &Writer<'_>,
         output: &Output<'_>,
@@ -136,10 +152,9 @@ impl Prepared {
         unit_lane: usize,
         elapsed: f64,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let unit = &self.unit;
-        // Massless bodies have no share in anything, unless there are no others.
-        let count = if unit.active > 0 { unit.active } else { unit.bodies.len() };
+        let count = derived_from(unit);
         let mut bodies = self.scratch.borrow_mut();
         if !bodies.keeps_masses(count) {
             bodies.clear(count);
@@ -148,14 +163,30 @@ impl Prepared {
                 bodies.set_mass(slot, masses[body]);
             }
         }
-        let read = (self, state, elapsed, output);
-        match (self.layout, self.shape.components == 2) {
-            (Layout::Packed, true) => gather_rows::<2>(read, &mut bodies),
-            (Layout::Packed, false) => gather_rows::<3>(read, &mut bodies),
-            (Layout::Batched, _) => self.gather_bodies(state, unit_lane, elapsed, &mut bodies),
+        let Reading { moved, way, whole, .. } = &self.reading;
+        let runs = match way {
+            Way::Rows { runs, .. } if *whole => &runs[..],
+            _ => &[],
+        };
+        if !whole && !self.record_states(writer, output, state, unit_lane, elapsed) {
+            return Ok(false);
         }
-        bodies.settle();
-        output.derive(&bodies, ticker)
+        let read = (self, state, elapsed, output);
+        let finite = match (self.layout, self.shape.components == 2, *moved) {
+            (Layout::Packed, true, false) => derive_rows::<2, false>(read, runs, &mut bodies),
+            (Layout::Packed, false, false) => derive_rows::<3, false>(read, runs, &mut bodies),
+            (Layout::Packed, true, true) => derive_rows::<2, true>(read, runs, &mut bodies),
+            (Layout::Packed, false, true) => derive_rows::<3, true>(read, runs, &mut bodies),
+            (Layout::Batched, ..) => {
+                self.gather_bodies(state, unit_lane, elapsed, &mut bodies);
+                bodies.settle();
+                true
+            }
+        };
+        if finite {
+            output.derive(&bodies, ticker)?;
+        }
+        Ok(finite)
     }
 
     /// Of a unit that has one lane.
@@ -204,50 +235,118 @@ type Read<'a> = (&'a Prepared, &'a State<Lanes>, f64, &'a Output<'a>);
 tiered! {
     fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, start: usize, runs: &[Run]) -> bool = rows_as_points;
     fn record_bodies[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, unit_lane: usize) -> bool = body_after_body;
-    fn gather_rows[const COMPONENTS: usize][COMPONENTS](read: Read<'_>, bodies: &mut PreciseBodies) = rows_of_bodies;
+    fn derive_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, runs: &[Run], bodies: &mut PreciseBodies) -> bool = rows_as_bodies;
 }
 
-/// A pair of numbers in every lane.
-#[inline(always)]
-fn splat<V: Vector8>((value, rest): (f64, f64)) -> (V, V) {
-    (V::splat(value), V::splat(rest))
+/// An origin, coordinate by coordinate in the first lanes: its place and what that leaves out, its velocity likewise.
+struct Moving([Lanes; 4]);
+
+impl Moving {
+    #[inline(always)]
+    fn at<V: Vector8>(unit: &Prepared, elapsed: f64) -> Self {
+        if unit.origin.falls() {
+            return Self::falling(unit.origin.at(elapsed));
+        }
+        let [center, drift] = &unit.reading.origin;
+        let (place, rest) = drifted(V::load(*center), V::load(*drift), V::splat(elapsed));
+        Self([place.store(), rest.store(), *drift, Lanes([0.0; WIDTH])])
+    }
+
+    #[cold]
+    fn falling(moved: Moved) -> Self {
+        let mut all = [Lanes([0.0; WIDTH]); 4];
+        for c in 0..3 {
+            (all[0].0[c], all[1].0[c]) = moved.position[c];
+            (all[2].0[c], all[3].0[c]) = moved.velocity[c];
+        }
+        Self(all)
+    }
+
+    /// A coordinate of the place, or of the velocity, in every lane.
+    #[inline(always)]
+    fn coordinate<V: Vector8>(&self, of: Of, c: usize) -> (V, V) {
+        let first = if matches!(of, Of::Position) { 0 } else { 2 };
+        (V::splat(self.0[first].0[c]), V::splat(self.0[first + 1].0[c]))
+    }
 }
 
 #[inline(always)]
 fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
-    (unit, state, elapsed, output): Read<'_>,
+    read: Read<'_>,
     start: usize,
     runs: &[Run],
 ) -> bool {
-    let origin = if MOVED { unit.origin.at(elapsed) } else { Moved::NOWHERE };
+    each_row::<V, COMPONENTS, MOVED>(read, (start, runs), None)
+}
+
+#[inline(always)]
+fn rows_as_bodies<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
+    read: Read<'_>,
+    runs: &[Run],
+    bodies: &mut PreciseBodies,
+) -> bool {
+    each_row::<V, COMPONENTS, MOVED>(read, (0, runs), Some(bodies))
+}
+
+/// Records the rows of the runs, the first of which is that of the number before them. Bodies, if they are given, are set,
+/// from the first row on, with what they leave out.
+#[inline(always)]
+fn each_row<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
+    (unit, state, elapsed, output): Read<'_>,
+    (start, runs): (usize, &[Run]),
+    mut bodies: Option<&mut PreciseBodies>,
+) -> bool {
+    let zero = V::zero();
+    let origin = if MOVED { Moving::at::<V>(unit, elapsed) } else { Moving([Lanes([0.0; WIDTH]); 4]) };
     let [length, speed] = unit.reading.factors;
-    let (length, speed) = (V::splat(length), V::splat(speed));
+    let factors = [V::splat(length), V::splat(speed)];
+    let kinds = [Of::Position, Of::Velocity];
     let rows = state.q().len() / COMPONENTS;
     // Velocities follow the coordinates.
     let (y, rest) = state.all();
     let mut finite = Bits::splat(true);
-    for (row, run) in (start..).zip(runs) {
-        let (mut position, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
-        if MOVED {
-            position[2] = V::splat(origin.position[2].0);
-            velocity[2] = V::splat(origin.velocity[2].0);
-        }
-        let mut check = V::zero();
-        for c in 0..COMPONENTS {
-            let (q, v) = (c * rows + row, (COMPONENTS + c) * rows + row);
-            position[c] = V::load(y[q]) * length;
-            velocity[c] = V::load(y[v]) * speed;
-            if MOVED {
-                let (q_rest, v_rest) = (V::load(rest[q]) * length, V::load(rest[v]) * speed);
-                position[c] = restored(splat::<V>(origin.position[c]), (position[c], q_rest)).0;
-                velocity[c] = restored(splat::<V>(origin.velocity[c]), (velocity[c], v_rest)).0;
+    let mut largest = [zero; 2];
+    let bodies_end = bodies.as_ref().map_or(0, |bodies| bodies.len());
+    for index in 0..runs.len().max(bodies_end.div_ceil(WIDTH)) {
+        let row = start + index;
+        let mut points = [[zero; 3]; 2];
+        let mut check = zero;
+        for kind in 0..2 {
+            for c in 0..3 {
+                let mut value = (zero, zero);
+                if c < COMPONENTS {
+                    let at = (kind * COMPONENTS + c) * rows + row;
+                    value = (V::load(y[at]) * factors[kind], V::load(rest[at]) * factors[kind]);
+                }
+                if MOVED {
+                    let origin = origin.coordinate::<V>(kinds[kind], c);
+                    let moved = restored(origin, value);
+                    // What is the origin's own is recorded as it is.
+                    points[kind][c] = if c < COMPONENTS { moved.0 } else { origin.0 };
+                    value = moved;
+                } else {
+                    points[kind][c] = value.0;
+                }
+                // Zero times a finite number is zero; times anything else it is not a number.
+                if c < COMPONENTS {
+                    check = zero.multiply_add(points[kind][c], check);
+                }
+                if let Some(bodies) = &mut bodies
+                    && row * WIDTH < bodies_end
+                {
+                    let value = FusedDouble { high: value.0, low: value.1 };
+                    largest[kind] = largest[kind].max(bodies.set_row(kinds[kind], c, row * WIDTH, value));
+                }
             }
-            // Zero times a finite number is zero; times anything else it is not a number.
-            check += V::zero() * position[c] + V::zero() * velocity[c];
         }
-        finite = finite.and(check.less_equal(V::zero()).or(run.idle));
-        let ([x, y, z], [u, v, w]) = (position, velocity);
-        output.write_points(run, V::interleave(x, y, z), V::interleave(u, v, w));
+        if let Some(run) = runs.get(index) {
+            finite = finite.and(check.less_equal(zero).or(run.idle));
+            let [[x, y, z], [u, v, w]] = points;
+            output.write_points(run, V::interleave(x, y, z), V::interleave(u, v, w));
+        }
+    }
+    if let Some(bodies) = bodies {
+        bodies.settle_sized(largest);
     }
     finite.all()
 }
@@ -282,41 +381,11 @@ fn body_after_body<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
                 position[c] = restored(origin.position[c], (position[c], q_rest[at] * length)).0;
                 velocity[c] = restored(origin.velocity[c], (velocity[c], v_rest[at] * speed)).0;
             }
-            // As in `rows_as_points`.
+            // As in `each_row`.
             check[c][0] += 0.0 * position[c];
             check[c][1] += 0.0 * velocity[c];
         }
         output.write_rounded(unit.unit.bodies[slot], position, velocity);
     }
     check.iter().flatten().all(|&sum| sum == 0.0)
-}
-
-/// Positions and velocities of a packed unit, from the first row on, with what they leave out.
-#[inline(always)]
-fn rows_of_bodies<V: Vector8, const COMPONENTS: usize>(
-    (unit, state, elapsed, _): Read<'_>,
-    bodies: &mut PreciseBodies,
-) {
-    let Reading { factors: [length, speed], moved, .. } = unit.reading;
-    let origin = if moved { unit.origin.at(elapsed) } else { Moved::NOWHERE };
-    let rows = state.q().len() / COMPONENTS;
-    let (y, rest) = state.all();
-    for (of, factor, first, origin) in
-        [(Of::Position, length, 0, origin.position), (Of::Velocity, speed, COMPONENTS, origin.velocity)]
-    {
-        let factor = V::splat(factor);
-        for c in 0..3 {
-            for row in 0..bodies.len().div_ceil(WIDTH) {
-                let at = (first + c) * rows + row;
-                let mut value = (V::zero(), V::zero());
-                if c < COMPONENTS {
-                    value = (V::load(y[at]) * factor, V::load(rest[at]) * factor);
-                }
-                if moved {
-                    value = restored(splat::<V>(origin[c]), value);
-                }
-                bodies.set_row(of, c, row * WIDTH, FusedDouble { high: value.0, low: value.1 });
-            }
-        }
-    }
 }
