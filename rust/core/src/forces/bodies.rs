@@ -109,20 +109,30 @@ impl PreciseBodies {
         self.len == len && self.units == Exponents::default()
     }
 
-    /// Sets a coordinate of eight bodies from one on, whose place is that of a row, and what it leaves out; zero after the
-    /// last of them. Gives their sizes.
+    /// Sets positions and velocities of eight bodies from one on, whose place is that of a row, and what they leave out; zero
+    /// after the last of them. Gives the largest of each kind, lane by lane, those from before among them.
     #[inline(always)]
-    pub fn set_row<V: Vector8>(&mut self, of: Of, c: usize, body: usize, value: FusedDouble<V>) -> V {
+    pub fn set_row<V: Vector8>(
+        &mut self,
+        body: usize,
+        values: &[[FusedDouble<V>; 3]; 2],
+        mut largest: [V; 2],
+    ) -> [V; 2] {
         let there = Bits((0xff_u32 >> (WIDTH - (self.len - body).min(WIDTH))) as u8);
-        let first = Self::first(of, c) * self.stride + body;
-        let (high, low) = (V::select(there, value.high, V::zero()), V::select(there, value.low, V::zero()));
-        if let Some(row) = self.numbers[first..].first_chunk_mut() {
-            *row = high.store().0;
+        // Indices, not an iterator: what is no loop by itself would be called, all vectors saved before.
+        let (stride, numbers) = (self.stride, &mut self.numbers[..]);
+        for c in 0..3 {
+            for kind in 0..2 {
+                let FusedDouble { high, low } = values[kind][c];
+                let (high, low) = (V::select(there, high, V::zero()), V::select(there, low, V::zero()));
+                largest[kind] = largest[kind].max(high.abs());
+                let first =
+                    Self::first(if kind == 0 { Of::Position } else { Of::Velocity }, c) * stride + body;
+                set_eight(numbers, first, high);
+                set_eight(numbers, first + stride, low);
+            }
         }
-        if let Some(row) = self.numbers[first + self.stride..].first_chunk_mut() {
-            *row = low.store().0;
-        }
-        high.abs()
+        largest
     }
 
     /// Brings the values near one, once all are set.
@@ -283,6 +293,13 @@ fn larger<V: Vector8>(largest: &mut V, value: V) {
     // Neither infinities nor what is not a number.
     let finite = V::select(size.less_equal(V::splat(f64::MAX)), size, V::zero());
     *largest = largest.max(finite);
+}
+
+#[inline(always)]
+fn set_eight<V: Vector8>(values: &mut [f64], from: usize, numbers: V) {
+    if let Some(eight) = values[from..].first_chunk_mut() {
+        *eight = numbers.store().0;
+    }
 }
 
 #[inline(always)]

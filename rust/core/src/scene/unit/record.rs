@@ -1,17 +1,16 @@
 //! A unit's bodies, read off a state and written into the columns at an output time.
 //!
 //! A run of cheap steps with many outputs spends its time here, so what can be decided is decided once, when the
-//! unit is prepared; and packed bodies go eight at a time, coordinates into points by the tier's vectors.
+//! unit is prepared; and packed bodies go eight at a time (`rows`), coordinates into points by the tier's vectors.
 
 use super::super::columns::{Output, Run, Writer};
-use super::super::frame::{Moved, Units, drifted, restored};
+use super::super::frame::{Moved, Units, restored};
+use super::rows::{derive_rows, record_rows};
 use super::{Layout, Origin, Prepared, Unit};
 use crate::error::Result;
 use crate::forces::bodies::{Of, PreciseBodies};
-use crate::numerics::fused_double::FusedDouble;
-use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::power_of_two::power_of_two;
-use crate::numerics::real::Mask;
 use crate::ode::state::State;
 use crate::parallel::Ticker;
 use crate::tiered;
@@ -20,11 +19,11 @@ use crate::tiered;
 #[derive(Clone, Debug)]
 pub(super) struct Reading {
     /// What takes a length and a velocity back to the scene's units.
-    factors: [f64; 2],
+    pub(super) factors: [f64; 2],
     /// Whether they are relative to an origin that has to be added.
     moved: bool,
     /// Place and velocity of that origin at the start, in the first lanes.
-    origin: [Lanes; 2],
+    pub(super) origin: [Lanes; 2],
     way: Way,
     /// Whether columns are derived from rows that are all recorded.
     whole: bool,
@@ -230,125 +229,10 @@ impl Prepared {
 }
 
 /// A unit, the state that it is in, the elapsed time, and where it is recorded.
-type Read<'a> = (&'a Prepared, &'a State<Lanes>, f64, &'a Output<'a>);
+pub(super) type Read<'a> = (&'a Prepared, &'a State<Lanes>, f64, &'a Output<'a>);
 
 tiered! {
-    fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, start: usize, runs: &[Run]) -> bool = rows_as_points;
     fn record_bodies[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, unit_lane: usize) -> bool = body_after_body;
-    fn derive_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, runs: &[Run], bodies: &mut PreciseBodies) -> bool = rows_as_bodies;
-}
-
-/// An origin, coordinate by coordinate in the first lanes: its place and what that leaves out, its velocity likewise.
-struct Moving([Lanes; 4]);
-
-impl Moving {
-    #[inline(always)]
-    fn at<V: Vector8>(unit: &Prepared, elapsed: f64) -> Self {
-        if unit.origin.falls() {
-            return Self::falling(unit.origin.at(elapsed));
-        }
-        let [center, drift] = &unit.reading.origin;
-        let (place, rest) = drifted(V::load(*center), V::load(*drift), V::splat(elapsed));
-        Self([place.store(), rest.store(), *drift, Lanes([0.0; WIDTH])])
-    }
-
-    #[cold]
-    fn falling(moved: Moved) -> Self {
-        let mut all = [Lanes([0.0; WIDTH]); 4];
-        for c in 0..3 {
-            (all[0].0[c], all[1].0[c]) = moved.position[c];
-            (all[2].0[c], all[3].0[c]) = moved.velocity[c];
-        }
-        Self(all)
-    }
-
-    /// A coordinate of the place, or of the velocity, in every lane.
-    #[inline(always)]
-    fn coordinate<V: Vector8>(&self, of: Of, c: usize) -> (V, V) {
-        let first = if matches!(of, Of::Position) { 0 } else { 2 };
-        (V::splat(self.0[first].0[c]), V::splat(self.0[first + 1].0[c]))
-    }
-}
-
-#[inline(always)]
-fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
-    read: Read<'_>,
-    start: usize,
-    runs: &[Run],
-) -> bool {
-    each_row::<V, COMPONENTS, MOVED>(read, (start, runs), None)
-}
-
-#[inline(always)]
-fn rows_as_bodies<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
-    read: Read<'_>,
-    runs: &[Run],
-    bodies: &mut PreciseBodies,
-) -> bool {
-    each_row::<V, COMPONENTS, MOVED>(read, (0, runs), Some(bodies))
-}
-
-/// Records the rows of the runs, the first of which is that of the number before them. Bodies, if they are given, are set,
-/// from the first row on, with what they leave out.
-#[inline(always)]
-fn each_row<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
-    (unit, state, elapsed, output): Read<'_>,
-    (start, runs): (usize, &[Run]),
-    mut bodies: Option<&mut PreciseBodies>,
-) -> bool {
-    let zero = V::zero();
-    let origin = if MOVED { Moving::at::<V>(unit, elapsed) } else { Moving([Lanes([0.0; WIDTH]); 4]) };
-    let [length, speed] = unit.reading.factors;
-    let factors = [V::splat(length), V::splat(speed)];
-    let kinds = [Of::Position, Of::Velocity];
-    let rows = state.q().len() / COMPONENTS;
-    // Velocities follow the coordinates.
-    let (y, rest) = state.all();
-    let mut finite = Bits::splat(true);
-    let mut largest = [zero; 2];
-    let bodies_end = bodies.as_ref().map_or(0, |bodies| bodies.len());
-    for index in 0..runs.len().max(bodies_end.div_ceil(WIDTH)) {
-        let row = start + index;
-        let mut points = [[zero; 3]; 2];
-        let mut check = zero;
-        for kind in 0..2 {
-            for c in 0..3 {
-                let mut value = (zero, zero);
-                if c < COMPONENTS {
-                    let at = (kind * COMPONENTS + c) * rows + row;
-                    value = (V::load(y[at]) * factors[kind], V::load(rest[at]) * factors[kind]);
-                }
-                if MOVED {
-                    let origin = origin.coordinate::<V>(kinds[kind], c);
-                    let moved = restored(origin, value);
-                    // What is the origin's own is recorded as it is.
-                    points[kind][c] = if c < COMPONENTS { moved.0 } else { origin.0 };
-                    value = moved;
-                } else {
-                    points[kind][c] = value.0;
-                }
-                // Zero times a finite number is zero; times anything else it is not a number.
-                if c < COMPONENTS {
-                    check = zero.multiply_add(points[kind][c], check);
-                }
-                if let Some(bodies) = &mut bodies
-                    && row * WIDTH < bodies_end
-                {
-                    let value = FusedDouble { high: value.0, low: value.1 };
-                    largest[kind] = largest[kind].max(bodies.set_row(kinds[kind], c, row * WIDTH, value));
-                }
-            }
-        }
-        if let Some(run) = runs.get(index) {
-            finite = finite.and(check.less_equal(zero).or(run.idle));
-            let [[x, y, z], [u, v, w]] = points;
-            output.write_points(run, V::interleave(x, y, z), V::interleave(u, v, w));
-        }
-    }
-    if let Some(bodies) = bodies {
-        bodies.settle_sized(largest);
-    }
-    finite.all()
 }
 
 #[expect(
@@ -381,7 +265,7 @@ fn body_after_body<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
                 position[c] = restored(origin.position[c], (position[c], q_rest[at] * length)).0;
                 velocity[c] = restored(origin.velocity[c], (velocity[c], v_rest[at] * speed)).0;
             }
-            // As in `each_row`.
+            // As in `rows::each_row`.
             check[c][0] += 0.0 * position[c];
             check[c][1] += 0.0 * velocity[c];
         }
