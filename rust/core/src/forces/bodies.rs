@@ -7,7 +7,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::fused_double::FusedDouble;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::power_of_two::{exponent, scale};
-use crate::numerics::real::Mask;
+use crate::numerics::real::{Mask, Real};
 use crate::tiered;
 
 /// The arrays: masses, then for each coordinate positions, their rests, velocities, their rests.
@@ -28,6 +28,8 @@ pub struct PreciseBodies {
     len: usize,
     /// PreciseBodies from here on are massless.
     massive: usize,
+    /// The largest mass, as it was set.
+    heaviest: f64,
     /// The exponents of the units of mass, length and speed in which the arrays are.
     pub units: Exponents,
 }
@@ -62,6 +64,7 @@ impl PreciseBodies {
             self.numbers.resize(ARRAYS * stride, 0.0);
         }
         (self.len, self.stride, self.massive, self.units) = (len, stride, 0, Exponents::default());
+        self.heaviest = 0.0;
     }
 
     /// Sets a body.
@@ -81,6 +84,7 @@ impl PreciseBodies {
         self.numbers[index] = mass;
         if mass != 0.0 {
             self.massive = self.massive.max(index + 1);
+            self.heaviest = Real::max(self.heaviest, mass);
         }
     }
 
@@ -105,25 +109,45 @@ impl PreciseBodies {
         self.len == len && self.units == Exponents::default()
     }
 
-    /// Sets a coordinate of eight bodies from one on, whose place is that of a row, and what it leaves out; zero after the
-    /// last of them.
+    /// Sets positions and velocities of eight bodies from one on, whose place is that of a row, and what they leave out; zero
+    /// after the last of them. Gives the largest of each kind, lane by lane, those from before among them.
     #[inline(always)]
-    pub fn set_row<V: Vector8>(&mut self, of: Of, c: usize, body: usize, value: FusedDouble<V>) {
+    pub fn set_row<V: Vector8>(
+        &mut self,
+        body: usize,
+        values: &[[FusedDouble<V>; 3]; 2],
+        mut largest: [V; 2],
+    ) -> [V; 2] {
         let there = Bits((0xff_u32 >> (WIDTH - (self.len - body).min(WIDTH))) as u8);
-        let first = Self::first(of, c) * self.stride + body;
-        let (high, low) = (V::select(there, value.high, V::zero()), V::select(there, value.low, V::zero()));
-        if let Some(row) = self.numbers[first..].first_chunk_mut() {
-            *row = high.store().0;
+        // Indices, not an iterator: what is no loop by itself would be called, all vectors saved before.
+        let (stride, numbers) = (self.stride, &mut self.numbers[..]);
+        for c in 0..3 {
+            for kind in 0..2 {
+                let FusedDouble { high, low } = values[kind][c];
+                let (high, low) = (V::select(there, high, V::zero()), V::select(there, low, V::zero()));
+                largest[kind] = largest[kind].max(high.abs());
+                let first =
+                    Self::first(if kind == 0 { Of::Position } else { Of::Velocity }, c) * stride + body;
+                set_eight(numbers, first, high);
+                set_eight(numbers, first + stride, low);
+            }
         }
-        if let Some(row) = self.numbers[first + self.stride..].first_chunk_mut() {
-            *row = low.store().0;
-        }
+        largest
     }
 
     /// Brings the values near one, once all are set.
     #[inline]
     pub fn settle(&mut self) {
         if !are_near(self) {
+            self.settle_far();
+        }
+    }
+
+    /// As [`settle`](Self::settle), the largest sizes of the positions and of the velocities being known lane by lane.
+    #[inline(always)]
+    pub fn settle_sized<V: Vector8>(&mut self, largest: [V; 2]) {
+        let near = (LEAST..MOST).contains(&self.heaviest) && is_near(largest[0]) && is_near(largest[1]);
+        if !near {
             self.settle_far();
         }
     }
@@ -236,13 +260,18 @@ fn largest_sizes<V: Vector8>(bodies: &PreciseBodies) -> [f64; 3] {
 /// Whether the largest of each kind are known to be near one, none of them zero.
 #[inline(always)]
 fn sizes_are_near<V: Vector8>(bodies: &PreciseBodies) -> bool {
-    let (least, most) = (V::splat(LEAST), V::splat(MOST));
     let largest = largest_in_lanes::<V>(bodies);
     let mut near = true;
     for kind in 0..3 {
-        near &= largest[kind].less(most).all() && least.less_equal(largest[kind]).any();
+        near &= is_near(largest[kind]);
     }
     near
+}
+
+/// Whether the largest of some sizes is known to be near one.
+#[inline(always)]
+fn is_near<V: Vector8>(largest: V) -> bool {
+    largest.less(V::splat(MOST)).all() && V::splat(LEAST).less_equal(largest).any()
 }
 
 #[inline(always)]
@@ -264,6 +293,13 @@ fn larger<V: Vector8>(largest: &mut V, value: V) {
     // Neither infinities nor what is not a number.
     let finite = V::select(size.less_equal(V::splat(f64::MAX)), size, V::zero());
     *largest = largest.max(finite);
+}
+
+#[inline(always)]
+fn set_eight<V: Vector8>(values: &mut [f64], from: usize, numbers: V) {
+    if let Some(eight) = values[from..].first_chunk_mut() {
+        *eight = numbers.store().0;
+    }
 }
 
 #[inline(always)]

@@ -39,6 +39,7 @@ fn spacing(magnitude: f64) -> f64 {
 /// Within two units in the last place of the time itself (`magnitude` is the larger of |t|, |t0|) a time
 /// is on the node: it cannot be told from it, and a grid such as `linspace` hits nodes only that closely. But not an
 /// eighth of a step off: where times are that coarse, each is meant.
+#[inline]
 pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
     let ratio = elapsed / h;
     // Adding 1.5·2^52 leaves a number below 2^51 as an integer in the last bits, without a call.
@@ -51,7 +52,8 @@ pub fn place(elapsed: f64, h: f64, magnitude: f64) -> Place {
     };
     let distance = elapsed.abs();
     let off = (elapsed - nearest * h).abs();
-    if off <= 2.0 * spacing(Real::max(magnitude, distance)) && off <= 0.124 * h.abs() {
+    let near = || off <= 2.0 * spacing(Real::max(magnitude, distance)) && off <= 0.124 * h.abs();
+    if off == 0.0 || near() {
         return Place { node, past: None };
     }
     let (nearest, node) =

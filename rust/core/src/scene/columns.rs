@@ -320,10 +320,11 @@ impl Output<'_> {
         // A store to a line that is far holds up all after it, so the lines of the next output time come while
         // there are steps to take.
         let next = at + 3 * self.writer.particles;
-        for (third, lanes) in points.into_iter().enumerate() {
+        // By index: an array's own iterator would lie in memory, and be dropped by a call.
+        for third in 0..3 {
             prefetch(array.wrapping_add(next + WIDTH * third));
             // SAFETY: in bounds by the test; no other thread writes these particles (see the type).
-            unsafe { lanes.write_where(run.wanted[third], array.wrapping_add(at + WIDTH * third)) };
+            unsafe { points[third].write_where(run.wanted[third], array.wrapping_add(at + WIDTH * third)) };
         }
     }
 

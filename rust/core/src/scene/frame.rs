@@ -137,22 +137,24 @@ impl Origin {
         *self != Self::default()
     }
 
+    /// Whether it is accelerated.
+    #[inline(always)]
+    pub fn falls(&self) -> bool {
+        // One by one: arrays are compared by a call.
+        let [x, y, z] = self.fall;
+        x != 0.0 || y != 0.0 || z != 0.0
+    }
+
     /// Where it is after a time. Inlined, for the fused instructions of the tier: it is asked at every output.
     #[inline(always)]
     pub fn at(&self, elapsed: f64) -> Moved {
-        if self.fall != [0.0; 3] {
+        if self.falls() {
             return self.fallen_at(elapsed);
         }
         let mut moved = Moved::NOWHERE;
         for c in 0..3 {
-            let (center, drift) = (self.center[c], self.drift[c]);
-            let way = elapsed * drift;
-            let left_out = Real::multiply_add(elapsed, drift, -way);
-            let (sum, error) = two_sum(center, way);
-            let rest = error + left_out;
-            let place = sum + rest;
-            moved.position[c] = (place, rest - (place - sum));
-            moved.velocity[c] = (drift, 0.0);
+            moved.position[c] = drifted(self.center[c], self.drift[c], elapsed);
+            moved.velocity[c] = (self.drift[c], 0.0);
         }
         moved
     }
@@ -170,6 +172,17 @@ impl Origin {
         }
         moved
     }
+}
+
+/// A coordinate after a time at a velocity, and what it leaves out.
+#[inline(always)]
+pub fn drifted<S: Real>(center: S, drift: S, elapsed: S) -> (S, S) {
+    let way = elapsed * drift;
+    let left_out = elapsed.multiply_add(drift, -way);
+    let (sum, error) = two_sum(center, way);
+    let rest = error + left_out;
+    let place = sum + rest;
+    (place, rest - (place - sum))
 }
 
 /// A coordinate of the scene from one relative to an origin, each with what it leaves out.

@@ -7,6 +7,7 @@
 mod forces;
 mod lanes;
 mod record;
+mod rows;
 mod size;
 
 pub use forces::{dynamics, uncoupled};

@@ -1,17 +1,16 @@
 //! A unit's bodies, read off a state and written into the columns at an output time.
 //!
 //! A run of cheap steps with many outputs spends its time here, so what can be decided is decided once, when the
-//! unit is prepared; and packed bodies go eight at a time, coordinates into points by the tier's vectors.
+//! unit is prepared; and packed bodies go eight at a time (`rows`), coordinates into points by the tier's vectors.
 
 use super::super::columns::{Output, Run, Writer};
 use super::super::frame::{Moved, Units, restored};
+use super::rows::{derive_rows, record_rows};
 use super::{Layout, Origin, Prepared, Unit};
 use crate::error::Result;
 use crate::forces::bodies::{Of, PreciseBodies};
-use crate::numerics::fused_double::FusedDouble;
-use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::power_of_two::power_of_two;
-use crate::numerics::real::Mask;
 use crate::ode::state::State;
 use crate::parallel::Ticker;
 use crate::tiered;
@@ -20,10 +19,14 @@ use crate::tiered;
 #[derive(Clone, Debug)]
 pub(super) struct Reading {
     /// What takes a length and a velocity back to the scene's units.
-    factors: [f64; 2],
+    pub(super) factors: [f64; 2],
     /// Whether they are relative to an origin that has to be added.
     moved: bool,
+    /// Place and velocity of that origin at the start, in the first lanes.
+    pub(super) origin: [Lanes; 2],
     way: Way,
+    /// Whether columns are derived from rows that are all recorded.
+    whole: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -38,8 +41,20 @@ impl Reading {
     pub(super) fn new(unit: &Unit, layout: Layout, origin: &Origin, units: Units) -> Self {
         let moved = origin.is_elsewhere();
         let way = if layout == Layout::Packed { rows(unit).unwrap_or(Way::Bodies) } else { Way::Bodies };
-        Self { factors: [power_of_two(units.length), power_of_two(-units.velocity())], moved, way }
+        let first = |[x, y, z]: [f64; 3]| Lanes([x, y, z, 0.0, 0.0, 0.0, 0.0, 0.0]);
+        Self {
+            factors: [power_of_two(units.length), power_of_two(-units.velocity())],
+            moved,
+            origin: [first(origin.center), first(origin.drift)],
+            whole: matches!(way, Way::Rows { start: 0, .. }) && unit.recorded.end >= derived_from(unit),
+            way,
+        }
     }
+}
+
+/// How many bodies columns are derived from: massless ones have no share in anything, unless there are no others.
+fn derived_from(unit: &Unit) -> usize {
+    if unit.active > 0 { unit.active } else { unit.bodies.len() }
 }
 
 /// The rows of a packed unit, if the particles of each follow each other in the scene. Massless ones begin a row of
@@ -73,11 +88,11 @@ impl Prepared {
     ) -> Result<bool> {
         // SAFETY: a particle is recorded from one unit (`run` looked), and one thread has the unit.
         let output = unsafe { writer.output(self.unit.copy, time) };
-        let finite = self.record_states(writer, &output, state, unit_lane, elapsed);
-        if writer.derives() && self.unit.leads && finite {
-            self.derive(writer, &output, state, unit_lane, elapsed, ticker)?;
+        if writer.derives() && self.unit.leads {
+            self.record_and_derive(writer, &output, state, unit_lane, elapsed, ticker)
+        } else {
+            Ok(self.record_states(writer, &output, state, unit_lane, elapsed))
         }
-        Ok(finite)
     }
 
     #[inline(always)]
@@ -126,9 +141,9 @@ impl Prepared {
 }
 
 impl Prepared {
-    /// Derives columns from the state and its compensation.
+    /// Records, and derives columns from the state and its compensation.
     #[inline(never)]
-    fn derive(
+    fn record_and_derive(
         &self,
         writer: &Writer<'_>,
         output: &Output<'_>,
@@ -136,10 +151,9 @@ impl Prepared {
         unit_lane: usize,
         elapsed: f64,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()> {
+    ) -> Result<bool> {
         let unit = &self.unit;
-        // Massless bodies have no share in anything, unless there are no others.
-        let count = if unit.active > 0 { unit.active } else { unit.bodies.len() };
+        let count = derived_from(unit);
         let mut bodies = self.scratch.borrow_mut();
         if !bodies.keeps_masses(count) {
             bodies.clear(count);
@@ -148,14 +162,30 @@ impl Prepared {
                 bodies.set_mass(slot, masses[body]);
             }
         }
-        let read = (self, state, elapsed, output);
-        match (self.layout, self.shape.components == 2) {
-            (Layout::Packed, true) => gather_rows::<2>(read, &mut bodies),
-            (Layout::Packed, false) => gather_rows::<3>(read, &mut bodies),
-            (Layout::Batched, _) => self.gather_bodies(state, unit_lane, elapsed, &mut bodies),
+        let Reading { moved, way, whole, .. } = &self.reading;
+        let runs = match way {
+            Way::Rows { runs, .. } if *whole => &runs[..],
+            _ => &[],
+        };
+        if !whole && !self.record_states(writer, output, state, unit_lane, elapsed) {
+            return Ok(false);
         }
-        bodies.settle();
-        output.derive(&bodies, ticker)
+        let read = (self, state, elapsed, output);
+        let finite = match (self.layout, self.shape.components == 2, *moved) {
+            (Layout::Packed, true, false) => derive_rows::<2, false>(read, runs, &mut bodies),
+            (Layout::Packed, false, false) => derive_rows::<3, false>(read, runs, &mut bodies),
+            (Layout::Packed, true, true) => derive_rows::<2, true>(read, runs, &mut bodies),
+            (Layout::Packed, false, true) => derive_rows::<3, true>(read, runs, &mut bodies),
+            (Layout::Batched, ..) => {
+                self.gather_bodies(state, unit_lane, elapsed, &mut bodies);
+                bodies.settle();
+                true
+            }
+        };
+        if finite {
+            output.derive(&bodies, ticker)?;
+        }
+        Ok(finite)
     }
 
     /// Of a unit that has one lane.
@@ -199,57 +229,10 @@ impl Prepared {
 }
 
 /// A unit, the state that it is in, the elapsed time, and where it is recorded.
-type Read<'a> = (&'a Prepared, &'a State<Lanes>, f64, &'a Output<'a>);
+pub(super) type Read<'a> = (&'a Prepared, &'a State<Lanes>, f64, &'a Output<'a>);
 
 tiered! {
-    fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, start: usize, runs: &[Run]) -> bool = rows_as_points;
     fn record_bodies[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, unit_lane: usize) -> bool = body_after_body;
-    fn gather_rows[const COMPONENTS: usize][COMPONENTS](read: Read<'_>, bodies: &mut PreciseBodies) = rows_of_bodies;
-}
-
-/// A pair of numbers in every lane.
-#[inline(always)]
-fn splat<V: Vector8>((value, rest): (f64, f64)) -> (V, V) {
-    (V::splat(value), V::splat(rest))
-}
-
-#[inline(always)]
-fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
-    (unit, state, elapsed, output): Read<'_>,
-    start: usize,
-    runs: &[Run],
-) -> bool {
-    let origin = if MOVED { unit.origin.at(elapsed) } else { Moved::NOWHERE };
-    let [length, speed] = unit.reading.factors;
-    let (length, speed) = (V::splat(length), V::splat(speed));
-    let rows = state.q().len() / COMPONENTS;
-    // Velocities follow the coordinates.
-    let (y, rest) = state.all();
-    let mut finite = Bits::splat(true);
-    for (row, run) in (start..).zip(runs) {
-        let (mut position, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
-        if MOVED {
-            position[2] = V::splat(origin.position[2].0);
-            velocity[2] = V::splat(origin.velocity[2].0);
-        }
-        let mut check = V::zero();
-        for c in 0..COMPONENTS {
-            let (q, v) = (c * rows + row, (COMPONENTS + c) * rows + row);
-            position[c] = V::load(y[q]) * length;
-            velocity[c] = V::load(y[v]) * speed;
-            if MOVED {
-                let (q_rest, v_rest) = (V::load(rest[q]) * length, V::load(rest[v]) * speed);
-                position[c] = restored(splat::<V>(origin.position[c]), (position[c], q_rest)).0;
-                velocity[c] = restored(splat::<V>(origin.velocity[c]), (velocity[c], v_rest)).0;
-            }
-            // Zero times a finite number is zero; times anything else it is not a number.
-            check += V::zero() * position[c] + V::zero() * velocity[c];
-        }
-        finite = finite.and(check.less_equal(V::zero()).or(run.idle));
-        let ([x, y, z], [u, v, w]) = (position, velocity);
-        output.write_points(run, V::interleave(x, y, z), V::interleave(u, v, w));
-    }
-    finite.all()
 }
 
 #[expect(
@@ -282,41 +265,11 @@ fn body_after_body<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
                 position[c] = restored(origin.position[c], (position[c], q_rest[at] * length)).0;
                 velocity[c] = restored(origin.velocity[c], (velocity[c], v_rest[at] * speed)).0;
             }
-            // As in `rows_as_points`.
+            // As in `rows::each_row`.
             check[c][0] += 0.0 * position[c];
             check[c][1] += 0.0 * velocity[c];
         }
         output.write_rounded(unit.unit.bodies[slot], position, velocity);
     }
     check.iter().flatten().all(|&sum| sum == 0.0)
-}
-
-/// Positions and velocities of a packed unit, from the first row on, with what they leave out.
-#[inline(always)]
-fn rows_of_bodies<V: Vector8, const COMPONENTS: usize>(
-    (unit, state, elapsed, _): Read<'_>,
-    bodies: &mut PreciseBodies,
-) {
-    let Reading { factors: [length, speed], moved, .. } = unit.reading;
-    let origin = if moved { unit.origin.at(elapsed) } else { Moved::NOWHERE };
-    let rows = state.q().len() / COMPONENTS;
-    let (y, rest) = state.all();
-    for (of, factor, first, origin) in
-        [(Of::Position, length, 0, origin.position), (Of::Velocity, speed, COMPONENTS, origin.velocity)]
-    {
-        let factor = V::splat(factor);
-        for c in 0..3 {
-            for row in 0..bodies.len().div_ceil(WIDTH) {
-                let at = (first + c) * rows + row;
-                let mut value = (V::zero(), V::zero());
-                if c < COMPONENTS {
-                    value = (V::load(y[at]) * factor, V::load(rest[at]) * factor);
-                }
-                if moved {
-                    value = restored(splat::<V>(origin[c]), value);
-                }
-                bodies.set_row(of, c, row * WIDTH, FusedDouble { high: value.0, low: value.1 });
-            }
-        }
-    }
 }
