@@ -265,4 +265,16 @@ KEPT: list[tuple[str, Recipe]] = [
             wild_member=True,
         ),
     ),
+    (
+        "two_methods_agree",
+        Recipe(
+            method="dormand_prince54",
+            bodies=2,
+            forces=(("UniformField", 67), ("Gravity", 79), ("UniformField", 40)),
+            seed=285,
+            planar=True,
+            at_origin=True,
+            backward=True,
+        ),
+    ),
 ]
