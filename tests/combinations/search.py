@@ -100,6 +100,8 @@ def main() -> None:
         if time.monotonic() - began > 60.0 * asked.minutes:
             raise Enough
         tried["scenes"] += 1
+        if tried["scenes"] % 5000 == 0:
+            print(tried, f"in {time.monotonic() - began:.0f} s", flush=True)
         for law in asked.laws:
             started = time.monotonic()
             kind, message = failure(recipe, law)
