@@ -126,3 +126,136 @@ impl<S: Element> Ahead<S> {
         Ok(true)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::fixed::{self, Place, Taken};
+    use super::super::stepper::stepper;
+    use super::super::system::{Form, Needs, System};
+    use super::*;
+    use crate::error::Error;
+    use crate::parallel::Control;
+    use crate::registry::METHODS;
+
+    /// A driven pendulum whose force fails after so many evaluations.
+    struct Pendulum {
+        evaluations: u64,
+        fails_after: u64,
+    }
+
+    impl System<f64> for Pendulum {
+        fn form(&self) -> Form {
+            Form::SecondOrder(1)
+        }
+        fn needs(&self) -> Needs {
+            Needs { time: true, ..Needs::default() }
+        }
+        fn evaluations(&self) -> u64 {
+            self.evaluations
+        }
+        fn acceleration(
+            &mut self,
+            t: &f64,
+            q: &[f64],
+            _: &[f64],
+            a: &mut [f64],
+            _: &mut Ticker<'_>,
+        ) -> Result<()> {
+            // Steps taken again fail where they failed before, whatever was evaluated in between.
+            if *t > self.fails_after as f64 {
+                return Err(Error::Convergence { message: "no force".to_owned(), time: *t });
+            }
+            self.evaluations += 1;
+            a[0] = t.cos() - q[0].sin();
+            Ok(())
+        }
+    }
+
+    /// Looks into some steps, and writes down where they begin and end.
+    struct Sample {
+        ahead: bool,
+        wanted: Vec<u64>,
+        stops: u64,
+        seen: Vec<(u64, [u64; 2], u64)>,
+        first: u64,
+        last: Option<[u64; 2]>,
+    }
+
+    fn bits(state: &State<f64>) -> [u64; 2] {
+        [state.q()[0].to_bits(), state.v()[0].to_bits()]
+    }
+
+    impl Recorder<f64> for Sample {
+        fn record(&mut self, _: usize, state: &State<f64>, _: &mut Ticker<'_>) -> Result<()> {
+            self.last = Some(bits(state));
+            Ok(())
+        }
+        fn watches(&self) -> Option<usize> {
+            Some(0)
+        }
+        fn looks_ahead(&self) -> bool {
+            self.ahead
+        }
+        fn note(&mut self, place: usize, node: u64, _: &State<f64>) {
+            if place == 0 {
+                self.first = node;
+            }
+            assert_eq!(node, self.first + place as u64);
+        }
+        fn suspects(&mut self, steps: usize) -> Bits {
+            let wanted = (0..steps).filter(|&step| self.wanted.contains(&(self.first + step as u64 + 1)));
+            wanted.fold(Bits(0), |mask, step| Bits(mask.0 | 1 << step))
+        }
+        fn look(&mut self, taken: Taken<'_, f64>, ticker: &mut Ticker<'_>) -> Result<bool> {
+            if self.wanted.contains(&taken.node) {
+                // A shadow step shows whether the stepper stands at this node.
+                let mut between = taken.present.clone();
+                taken.stepper.between(taken.node, 0.01, &mut between, taken.system, ticker)?;
+                let paid = taken.system.evaluations() - taken.repeated;
+                self.seen.push((taken.node, bits(&between), paid));
+            }
+            Ok(taken.node != self.stops)
+        }
+        fn goes_on(&mut self, _: &State<f64>) -> bool {
+            true
+        }
+    }
+
+    /// What was seen, the last state, how the run ended, and what it cost.
+    type Told = (Vec<(u64, [u64; 2], u64)>, Option<[u64; 2]>, (u64, bool, bool), u64);
+
+    fn run(method: usize, ahead: bool, wanted: &[u64], stops: u64, fails_after: u64) -> Told {
+        let control = Control::default();
+        let mut ticker = Ticker::quiet(&control);
+        let mut state = State::new(&[0.3], &[1.1]);
+        let mut pendulum = Pendulum { evaluations: 0, fails_after };
+        let mut stepper = stepper(&METHODS[method], 0.07, &pendulum, &state).unwrap();
+        let mut sample =
+            Sample { ahead, wanted: wanted.to_vec(), stops, seen: Vec::new(), first: 0, last: None };
+        let places = [Place { node: 203, past: None }].into_iter();
+        let (most, system) = (u64::MAX, &mut pendulum);
+        let ended = fixed::run(&mut *stepper, 0, most, &mut state, system, places, &mut ticker, &mut sample);
+        let cost = pendulum.evaluations - ended.repeated;
+        (sample.seen, sample.last, (ended.node, ended.stands, ended.outcome.is_ok()), cost)
+    }
+
+    #[test]
+    fn steps_ahead_show_what_steps_one_by_one_show() {
+        for (method, named) in METHODS.iter().enumerate().filter(|(_, method)| !method.adaptive()) {
+            for wanted in [&[][..], &[1, 2, 7, 8, 9, 10, 64, 65, 66, 130, 131, 202, 203], &[33], &[203]] {
+                // Stopped by a look that is in the midst of steps ahead, by none, and by a force that fails.
+                for (stops, fails_after) in [(u64::MAX, 1000), (66, 1000), (131, 1000), (u64::MAX, 9)] {
+                    let one_by_one = run(method, false, wanted, stops, fails_after);
+                    let ahead = run(method, true, wanted, stops, fails_after);
+                    let looked_at = stops == u64::MAX || wanted.contains(&stops);
+                    if fails_after < 1000 {
+                        assert!(!ahead.2.2 && !ahead.2.1, "{}", named.name);
+                        assert_eq!((&ahead.0, ahead.2), (&one_by_one.0, one_by_one.2), "{}", named.name);
+                    } else if looked_at {
+                        assert_eq!(ahead, one_by_one, "{} {wanted:?}", named.name);
+                    }
+                }
+            }
+        }
+    }
+}
