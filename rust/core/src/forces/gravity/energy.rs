@@ -5,7 +5,7 @@
 //! itself, in units of its own.
 
 use crate::error::Result;
-use crate::forces::bodies::{Exponents, Of, PreciseBodies, joined};
+use crate::forces::bodies::{Exponents, Of, PreciseBodies, joined, stored};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::fused_double::FusedDouble;
 use crate::numerics::inverse_cube::InverseCube;
@@ -153,14 +153,16 @@ impl<V: Vector8> Eight<V> {
 struct Running<V> {
     depth: FusedDouble<V>,
     work: FusedDouble<V>,
-    apart: Option<[Scaled; 2]>,
+    /// Whether there are pairs out of range, and their sums, if those are what is wanted.
+    odd: Bits,
+    apart: [Scaled; 2],
 }
 
 impl<V: Vector8 + InverseCube> Running<V> {
     /// Adds the pairs of the lanes that are wanted; the bodies are those from `first` on, beside those that `second` says:
     /// one, and how far after it.
     #[inline(always)]
-    fn add<const SOFT: bool>(
+    fn add<const SOFT: bool, const APART: bool>(
         &mut self,
         bodies: &PreciseBodies,
         (from, to): (&Eight<V>, &Eight<V>),
@@ -188,12 +190,11 @@ impl<V: Vector8 + InverseCube> Running<V> {
             self.work.gather(only(good, term.times(r2.times(inverse.squared()))));
         }
         let odd = heavy.and(fine.not());
-        if odd.any() {
-            for lane in 0..WIDTH {
-                if odd.lane(lane) {
-                    let pair = (first + lane, second.0 + second.1[lane] as usize);
-                    pair_apart(bodies, pair, softening, self.apart.get_or_insert([Scaled::ZERO; 2]));
-                }
+        self.odd = self.odd.or(odd);
+        if APART {
+            for lane in (0..WIDTH).filter(|&lane| odd.lane(lane)) {
+                let pair = (first + lane, second.0 + second.1[lane] as usize);
+                pair_apart(bodies, pair, softening, &mut self.apart);
             }
         }
     }
@@ -205,9 +206,27 @@ fn rows_of_pairs<V: Vector8 + InverseCube, const SOFT: bool>(
     rows: Range<usize>,
     softening: f64,
 ) -> Sums {
+    let sums = all_pairs::<V, SOFT, false>(bodies, rows.clone(), softening);
+    let apart = sums.odd.any().then(|| pairs_apart::<SOFT>(bodies, rows, softening));
+    Sums { lanes: [stored(sums.depth), stored(sums.work)], apart }
+}
+
+/// The pairs out of range, once more: a call on the way would take all that is in registers from the others.
+#[cold]
+#[inline(never)]
+fn pairs_apart<const SOFT: bool>(bodies: &PreciseBodies, rows: Range<usize>, softening: f64) -> [Scaled; 2] {
+    all_pairs::<Lanes, SOFT, true>(bodies, rows, softening).apart
+}
+
+#[inline(always)]
+fn all_pairs<V: Vector8 + InverseCube, const SOFT: bool, const APART: bool>(
+    bodies: &PreciseBodies,
+    rows: Range<usize>,
+    softening: f64,
+) -> Running<V> {
     let massive = bodies.massive();
     let zero = FusedDouble::<V>::zero();
-    let mut sums = Running { depth: zero, work: zero, apart: None };
+    let mut sums = Running { depth: zero, work: zero, odd: Bits(0), apart: [Scaled::ZERO; 2] };
     for first in rows.step_by(WIDTH) {
         let row = Eight::<V>::row(bodies, first);
         let lanes = (massive - first).min(WIDTH);
@@ -215,18 +234,17 @@ fn rows_of_pairs<V: Vector8 + InverseCube, const SOFT: bool>(
             // Half a turn meets each pair twice.
             let wanted = Bits(if index + 1 == TURNS.len() { 0x0f } else { 0xff });
             let pairs = (wanted, first, (first, turn));
-            sums.add::<SOFT>(bodies, (&row, &row.turned(turn)), pairs, softening);
+            sums.add::<SOFT, APART>(bodies, (&row, &row.turned(turn)), pairs, softening);
         }
         for body in first + WIDTH..massive {
             if bodies.mass()[body] != 0.0 {
                 let one = Eight::one(bodies, body);
                 let pairs = (Bits(0xff), first, (body, &[0; WIDTH]));
-                sums.add::<SOFT>(bodies, (&row, &one), pairs, softening);
+                sums.add::<SOFT, APART>(bodies, (&row, &one), pairs, softening);
             }
         }
     }
-    let stored = |sum: FusedDouble<V>| FusedDouble { high: sum.high.store(), low: sum.low.store() };
-    Sums { lanes: [stored(sums.depth), stored(sums.work)], apart: sums.apart }
+    sums
 }
 
 #[inline(always)]
