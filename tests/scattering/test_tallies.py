@@ -201,3 +201,16 @@ def test_progress_is_reported_and_can_stop_the_run() -> None:
 
     with pytest.raises(RuntimeError, match="enough"):
         run(n_events=10**12, progress=stop)
+
+
+def test_impact_parameters_beyond_the_beam_are_refused() -> None:
+    """They would count nothing without a word."""
+    with pytest.raises(vv.InvalidInput, match=r"\[0, b_max\] = \[0, 3\].*edge 2 is 4"):
+        vv.scattering.monte_carlo(
+            vv.potentials.Coulomb(1.0),
+            beam_energy=1.0,
+            masses=(1.0, 1.0),
+            b_max=3.0,
+            n_events=10,
+            tally={"impact_parameter": [0.0, 2.0, 4.0]},
+        )

@@ -229,7 +229,7 @@ mod tests {
         let mut ticker = Ticker::quiet(&control);
         let mut state = State::new(&[0.3], &[1.1]);
         let mut pendulum = Pendulum { evaluations: 0, fails_after };
-        let mut stepper = stepper(&METHODS[method], 0.07, &pendulum, &state).unwrap();
+        let mut stepper = stepper(METHODS[method], 0.07, &pendulum, &state).unwrap();
         let mut sample =
             Sample { ahead, wanted: wanted.to_vec(), stops, seen: Vec::new(), first: 0, last: None };
         let places = [Place { node: 203, past: None }].into_iter();

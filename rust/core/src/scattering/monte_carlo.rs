@@ -132,7 +132,8 @@ impl Beam {
             Quantity::CmAngle | Quantity::LabAngle => Limits::angles("π", PI),
             Quantity::RecoilAngle => Limits::angles("π/2", FRAC_PI_2),
             Quantity::Energy | Quantity::RecoilEnergy => Limits::upto("beam_energy", self.energy),
-            Quantity::ImpactParameter => Limits::upto("∞", f64::INFINITY),
+            // Beyond the disc no bin could count anything.
+            Quantity::ImpactParameter => Limits::upto("b_max", self.b_max),
         }
     }
     /// Given edges of a quantity.
