@@ -212,5 +212,6 @@ def test_impact_parameters_beyond_the_beam_are_refused() -> None:
             masses=(1.0, 1.0),
             b_max=3.0,
             n_events=10,
+            seed=1,
             tally={"impact_parameter": [0.0, 2.0, 4.0]},
         )
