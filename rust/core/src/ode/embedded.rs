@@ -6,11 +6,10 @@
 //! Time is counted from the start of the run, so that a large `t0` costs no digits.
 
 use super::Embedded;
-use super::norm::{Change, Norm, RootMeanSquare};
+use super::norm::{Change, Norm};
 use super::nystrom::{Row, nystrom_weights, pair_terms};
 use super::passes::errors::{HUGE, PairTerm};
 use super::passes::extension::Coordinate;
-use super::passes::rates::RateErrors;
 use super::passes::stages::{Positions, Term, Weighted};
 use super::runge_kutta::Stages;
 use super::state::State;
@@ -23,7 +22,9 @@ use crate::numerics::real::Mask;
 use crate::parallel::Ticker;
 use core::cell::OnceCell;
 
+mod attempt;
 mod between;
+use attempt::Attempt;
 use between::{Between, Weights};
 
 /// An embedded method at work on one state (of one or of eight trajectories).
@@ -100,6 +101,7 @@ impl<S: Controlled> EmbeddedStep<S> {
     }
 
     /// `(E² / sqrt(E² + 0.01 E3²))²` of two estimates, with `E²` and `E3²` at hand; the first if there is one only.
+    #[inline(always)]
     fn combined(&self, [main, other]: [S; 2]) -> S {
         if self.method.second_error.is_none() {
             return main;
@@ -219,20 +221,16 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         norm: &Norm<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<Outcome<S>> {
+        if let Some(mean) = &norm.mean {
+            return S::pass(Attempt { method: self, running, system, state, clock, mean, ticker });
+        }
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         let end_stage = self.end_stage();
-        let size2 = if let Some(RootMeanSquare { atol, rtol }) = &norm.mean {
-            let errors = RateErrors { terms: &self.errors[1], end: self.end_in_estimate, atol, rtol };
-            let states = (state, &mut self.next);
-            let sizes = self.stages.rate_step((&from, &h), states, Some(errors), system, ticker)?;
-            self.combined(sizes)
-        } else {
-            self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
-            if self.end_in_estimate {
-                self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
-            }
-            self.error_size(state, &from, h, norm)
-        };
+        self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
+        if self.end_in_estimate {
+            self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
+        }
+        let size2 = self.error_size(state, &from, h, norm);
         let outcome = S::settle(clock, running, size2, &self.rule);
         if outcome.accepted.any() && !self.end_in_estimate {
             self.stages.evaluate(end_stage, &clock.elapsed, &self.next, system, ticker)?;

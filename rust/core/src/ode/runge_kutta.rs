@@ -5,7 +5,7 @@
 
 use super::Tableau;
 use super::nystrom::Row;
-use super::passes::rates::{RateErrors, RateStep};
+use super::passes::rates::{FEW, RateErrors, RateStep, fresh};
 use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
 use super::passes::updates::replace;
 use super::state::State;
@@ -14,6 +14,7 @@ use super::system::{Form, Needs, System};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Element;
+use crate::numerics::real::Mask;
 use crate::parallel::Ticker;
 
 /// The stages of a method and room for their derivatives: accelerations, or rates of a system of the first order.
@@ -141,7 +142,7 @@ impl<S: Element> Stages<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         if matches!(self.form, Form::FirstOrder(_)) {
-            return self.rate_step((t, h), (state, next), None, system, ticker).map(drop);
+            return S::pass(self.rate_pass((t, h), (state, next), None, system, ticker)).map(drop);
         }
         let rows = core::mem::take(&mut self.rows);
         let outcome = rows
@@ -155,20 +156,17 @@ impl<S: Element> Stages<S> {
         Ok(())
     }
 
-    /// As [`step`](Self::step), of a system of the first order; gives the squared scaled errors if it is said how.
-    ///
-    /// # Errors
-    /// Those of an evaluation.
-    #[inline]
-    pub fn rate_step(
-        &mut self,
-        (t, h): (&S, &S),
-        (state, next): (&State<S>, &mut State<S>),
-        errors: Option<RateErrors<'_, S>>,
-        system: &mut dyn System<S>,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<[S; 2]> {
-        S::pass(RateStep {
+    /// [`step`](Self::step) of a system of the first order, which gives the squared scaled errors if it is said how.
+    #[inline(always)]
+    pub fn rate_pass<'a, 'b>(
+        &'a mut self,
+        (t, h): (&S, &'a S),
+        (state, next): (&'a State<S>, &'a mut State<S>),
+        errors: Option<RateErrors<'a, S>>,
+        system: &'a mut dyn System<S>,
+        ticker: &'a mut Ticker<'b>,
+    ) -> RateStep<'a, 'b, S> {
+        RateStep {
             rows: (&self.rows, &self.end),
             time: (*t, self.needs.time),
             h,
@@ -179,14 +177,22 @@ impl<S: Element> Stages<S> {
             errors,
             system,
             ticker,
-        })
+        }
     }
 
     /// Takes the derivative at the end of the step for that at its start.
     pub fn begin_with_end(&mut self, lanes: S::Mask, end_stage: usize) {
         let len = self.len();
         let (before, after) = self.k.split_at_mut(end_stage * len);
-        replace(&mut before[..len], &after[..len], lanes);
+        let (first, end) = (&mut before[..len], &after[..len]);
+        if lanes.all() && size_of::<S>() == size_of::<f64>() && len <= FEW {
+            // The next step waits for them, and they were just written.
+            for i in 0..len {
+                first[i] = fresh(&end[i]);
+            }
+        } else {
+            replace(first, end, lanes);
+        }
     }
 
     /// Writes the state that the row leads to, compensated.

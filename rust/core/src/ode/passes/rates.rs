@@ -37,6 +37,9 @@ pub struct RateStep<'a, 'b, S> {
     pub ticker: &'a mut Ticker<'b>,
 }
 
+/// As many numbers have steps of their own ([`few`]).
+pub(crate) const FEW: usize = 8;
+
 /// How the error of a step is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct RateErrors<'a, S> {
@@ -62,6 +65,8 @@ impl<S: Element> Pass<S> for RateStep<'_, '_, S> {
             4 if size_of::<S>() == size_of::<f64>() => few::<S, V, 4>(self),
             5 if size_of::<S>() == size_of::<f64>() => few::<S, V, 5>(self),
             6 if size_of::<S>() == size_of::<f64>() => few::<S, V, 6>(self),
+            7 if size_of::<S>() == size_of::<f64>() => few::<S, V, 7>(self),
+            8 if size_of::<S>() == size_of::<f64>() => few::<S, V, 8>(self),
             _ => many::<S, V>(self),
         }
     }
@@ -101,9 +106,8 @@ fn few<S: Element, V: View<S>, const N: usize>(pass: RateStep<'_, '_, S>) -> Res
     let mut position = [S::zero(); N];
     for (stage, row) in rows.iter().enumerate().skip(1) {
         let sums = weighted::<S, V, N>(&row.velocity, k);
-        let position_view = V::view_mut(&mut position);
         for i in 0..N {
-            position_view[i] = y[i] + step.multiply_add(sums[i], e[i]);
+            alone(&mut position[i], (y[i] + step.multiply_add(sums[i], e[i])).store());
         }
         let t = if timed { from + *h * row.fraction } else { from };
         system.rate(&t, &position, &mut k[stage], ticker)?;
@@ -140,6 +144,14 @@ fn weighted<S: Element, V: View<S>, const N: usize>(terms: &[Term<S>], k: &[[S; 
         sums[i] = weight.multiply_add(V::load(fresh(&column[i])), sums[i]);
     }
     sums
+}
+
+/// Writes a number by itself: together with others it would wait for the last of them, though what is asked next may begin
+/// with it.
+#[inline(always)]
+fn alone<S: Copy>(place: &mut S, value: S) {
+    // SAFETY: what is borrowed to be changed can be written.
+    unsafe { core::ptr::from_mut(place).write_volatile(value) }
 }
 
 /// A number that was written a moment ago. A processor that reads several such numbers at once, each of which was written by
@@ -193,7 +205,8 @@ mod tests {
                 let ticker = &mut Ticker::quiet(&control);
                 stages.evaluate(0, &0.5, &state, &mut system, ticker)?;
                 let states = (&state, &mut next);
-                let sizes = stages.rate_step((&0.5, &0.125), states, Some(errors), &mut system, ticker)?;
+                let sizes =
+                    f64::pass(stages.rate_pass((&0.5, &0.125), states, Some(errors), &mut system, ticker))?;
                 Ok((next, sizes))
             };
             let numbers: Vec<f64> = (0..9).map(|i| f64::from(i) / 8.0 - 0.3).collect();

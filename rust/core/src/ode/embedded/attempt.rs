@@ -1,0 +1,46 @@
+//! A step that is tried, of a system of the first order held to a root mean square, in one kernel.
+//!
+//! The one idea: of few numbers the way from the last stage to the next step costs as much as the stages, so the clock is
+//! read, the step taken, measured and settled, and the derivative at its end evaluated, without leaving the kernel.
+
+use super::EmbeddedStep;
+use crate::error::Result;
+use crate::numerics::element::{Pass, View};
+use crate::numerics::real::Mask;
+use crate::ode::norm::RootMeanSquare;
+use crate::ode::passes::rates::RateErrors;
+use crate::ode::state::State;
+use crate::ode::step_control::{Clock, Controlled, Outcome};
+use crate::ode::system::System;
+use crate::parallel::Ticker;
+
+/// [`Trial::attempt`](crate::ode::trial::Trial::attempt), its arguments, and the method at work.
+pub(super) struct Attempt<'a, 'b, S: Controlled> {
+    pub(super) method: &'a mut EmbeddedStep<S>,
+    pub(super) running: S::Mask,
+    pub(super) system: &'a mut dyn System<S>,
+    pub(super) state: &'a State<S>,
+    pub(super) clock: &'a mut Clock<S>,
+    pub(super) mean: &'a RootMeanSquare<S>,
+    pub(super) ticker: &'a mut Ticker<'b>,
+}
+
+impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
+    type Output = Result<Outcome<S>>;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> Result<Outcome<S>> {
+        let Self { method, running, system, state, clock, mean, ticker } = self;
+        let (from, h) = (clock.elapsed, S::next_step(clock, running));
+        let end_stage = method.end_stage();
+        let EmbeddedStep { stages, errors: [_, terms], end_in_estimate, next, .. } = &mut *method;
+        let errors = RateErrors { terms, end: *end_in_estimate, atol: &mean.atol, rtol: &mean.rtol };
+        let step = stages.rate_pass((&from, &h), (state, next), Some(errors), &mut *system, &mut *ticker);
+        let sizes = step.run::<V>()?;
+        let size2 = method.combined(sizes);
+        let outcome = S::settle(clock, running, size2, &method.rule);
+        if outcome.accepted.any() && !method.end_in_estimate {
+            method.stages.evaluate(end_stage, &clock.elapsed, &method.next, system, ticker)?;
+        }
+        Ok(outcome)
+    }
+}
