@@ -205,7 +205,7 @@ def test_progress_is_reported_and_can_stop_the_run() -> None:
 
 def test_impact_parameters_beyond_the_beam_are_refused() -> None:
     """They would count nothing without a word."""
-    with pytest.raises(vv.InvalidInput, match=r"\[0, b_max\] = \[0, 3\].*edge 2 is 4"):
+    with pytest.raises(vv.InvalidInput, match=r"\[0, b_max\] = \[0, 3.0\].*edge 2 is 4.0"):
         vv.scattering.monte_carlo(
             vv.potentials.Coulomb(1.0),
             beam_energy=1.0,
