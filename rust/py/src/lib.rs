@@ -3,6 +3,9 @@
 //! Arrays come in through [`arrays`], every computation goes through [`gate`], errors leave through
 //! [`errors`]. One file per room of the core holds its functions; one `use` line below exports them.
 
+// Here lengths come from users: what may not be there is asked for.
+#![deny(clippy::indexing_slicing)]
+
 mod arrays;
 mod diagnostic;
 mod errors;

@@ -75,10 +75,11 @@ fn vectors(name: &str, array: &Array<'_>, count: usize) -> PyResult<Vec<Vector3<
 }
 
 /// One result per orbit; a refusal says which orbit it is about, or that there are more of them than there is memory for.
-fn each<T>(
+fn each<I, T>(
     (argument, count): (&str, usize),
     ticker: &mut Ticker<'_>,
-    mut one: impl FnMut(usize) -> Result<T>,
+    orbits: impl Iterator<Item = I>,
+    mut one: impl FnMut(I) -> Result<T>,
 ) -> Result<Vec<T>> {
     let which = |index: usize, error| match error {
         Error::InvalidInput { argument, message } if count > 1 => {
@@ -87,9 +88,9 @@ fn each<T>(
         other => other,
     };
     let mut found = room(argument, &format!("the results of {count} orbits"), Some(count))?;
-    for index in 0..count {
+    for (index, orbit) in orbits.enumerate() {
         ticker.tick()?;
-        found.push(one(index).map_err(|error| which(index, error))?);
+        found.push(one(orbit).map_err(|error| which(index, error))?);
     }
     Ok(found)
 }
@@ -116,16 +117,32 @@ fn flat(name: &str, vectors: impl ExactSizeIterator<Item = Vector3<f64>>) -> Res
     Ok(values)
 }
 
-/// `count` numbers of each of several arguments.
-fn together<const K: usize>(arguments: [(&str, &Array<'_>); K]) -> PyResult<(usize, [Vec<f64>; K])> {
+/// As many numbers of each of several arguments.
+struct Together<const K: usize> {
+    count: usize,
+    columns: [Vec<f64>; K],
+}
+
+impl<const K: usize> Together<K> {
+    /// A number of each argument, orbit after orbit.
+    fn orbits(&self) -> impl Iterator<Item = [f64; K]> {
+        let mut columns = self.columns.each_ref().map(|column| column.iter());
+        // All columns have this length.
+        (0..self.count)
+            .map(move |_| columns.each_mut().map(|column| column.next().copied().unwrap_or(f64::NAN)))
+    }
+}
+
+/// Numbers of several arguments, all of the length of the first.
+fn together<const K: usize>(arguments: [(&str, &Array<'_>); K]) -> PyResult<Together<K>> {
     let mut count = None;
-    let mut all = [const { Vec::new() }; K];
-    for ((name, array), values) in arguments.into_iter().zip(&mut all) {
+    let mut columns = [const { Vec::new() }; K];
+    for ((name, array), values) in arguments.into_iter().zip(&mut columns) {
         let (taken, [length]) = copied(name, array, [count])?;
         count = Some(length);
         *values = taken;
     }
-    Ok((count.unwrap_or(0), all))
+    Ok(Together { count: count.unwrap_or(0), columns })
 }
 
 /// Elements of each state, by name.
@@ -136,11 +153,13 @@ pub(crate) fn orbit_elements<'py>(
     position: Array<'py>,
     velocity: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (count, [mu]) = together([("mu", &mu)])?;
+    let mu = together([("mu", &mu)])?;
+    let count = mu.count;
     let position = vectors("position", &position, count)?;
     let velocity = vectors("velocity", &velocity, count)?;
     let found = compute(py, 0, None, |ticker| {
-        each(("position", count), ticker, |i| Elements::from_state(mu[i], position[i], velocity[i]))
+        let orbits = mu.orbits().zip(&position).zip(&velocity);
+        each(("position", count), ticker, orbits, |(([mu], r), v)| Elements::from_state(mu, *r, *v))
     })?
     .whole(py)?;
     let dict = table(py, ELEMENTS, &found)?;
@@ -164,7 +183,7 @@ pub(crate) fn orbit_state<'py>(
     argument_of_pericenter: Array<'py>,
     anomaly: Array<'py>,
 ) -> PyResult<(Column<'py>, Column<'py>)> {
-    let (count, [mu, q, e, i, node, w, anomaly]) = together([
+    let elements = together([
         ("mu", &mu),
         ("pericenter", &pericenter),
         ("eccentricity", &eccentricity),
@@ -182,15 +201,14 @@ pub(crate) fn orbit_state<'py>(
             return Err(raised(py, unknown("name", other, known.into_iter())));
         }
     };
-    let shape = |k: usize| Shape {
-        pericenter: q[k],
-        eccentricity: e[k],
-        inclination: i[k],
-        node: node[k],
-        argument_of_pericenter: w[k],
-    };
+    let count = elements.count;
     let states = compute(py, 0, None, |ticker| {
-        each((name, count), ticker, |k| state_from_elements(mu[k], shape(k), kind(anomaly[k])))
+        let one =
+            |[mu, pericenter, eccentricity, inclination, node, argument_of_pericenter, anomaly]: [f64; 7]| {
+                let shape = Shape { pericenter, eccentricity, inclination, node, argument_of_pericenter };
+                state_from_elements(mu, shape, kind(anomaly))
+            };
+        each((name, count), ticker, elements.orbits(), one)
     })?
     .whole(py)?;
     let vectors = |part: fn(&State) -> Vector3<f64>| {
@@ -209,7 +227,8 @@ pub(crate) fn orbit_propagate<'py>(
     velocity: Array<'py>,
     t: Array<'py>,
 ) -> PyResult<(Column<'py>, Column<'py>)> {
-    let (count, [mu]) = together([("mu", &mu)])?;
+    let mu = together([("mu", &mu)])?;
+    let count = mu.count;
     let r = vectors("position", &position, count)?;
     let v = vectors("velocity", &velocity, count)?;
     let (times, [length]) = copied("t", &t, [None])?;
@@ -219,7 +238,9 @@ pub(crate) fn orbit_propagate<'py>(
             "positions and velocities at all these times",
             count.checked_mul(length).and_then(|n| n.checked_mul(3)),
         )?;
-        let orbits = each(("position", count), ticker, |i| KeplerOrbit::new(mu[i], r[i], v[i]))?;
+        let states = mu.orbits().zip(&r).zip(&v);
+        let orbits =
+            each(("position", count), ticker, states, |(([mu], r), v)| KeplerOrbit::new(mu, *r, *v))?;
         for &time in &times {
             for orbit in &orbits {
                 let (r, v) = orbit.state(time);
@@ -244,9 +265,11 @@ pub(crate) fn orbit_anomaly<'py>(
     eccentricity: Array<'py>,
     repulsive: bool,
 ) -> PyResult<Column<'py>> {
-    let (count, [anomaly, e]) = together([("anomaly", &anomaly), ("eccentricity", &eccentricity)])?;
+    let both = together([("anomaly", &anomaly), ("eccentricity", &eccentricity)])?;
     let values = compute(py, 0, None, |ticker| {
-        each(("anomaly", count), ticker, |i| convert(name, anomaly[i], e[i], repulsive))
+        each(("anomaly", both.count), ticker, both.orbits(), |[anomaly, e]| {
+            convert(name, anomaly, e, repulsive)
+        })
     })?
     .whole(py)?;
     column(py, values)
@@ -259,10 +282,11 @@ pub(crate) fn orbit_period<'py>(
     mu: Array<'py>,
     semi_major_axis: Array<'py>,
 ) -> PyResult<Column<'py>> {
-    let (count, [mu, a]) = together([("mu", &mu), ("semi_major_axis", &semi_major_axis)])?;
-    let values =
-        compute(py, 0, None, |ticker| each(("mu", count), ticker, |i| constants::period(mu[i], a[i])))?
-            .whole(py)?;
+    let both = together([("mu", &mu), ("semi_major_axis", &semi_major_axis)])?;
+    let values = compute(py, 0, None, |ticker| {
+        each(("mu", both.count), ticker, both.orbits(), |[mu, a]| constants::period(mu, a))
+    })?
+    .whole(py)?;
     column(py, values)
 }
 
@@ -274,9 +298,9 @@ pub(crate) fn orbit_free_fall_time<'py>(
     start: Array<'py>,
     end: Array<'py>,
 ) -> PyResult<Column<'py>> {
-    let (count, [mu, start, end]) = together([("mu", &mu), ("start", &start), ("end", &end)])?;
+    let falls = together([("mu", &mu), ("start", &start), ("end", &end)])?;
     let values = compute(py, 0, None, |ticker| {
-        each(("mu", count), ticker, |i| free_fall_time(mu[i], start[i], end[i]))
+        each(("mu", falls.count), ticker, falls.orbits(), |[mu, start, end]| free_fall_time(mu, start, end))
     })?
     .whole(py)?;
     column(py, values)
@@ -291,11 +315,14 @@ pub(crate) fn conic_from_state<'py>(
     position: Array<'py>,
     velocity: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (count, [mass, strength]) = together([("mass", &mass), ("strength", &strength)])?;
-    let r = vectors("position", &position, count)?;
-    let v = vectors("velocity", &velocity, count)?;
+    let both = together([("mass", &mass), ("strength", &strength)])?;
+    let r = vectors("position", &position, both.count)?;
+    let v = vectors("velocity", &velocity, both.count)?;
     let found = compute(py, 0, None, |ticker| {
-        each(("position", count), ticker, |i| ConicConstants::from_state(mass[i], strength[i], r[i], v[i]))
+        let orbits = both.orbits().zip(&r).zip(&v);
+        each(("position", both.count), ticker, orbits, |(([mass, strength], r), v)| {
+            ConicConstants::from_state(mass, strength, *r, *v)
+        })
     })?
     .whole(py)?;
     table(py, CONSTANTS, &found)
@@ -310,15 +337,15 @@ pub(crate) fn conic_from_constants<'py>(
     angular_momentum: Array<'py>,
     energy: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (count, [mass, strength, l, energy]) = together([
+    let orbits = together([
         ("mass", &mass),
         ("strength", &strength),
         ("angular_momentum", &angular_momentum),
         ("energy", &energy),
     ])?;
     let found = compute(py, 0, None, |ticker| {
-        each(("angular_momentum", count), ticker, |i| {
-            ConicConstants::from_constants(mass[i], strength[i], l[i], energy[i])
+        each(("angular_momentum", orbits.count), ticker, orbits.orbits(), |[mass, strength, l, energy]| {
+            ConicConstants::from_constants(mass, strength, l, energy)
         })
     })?
     .whole(py)?;

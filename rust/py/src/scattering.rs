@@ -91,14 +91,19 @@ pub(crate) fn scattering_function<'py>(
 
 fn evaluate(name: &str, half_distance: f64, mass_ratio: f64, values: &[f64]) -> Result<Vec<f64>> {
     let collision = Collision::new(mass_ratio, 1.0)?;
-    let branch =
-        |index: usize, angle: f64| collision.branches(angle)[index].map_or(f64::NAN, |(angle, _)| angle);
+    let branch = |branch: Option<(f64, f64)>| branch.map_or(f64::NAN, |(angle, _)| angle);
     let function: &dyn Fn(f64) -> f64 = match name {
         "lab_angle" => &|angle| collision.lab_angle(HalfAngle::of(angle)),
         "recoil_angle" => &|angle| HalfAngle::of(angle).recoil_angle(),
         "energy_transfer" => &|angle| collision.transferred(HalfAngle::of(angle)),
-        "cm_angle" => &|angle| branch(0, angle),
-        "second_cm_angle" => &|angle| branch(1, angle),
+        "cm_angle" => &|angle| {
+            let [first, _] = collision.branches(angle);
+            branch(first)
+        },
+        "second_cm_angle" => &|angle| {
+            let [_, second] = collision.branches(angle);
+            branch(second)
+        },
         "rutherford_deflection" => &|b| rutherford::deflection(half_distance, b),
         "rutherford_closest_approach" => &|b| rutherford::closest_approach(half_distance, b),
         "rutherford_impact_parameter" => &|angle| rutherford::impact_parameter(half_distance, angle),
@@ -117,8 +122,9 @@ pub(crate) fn solid_angles<'py>(
     edges: PyReadonlyArrayDyn<'py, f64>,
 ) -> PyResult<Column<'py>> {
     let (edges, _) = copied("edges", &edges, [None])?;
-    let ring = |pair: &[f64]| solid_angle(pair[0], pair[1]);
-    let rings: Vec<f64> = compute(py, 0, None, |_| Ok(edges.windows(2).map(ring).collect()))?.whole(py)?;
+    let pairs = edges.iter().zip(edges.iter().skip(1));
+    let rings = pairs.map(|(&from, &to)| solid_angle(from, to));
+    let rings: Vec<f64> = compute(py, 0, None, |_| Ok(rings.collect()))?.whole(py)?;
     let length = rings.len();
     moved(py, rings, &[length])
 }

@@ -10,7 +10,7 @@ mod output;
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::{compute, is_ctrl_c};
-use input::{Array, Asked, forces as described, points, snapshot};
+use input::{Array, Asked, forces as described, point, points, snapshot};
 use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -77,7 +77,7 @@ pub(crate) fn conserved<'py>(
         None => vec![0.0; position.len()],
     };
     let specs = described(&forces)?;
-    let about = points(&copied("about", &about, [Some(3)])?.0)[0];
+    let about = point(&copied("about", &about, [Some(3)])?.0);
     let (position, velocity) = (points(&position), points(&velocity));
     let columns = columns.iter().map(|name| column("columns", name)).collect::<Result<Vec<_>, _>>();
     let columns = columns.map_err(|error| raised(py, error))?;
@@ -85,17 +85,17 @@ pub(crate) fn conserved<'py>(
     let values = compute(py, times as u64, None, |ticker| {
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
         let mut bodies = PreciseBodies::default();
-        for time in 0..times {
+        let (mut positions, mut velocities) = (position.iter(), velocity.iter());
+        for _ in 0..times {
             bodies.clear(particles);
-            for (i, &mass) in mass.iter().enumerate() {
-                let exact = |x: [f64; 3]| [x, [0.0; 3]];
-                let at = time * particles + i;
-                bodies.set(i, mass, exact(position[at]), exact(velocity[at]));
+            let states = positions.by_ref().zip(velocities.by_ref());
+            for ((i, &mass), (&position, &velocity)) in mass.iter().enumerate().zip(states) {
+                bodies.set(i, mass, [position, [0.0; 3]], [velocity, [0.0; 3]]);
             }
             bodies.settle();
             let mut state = State::new(&specs, &bodies, about, threads, ticker);
             for (column, values) in columns.iter().zip(&mut values) {
-                values.extend_from_slice(&state.value(column)?[..column.width]);
+                values.extend(state.value(column)?.iter().take(column.width));
             }
             ticker.tick()?;
         }
@@ -104,8 +104,8 @@ pub(crate) fn conserved<'py>(
     .whole(py)?;
     let dict = PyDict::new(py);
     for (column, values) in columns.into_iter().zip(values) {
-        let shape = [times, column.width];
-        dict.set_item(column.name, moved(py, values, if column.width == 1 { &shape[..1] } else { &shape })?)?;
+        let shape: &[usize] = if column.width == 1 { &[times] } else { &[times, column.width] };
+        dict.set_item(column.name, moved(py, values, shape)?)?;
     }
     Ok(dict)
 }
@@ -131,7 +131,7 @@ pub(crate) fn conserves<'py>(
     about: Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let scene = snapshot(&mass, &position, &velocity, &forces)?;
-    let about = points(&copied("about", &about, [Some(3)])?.0)[0];
+    let about = point(&copied("about", &about, [Some(3)])?.0);
     let conserves = compute(py, 0, None, |_| Ok(conserved_by(&scene.forces, &scene.bodies())))?.whole(py)?;
     let dict = PyDict::new(py);
     dict.set_item("momentum", conserves.momentum)?;

@@ -118,7 +118,9 @@ struct PythonEvents<'a> {
 
 impl Events for PythonEvents<'_> {
     fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64> {
-        let function = &self.functions[which];
+        let Some(function) = self.functions.get(which) else {
+            return Err(Error::Internal(format!("no event {which}")));
+        };
         self.raised.kept(attached(|py| single(&function.call(py, t, y)?)))
     }
 }

@@ -132,8 +132,13 @@ pub(super) fn snapshot(
     })
 }
 
+/// The first point of these numbers.
+pub(super) fn point(values: &[f64]) -> [f64; 3] {
+    values.first_chunk().copied().unwrap_or_default()
+}
+
 pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {
-    values.chunks_exact(3).map(|x| [x[0], x[1], x[2]]).collect()
+    values.as_chunks().0.to_vec()
 }
 
 /// The forces of a scene's description.

@@ -44,7 +44,11 @@ pub(super) fn output_dict<'py>(
     ensemble: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (copies, particles) = (scene.copies, scene.particles);
-    let times = if ensemble { request.times.len() } else { output.outcomes[0].rows };
+    let times = if ensemble {
+        request.times.len()
+    } else {
+        output.outcomes.first().map_or(0, |outcome| outcome.rows)
+    };
     if ensemble {
         output.columns.finish(&output.missing);
     }
@@ -60,8 +64,9 @@ pub(super) fn output_dict<'py>(
         set("velocity", output.columns.velocity, &[copies, times, particles, 3])?;
     }
     for Derived { column, values } in output.columns.derived {
-        let shape = [copies, times, column.width];
-        set(column.name, values, if column.width == 1 { &shape[..2] } else { &shape })?;
+        let shape: &[usize] =
+            if column.width == 1 { &[copies, times] } else { &[copies, times, column.width] };
+        set(column.name, values, shape)?;
     }
     let dict = PyDict::new(py);
     let outcomes = &output.outcomes;
@@ -147,7 +152,7 @@ pub(super) fn output_dict<'py>(
         let step = output.plan.dt.map(f64::abs);
         dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
     }
-    let error = if ensemble { None } else { failure(&outcomes[0]) };
+    let error = outcomes.first().filter(|_| !ensemble).and_then(failure);
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
     Ok(dict)
 }
