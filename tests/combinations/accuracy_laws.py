@@ -74,7 +74,7 @@ def _solution(case: Case, name: str) -> tuple[NDArray[np.float64], NDArray[np.fl
         limit = 100 * 1e-8
         assert change_x <= limit * length + floor_x, f"{name}: {change_x} from rtol 1e-8 to 1e-11, of {length}"
         assert change_v <= limit * speed + floor_v, f"{name}: {change_v} from rtol 1e-8 to 1e-11, of {speed}"
-        # Of a few steps the looser tolerance may be as close by chance: what the tighter one asks of each step is allowed.
+        # Of a few steps the looser tolerance may be as close by chance: what the tighter one asks of a step is allowed.
         change_x, change_v = max(change_x, 1e-11 * length), max(change_v, 1e-11 * speed)
         return fine[0], fine[1], change_x + floor_x, change_v + floor_v
     span = abs(case.t[-1] - case.members()[0].t0)
