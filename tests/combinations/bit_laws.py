@@ -310,7 +310,11 @@ def no_step_is_longer_than_max_step(recipe: Recipe) -> None:
         raise Refused(ended)
     if ended or result.plan.closed_form or np.any(result.status):
         return
-    steps = [result.stats.steps] if case.alone else result.per_trajectory["steps"]
+    if case.alone:
+        steps = np.array([result.stats.steps])
+    else:
+        # Members that have a closed form take none.
+        steps = result.per_trajectory["steps"][result.per_trajectory["evaluations"] > 0]
     # A last step may be a rounding longer than the rest of the way.
     assert min(steps) >= int(span / longest * (1.0 - 1e-12)), (
         f"{min(steps)} steps of at most 1/{span / longest} of the way"

@@ -47,6 +47,9 @@ def events_change_no_bit_of_the_run(recipe: Recipe) -> None:
     without = _ran(case, plain)
     if (np.atleast_1d(without.stats.evaluations if case.alone else without.per_trajectory["evaluations"]) == 0).any():
         raise Refused("closed forms, which are not used to look for events")
+    watched = _ran(case, _with(case, terminal=0))
+    if (np.atleast_1d(watched.status)[np.atleast_1d(without.status) == 0] == vv.Status.TOO_MANY_STEPS).any():
+        raise Refused("what is integrated together takes more steps than are allowed")
     found, expected = (outcome(case.start, case.t, how) for how in (_with(case, terminal=0), plain))
     if str(found["ended"]).startswith("refused"):
         raise Refused(found["ended"])

@@ -182,7 +182,8 @@ fn edges_out_of_range_are_refused_with_the_cure() {
         assert!(text(quantity, &[0.0, 1500.0]).contains("[0, beam_energy] = [0, 1.5]"));
         assert_eq!(text(quantity, &[0.0, 1.5]), "");
     }
-    assert_eq!(text(Quantity::ImpactParameter, &[0.0, 1e300]), "");
+    assert_eq!(text(Quantity::ImpactParameter, &[0.0, 3.0]), "");
+    assert!(text(Quantity::ImpactParameter, &[0.0, 3.1]).contains("[0, b_max] = [0, 3.0]"));
 }
 
 #[test]
