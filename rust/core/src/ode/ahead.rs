@@ -130,46 +130,11 @@ impl<S: Element> Ahead<S> {
 #[cfg(test)]
 mod tests {
     use super::super::fixed::{self, Place, Taken};
-    use super::super::stepper::stepper;
-    use super::super::system::{Form, Needs, System};
+    use super::super::stepper::{stepper, tests::Pendulum};
+    use super::super::system::System;
     use super::*;
-    use crate::error::Error;
     use crate::parallel::Control;
     use crate::registry::METHODS;
-
-    /// A driven pendulum whose force fails after so many evaluations.
-    struct Pendulum {
-        evaluations: u64,
-        fails_after: u64,
-    }
-
-    impl System<f64> for Pendulum {
-        fn form(&self) -> Form {
-            Form::SecondOrder(1)
-        }
-        fn needs(&self) -> Needs {
-            Needs { time: true, ..Needs::default() }
-        }
-        fn evaluations(&self) -> u64 {
-            self.evaluations
-        }
-        fn acceleration(
-            &mut self,
-            t: &f64,
-            q: &[f64],
-            _: &[f64],
-            a: &mut [f64],
-            _: &mut Ticker<'_>,
-        ) -> Result<()> {
-            // Steps taken again fail where they failed before, whatever was evaluated in between.
-            if *t > self.fails_after as f64 {
-                return Err(Error::Convergence { message: "no force".to_owned(), time: *t });
-            }
-            self.evaluations += 1;
-            a[0] = t.cos() - q[0].sin();
-            Ok(())
-        }
-    }
 
     /// Looks into some steps, and writes down where they begin and end.
     struct Sample {
@@ -224,11 +189,11 @@ mod tests {
     /// What was seen, the last state, how the run ended, and what it cost.
     type Told = (Vec<(u64, [u64; 2], u64)>, Option<[u64; 2]>, (u64, bool, bool), u64);
 
-    fn run(method: usize, ahead: bool, wanted: &[u64], stops: u64, fails_after: u64) -> Told {
+    fn run(method: usize, ahead: bool, wanted: &[u64], stops: u64, fails_after: f64) -> Told {
         let control = Control::default();
         let mut ticker = Ticker::quiet(&control);
         let mut state = State::new(&[0.3], &[1.1]);
-        let mut pendulum = Pendulum { evaluations: 0, fails_after };
+        let mut pendulum = Pendulum::new(fails_after);
         let mut stepper = stepper(METHODS[method], 0.07, &pendulum, &state).unwrap();
         let mut sample =
             Sample { ahead, wanted: wanted.to_vec(), stops, seen: Vec::new(), first: 0, last: None };
@@ -244,11 +209,13 @@ mod tests {
         for (method, named) in METHODS.iter().enumerate().filter(|(_, method)| !method.adaptive()) {
             for wanted in [&[][..], &[1, 2, 7, 8, 9, 10, 64, 65, 66, 130, 131, 202, 203], &[33], &[203]] {
                 // Stopped by a look that is in the midst of steps ahead, by none, and by a force that fails.
-                for (stops, fails_after) in [(u64::MAX, 1000), (66, 1000), (131, 1000), (u64::MAX, 9)] {
+                for (stops, fails_after) in
+                    [(u64::MAX, f64::INFINITY), (66, f64::INFINITY), (131, f64::INFINITY), (u64::MAX, 9.0)]
+                {
                     let one_by_one = run(method, false, wanted, stops, fails_after);
                     let ahead = run(method, true, wanted, stops, fails_after);
                     let looked_at = stops == u64::MAX || wanted.contains(&stops);
-                    if fails_after < 1000 {
+                    if fails_after.is_finite() {
                         assert!(!ahead.2.2 && !ahead.2.1, "{}", named.name);
                         assert_eq!((&ahead.0, ahead.2), (&one_by_one.0, one_by_one.2), "{}", named.name);
                     } else if looked_at {

@@ -167,14 +167,23 @@ pub fn stepper<S: Element>(
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use crate::ode::system::{Form, Needs};
     use crate::parallel::Control;
     use crate::registry::METHODS;
 
-    /// A driven pendulum: the time of an acceleration is seen in its bits.
-    struct Pendulum;
+    /// A driven pendulum: the time of an acceleration is seen in its bits. Its force fails from some time on.
+    pub(in super::super) struct Pendulum {
+        pub(in super::super) evaluations: u64,
+        pub(in super::super) fails_after: f64,
+    }
+    impl Pendulum {
+        /// Whose force fails after that time.
+        pub(in super::super) fn new(fails_after: f64) -> Self {
+            Self { evaluations: 0, fails_after }
+        }
+    }
     impl System<f64> for Pendulum {
         fn form(&self) -> Form {
             Form::SecondOrder(1)
@@ -183,7 +192,7 @@ mod tests {
             Needs { time: true, ..Needs::default() }
         }
         fn evaluations(&self) -> u64 {
-            0
+            self.evaluations
         }
         fn acceleration(
             &mut self,
@@ -193,6 +202,10 @@ mod tests {
             a: &mut [f64],
             _: &mut Ticker<'_>,
         ) -> Result<()> {
+            if *t > self.fails_after {
+                return Err(Error::Convergence { message: "no force".to_owned(), time: *t });
+            }
+            self.evaluations += 1;
             a[0] = t.cos() - q[0].sin();
             Ok(())
         }
@@ -204,11 +217,12 @@ mod tests {
         let mut ticker = Ticker::quiet(&control);
         let start = State::new(&[0.3], &[1.1]);
         for method in METHODS.iter().filter(|method| !method.adaptive()) {
-            let new = || stepper(method, 0.07, &Pendulum, &start).unwrap();
+            let new = || stepper(method, 0.07, &Pendulum::new(f64::INFINITY), &start).unwrap();
             for held_at in [1, 5, 12, 13, 40] {
                 let (mut whole, mut state) = (new(), start.clone());
                 let mut blocks: Vec<Vec<f64>> = Vec::new();
                 let (mut other, mut resumed) = (new(), start.clone());
+                let pendulum = &mut Pendulum::new(f64::INFINITY);
                 for node in 0..60 {
                     if node == held_at {
                         whole.settle(&mut state);
@@ -219,9 +233,9 @@ mod tests {
                         other.memory(node, &mut |block| block.copy_from_slice(held.next().unwrap()));
                         assert!(held.next().is_none());
                     }
-                    assert_eq!(whole.step(node, 1, &mut state, &mut Pendulum, &mut ticker).unwrap(), 1);
+                    assert_eq!(whole.step(node, 1, &mut state, pendulum, &mut ticker).unwrap(), 1);
                     if node >= held_at {
-                        let _ = other.step(node, 1, &mut resumed, &mut Pendulum, &mut ticker).unwrap();
+                        let _ = other.step(node, 1, &mut resumed, pendulum, &mut ticker).unwrap();
                     }
                 }
                 whole.settle(&mut state);
