@@ -131,7 +131,6 @@ impl<S: Element> Ahead<S> {
 mod tests {
     use super::super::fixed::{self, Place, Taken};
     use super::super::stepper::{stepper, tests::Pendulum};
-    use super::super::system::System;
     use super::*;
     use crate::parallel::Control;
     use crate::registry::METHODS;

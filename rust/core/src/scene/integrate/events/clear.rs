@@ -99,6 +99,33 @@ mod tests {
         }
     }
 
+    proptest! {
+        #[test]
+        fn what_is_straight_never_turns(
+            start in -2.0..-0.01f64, end in 0.01..2.0f64, rates in [-6.0..6.0f64, -6.0..6.0], sign in proptest::bool::ANY,
+        ) {
+            let sign = if sign { 1.0 } else { -1.0 };
+            let cubic = cubic([sign * start, sign * end], rates.map(|x| sign * x), 1.0);
+            let slopes = (0..=1000).map(|i| sign * cubic_at(cubic, f64::from(i) / 1000.0)[1]);
+            let least = slopes.fold(f64::MAX, f64::min);
+            // Half of the slope of the straight line, but for rounding.
+            prop_assert!(!is_straight(cubic) || least >= 0.5 * (end - start) * (1.0 - 1e-12));
+        }
+    }
+
+    #[test]
+    fn a_line_is_straight_and_what_turns_on_the_way_is_not() {
+        assert!(is_straight(cubic([-0.3, 0.7], [1.0, 1.0], 1.0)));
+        assert!(is_straight(cubic([0.3, -0.7], [-1.0, -1.0], 1.0)));
+        // Three zeros, and a slow end.
+        assert!(!is_straight(cubic([-0.1, 0.1], [3.0, 3.0], 1.0)));
+        assert!(!is_straight(cubic([-0.3, 0.7], [1.5, 0.4], 1.0)));
+        assert_eq!(
+            cubic_at(cubic([-0.3, 0.7], [1.0, 1.0], 1.0), 0.5).map(|x| (x * 1e12).round() / 1e12),
+            [0.2, 1.0]
+        );
+    }
+
     #[test]
     fn a_step_beside_a_zero_is_not_looked_into() {
         // A line that starts at a tenth of its rise.
