@@ -77,6 +77,11 @@ FORCES = [
     vv.DrivenForce([1.0, 0.0, -2.0], frequency=3.0, phase=0.5),
     vv.Spring(0, 1, k=2.0, length=0.5),
     vv.Spring([0, 1], [1, 0], k=[1.0, 2.0]),
+    vv.Harmonic(k=2.0, center=[1.0, 2.0, 3.0]),
+    vv.QuadraticDrag([0.5, 0.25]),
+    vv.UniformElectricField([0.0, 1.0, -2.0], charge=[1.0, -3.0]),
+    vv.RotatingFrame([0.0, 1.0, -2.0], center=[1.0, 0.0, 0.5]),
+    vv.Damper([0, 1], [1, 0], c=[1.0, 2.0]),
     vv.PairPotential(vv.potentials.Yukawa(k=2.0, length=0.5)),
 ]
 
