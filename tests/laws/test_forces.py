@@ -447,3 +447,20 @@ def test_electric_fields_pull_each_charge_by_its_own() -> None:
     assert both.plan.solution == "closed form: exponential decay"
     stepped = vv.Scene(bodies, *scene.forces, vv.LinearDrag(0.5)).run(t=2.0, method="dop853", rtol=1e-12)
     np.testing.assert_allclose(both.position, stepped.position, rtol=0, atol=1e-10)
+
+
+@pytest.mark.parametrize("how", [{}, {"method": "leapfrog", "dt": 0.005}], ids=repr)
+@pytest.mark.parametrize("force", [vv.UniformElectricField([1.0, 0.0, 0.5], [0.0, 1.0, -3.0])], ids=repr)
+def test_energies_of_charges_that_a_massless_body_precedes(force: vv.forces.Force, how: dict[str, object]) -> None:
+    """What is integrated apart, or in another order, must not take the charge of another."""
+    bodies = vv.Particles(
+        [0.0, 1.0, 2.0], [[5, 0, 0], [1.0, 0, 0], [-1, 0, 0.5]], [[0, 0.2, 0], [0, 0.5, 0], [0, -0.3, 0]]
+    )
+    scene = vv.Scene(bodies, vv.Gravity(1.0), force)
+    out = scene.run(t=[0, 0.5, 1.0], record=("position", "velocity", "energy"), **how)  # type: ignore[arg-type]
+    for row in range(3):
+        now = vv.Scene(vv.Particles(bodies.mass, out.position[row], out.velocity[row]), *scene.forces)
+        # The rounding of the recorded state.
+        assert out.energy[row] == pytest.approx(now.invariants().energy, rel=1e-14)
+    end = scene.run(t=1.0, events=[vv.events.energy(scene.invariants().energy + 1.0)], **how)  # type: ignore[arg-type]
+    assert len(end.events) == 0

@@ -164,6 +164,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn coupling(&self) -> Coupling {
         Coupling::None
     }
+    /// Whether it tells bodies apart by their place in the scene, as listed pairs do and numbers for each.
+    fn names_bodies(&self) -> bool {
+        matches!(self.coupling(), Coupling::Listed(_))
+    }
     /// What it leaves constant.
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING

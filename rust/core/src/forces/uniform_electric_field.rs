@@ -96,6 +96,9 @@ impl ForceTerm for UniformElectricField {
     fn acts(&self, _: &Bodies<'_>) -> bool {
         self.field.iter().any(|&e| e != 0.0) && self.charge.iter().any(|&q| q != 0.0)
     }
+    fn names_bodies(&self) -> bool {
+        self.charge.len() > 1
+    }
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }
