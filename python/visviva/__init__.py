@@ -24,6 +24,7 @@ _HOME = {
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Coulomb": "forces",
     "Damper": "forces",
     "Drift": "conservation",
     "DrivenForce": "forces",
@@ -67,6 +68,7 @@ __all__ = [
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Coulomb",
     "Damper",
     "Drift",
     "DrivenForce",
@@ -129,6 +131,7 @@ if TYPE_CHECKING:
     )
     from visviva.forces import (
         CentralField,
+        Coulomb,
         Damper,
         DrivenForce,
         Gravity,

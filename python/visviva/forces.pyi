@@ -10,6 +10,7 @@ from visviva.potentials import Potential
 
 __all__ = [
     "CentralField",
+    "Coulomb",
     "Damper",
     "DrivenForce",
     "Force",
@@ -38,6 +39,13 @@ class Gravity(Force):
     G: float
     softening: float
     def __init__(self, G: float, softening: float = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Coulomb(Force):
+    charge: float | NDArray[np.float64]
+    k: float
+    softening: float
+    def __init__(self, charge: ArrayLike, k: float, softening: float = 0.0) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class UniformField(Force):

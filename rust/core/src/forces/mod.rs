@@ -10,6 +10,7 @@
 pub mod bodies;
 pub mod central_field;
 pub mod context;
+pub mod coulomb;
 pub mod damper;
 pub mod driven_force;
 pub mod gravity;

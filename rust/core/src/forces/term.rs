@@ -226,6 +226,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_newtonian(&self) -> Option<(f64, f64)> {
         None
     }
+    /// k times the charges of two bodies and the softening length, if it is Coulomb's law.
+    fn as_coulomb(&self, _pair: [usize; 2]) -> Option<(Scaled, f64)> {
+        None
+    }
     /// `k` and the center, if it is that of a potential energy k/r about a fixed point.
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         None
