@@ -242,6 +242,8 @@ def test_coincident_ends_of_a_spring_with_a_length_are_refused() -> None:
         vv.RotatingFrame([0.3, -0.4, 1.0], [0.5, -1.0, 2.0]),
         vv.Damper([0, 1], [1, 2], [1.0, 2.0]),
         vv.Coulomb([1.0, -2.0, 0.5], k=3.0, softening=0.2),
+        vv.Oblate(1, 1.5, 0.1, 0.4, [0.3, -0.4, 1.0], 0.05),
+        vv.PostNewtonian(1, 1.5, 7.0),
     ],
     ids=repr,
 )
