@@ -21,11 +21,12 @@ FIELD = {
     "indices": "int | NDArray[np.int64]",
     "vector": "tuple[float, float, float]",
     "axial_vector": "tuple[float, float, float]",
+    "direction": "tuple[float, float, float]",
     "point": "tuple[float, float, float]",
     "potential": "Potential",
     "choice": "str",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "direction", "point"), "ArrayLike")
 
 FORCES = """from dataclasses import dataclass
 from typing import Any, ClassVar, Self

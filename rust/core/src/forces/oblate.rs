@@ -48,7 +48,7 @@ pub static DECLARATION: ForceDeclaration = Declaration {
             "The equatorial radius that J2 and J4 refer to",
         )
         .of([1, 0, 0]),
-        Parameter::new("axis", Kind::Vector, "The direction of the axis of symmetry, of any length"),
+        Parameter::new("axis", Kind::Direction, "The direction of the axis of symmetry, of any length"),
         Parameter::new("J4", Kind::Numbers(Sign::Any), "The fourth zonal harmonic").or(0.0),
     ],
     make: |values| Ok(Arc::new(Oblate::new(values)?)),
@@ -85,9 +85,6 @@ impl Oblate {
         }
         let axis = axis.vector();
         let size = axis.into_iter().fold(0.0, |most: f64, x| most.max(x.abs()));
-        if size == 0.0 {
-            return Err(Error::invalid("axis", "expected a direction, got 0.0 in every component"));
-        }
         let near = axis.map(|x| scale(x, -exponent(size)));
         let length = distance(near, [0.0; 3]);
         let shape =

@@ -76,7 +76,8 @@ impl<L: Law> Kernel<L> {
                 index,
                 place,
                 strength: of(&|mass| constant * mass),
-                inverse_mass: of(&|mass| 1.0 / mass),
+                // Some ensemble members may have it without mass: there it does nothing.
+                inverse_mass: of(&|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 }),
                 others: context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 }),
             }
         });
