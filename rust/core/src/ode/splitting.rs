@@ -59,7 +59,7 @@ struct Force<S> {
 
 /// What was kept of the acceleration at a node.
 #[derive(Debug)]
-struct Kept<S> {
+struct AtNode<S> {
     node: u64,
     acceleration: Vec<S>,
     fresh: bool,
@@ -107,7 +107,7 @@ pub struct SplittingStep<S> {
     /// What takes steps to times between nodes, from the first of them on, and the acceleration at the present node.
     between: Option<(Moves<S>, Vec<S>)>,
     /// Of the node before the present one, for who looks back.
-    before: Option<Kept<S>>,
+    before: Option<AtNode<S>>,
 }
 
 impl<S: Element> SplittingStep<S> {
@@ -178,7 +178,7 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
 
     fn look_back(&mut self) {
         let acceleration = self.force.acceleration.clone();
-        self.before = Some(Kept { node: u64::MAX, acceleration, fresh: false });
+        self.before = Some(AtNode { node: u64::MAX, acceleration, fresh: false });
     }
 
     fn between(

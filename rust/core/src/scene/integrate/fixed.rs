@@ -40,13 +40,13 @@ pub(super) fn run(
 }
 
 /// How a state lies, the state and what advances it, for one group of units after another.
-type Room = (Shape, State<Lanes>, Box<dyn Stepper<Lanes>>);
+type Workspace = (Shape, State<Lanes>, Box<dyn Stepper<Lanes>>);
 
 fn lockstep(
     job: &Job<'_>,
     units: &[Unit],
     threads: usize,
-    room: &mut Option<Room>,
+    room: &mut Option<Workspace>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
     let (plan, t0) = (job.plan, job.scene.t0);
