@@ -64,6 +64,7 @@ _HOME = {
 }
 _ROOMS = (
     "datasets",
+    "drag",
     "errors",
     "events",
     "forces",
@@ -116,6 +117,7 @@ __all__ = [
     "UniformMagneticField",
     "UnknownKeyword",
     "datasets",
+    "drag",
     "errors",
     "events",
     "forces",
@@ -131,7 +133,7 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
+    from visviva import datasets, drag, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

@@ -57,7 +57,9 @@ class Oblate(Force):
     radius: float | NDArray[np.float64]
     axis: tuple[float, float, float]
     J4: float | NDArray[np.float64]
-    def __init__(self, body: ArrayLike, G: float, J2: ArrayLike, radius: ArrayLike, axis: ArrayLike, J4: ArrayLike = 0.0) -> None: ...
+    def __init__(
+        self, body: ArrayLike, G: float, J2: ArrayLike, radius: ArrayLike, axis: ArrayLike, J4: ArrayLike = 0.0
+    ) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class PostNewtonian(Force):

@@ -23,6 +23,7 @@ pub mod post_newtonian;
 pub mod quadratic_drag;
 pub mod rotating_frame;
 mod sources;
+pub mod spheres;
 pub mod spring;
 pub mod term;
 pub mod uniform_electric_field;
