@@ -145,7 +145,7 @@ fn packed<V: Vector8 + InverseCube + Binary, L: Law>(
                 let term = V::select(there, term[c], V::zero());
                 V::view_mut(scratch)[at] = term;
                 let a = &mut V::view_mut(a)[at];
-                *a = *a + term;
+                *a += term;
             }
         }
         let (scratch, mass, a) = (as_numbers(scratch), as_numbers(mass), as_numbers_mut(a));
@@ -189,7 +189,7 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                 let term = kernel.law.pull(source.index, strength, d, w);
                 for c in 0..components {
                     let a = &mut a[c * rows + at];
-                    *a = *a + term[c];
+                    *a += term[c];
                     if slot < kernel.active {
                         sum[c] += mass[at] * term[c];
                     }
