@@ -2,16 +2,17 @@
 //! [`post_newtonian`](super::post_newtonian).
 //!
 //! Canonical order: sources one after another as they are listed; what each gives is added to every other body, and then
-//! the reaction to the source, −Σ mᵢ aᵢ/M, whose sum goes over the massive bodies in order of index, whatever the lanes
-//! are. Products and sums of that sum are not fused, so that one number has the bits of a lane.
+//! the reaction to the source, −Σ mᵢ aᵢ/M. Its sum takes the massive bodies by eights in order of index, each eight as
+//! ((0 + 1) + (2 + 3)) + ((4 + 5) + (6 + 7)), zero where there is none or the source itself, whatever the lanes are.
+//! Products and sums of that sum are not fused. In lanes over bodies nothing is read or written by single numbers: a
+//! vector that is read soon after waits long for them.
 
 use super::context::{Arrangement, Context, packed_place};
 use super::{Force, Phase};
 use crate::error::Result;
-use crate::numerics::binary::Binary;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
 use crate::numerics::real::Real;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
@@ -39,6 +40,8 @@ struct Source {
     inverse_mass: Vec<Lanes>,
     /// Above zero where another body is.
     others: Vec<Lanes>,
+    /// If packed, 1/mass in its lane and zero in the others.
+    alone: Lanes,
 }
 
 /// The forces of some sources.
@@ -51,8 +54,6 @@ pub(super) struct Kernel<L> {
     active: usize,
     sources: Vec<Source>,
     mass: Vec<Lanes>,
-    /// What one source gives, row after row and component after component.
-    scratch: Vec<Lanes>,
 }
 
 impl<L: Law> Kernel<L> {
@@ -72,12 +73,16 @@ impl<L: Law> Kernel<L> {
                 }
                 context.in_rows(1, |system, _| mass(system.mass[slot]))
             };
+            let inverse = |mass: f64| if mass > 0.0 { 1.0 / mass } else { 0.0 };
+            let mut alone = Lanes::zero();
+            alone.0[place.1] = inverse(context.first().mass[slot]);
             Source {
                 index,
                 place,
+                alone,
                 strength: of(&|mass| constant * mass),
                 // Some ensemble members may have it without mass: there it does nothing.
-                inverse_mass: of(&|mass| if mass > 0.0 { 1.0 / mass } else { 0.0 }),
+                inverse_mass: of(&inverse),
                 others: context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 }),
             }
         });
@@ -89,7 +94,6 @@ impl<L: Law> Kernel<L> {
             active,
             sources: sources.collect(),
             mass: context.per_body(|system, slot| system.mass[slot]),
-            scratch: vec![Lanes::zero(); shape.len()],
         }
     }
 }
@@ -109,18 +113,18 @@ fn difference<S: Real>(to: [S; 3], from: [S; 3]) -> [S; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
+/// The other lanes of a sum over eight lanes, turn by turn.
+const TURNS: [[i64; WIDTH]; 3] =
+    [[1, 0, 3, 2, 5, 4, 7, 6], [2, 3, 0, 1, 6, 7, 4, 5], [4, 5, 6, 7, 0, 1, 2, 3]];
+
 /// Bodies of one system: a row of them at a time.
 #[inline(always)]
-fn packed<V: Vector8 + InverseCube + Binary, L: Law>(
-    kernel: &mut Kernel<L>,
-    q: &[Lanes],
-    v: &[Lanes],
-    a: &mut [Lanes],
-) {
+fn packed<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) {
     let Shape { rows, components } = kernel.shape;
     let stride = rows * WIDTH;
-    let Kernel { law, sources, scratch, mass, active, .. } = kernel;
-    for source in sources.iter() {
+    let massive = kernel.active.div_ceil(WIDTH);
+    let (a, mass) = (V::view_mut(a), V::view(&kernel.mass));
+    for source in &kernel.sources {
         let own = source.place.0 * WIDTH + source.place.1;
         let (mut place, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
         for c in 0..components {
@@ -130,6 +134,7 @@ fn packed<V: Vector8 + InverseCube + Binary, L: Law>(
             }
         }
         let strength = V::load(source.strength[0]);
+        let mut sum = [V::zero(); 3];
         for row in 0..rows {
             let there = V::zero().less(V::load(source.others[row]));
             let mut d = difference(vector(V::view(q), row, rows, components), place);
@@ -139,23 +144,24 @@ fn packed<V: Vector8 + InverseCube + Binary, L: Law>(
             }
             // Where nobody else is, a place that gives a number.
             d[0] = V::select(there, d[0], V::one());
-            let term = law.pull(source.index, strength, d, w);
+            let pull = kernel.law.pull(source.index, strength, d, w);
             for c in 0..components {
-                let at = c * rows + row;
-                let term = V::select(there, term[c], V::zero());
-                V::view_mut(scratch)[at] = term;
-                let a = &mut V::view_mut(a)[at];
-                *a += term;
+                let term = V::select(there, pull[c], V::zero());
+                a[c * rows + row] += term;
+                if row < massive {
+                    let mut part = mass[row] * term;
+                    for turn in &TURNS {
+                        part += part.permute(turn);
+                    }
+                    sum[c] += part;
+                }
             }
         }
-        let (scratch, mass, a) = (as_numbers(scratch), as_numbers(mass), as_numbers_mut(a));
+        let inverse_mass = V::load(source.alone);
+        let itself = V::zero().less(inverse_mass);
         for c in 0..components {
-            let mut sum = 0.0;
-            for slot in 0..*active {
-                // Those that have mass fill rows from the first on.
-                sum += mass[slot] * scratch[c * stride + slot];
-            }
-            a[c * stride + own] += -(sum * source.inverse_mass[0].0[0]);
+            let a = &mut a[c * rows + source.place.0];
+            *a = V::select(itself, *a + -(sum[c] * inverse_mass), *a);
         }
     }
 }
@@ -176,22 +182,31 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
             }
             let strength = V::load(source.strength[block]);
             let mut sum = [V::zero(); 3];
-            for slot in 0..bodies {
-                let at = block * bodies + slot;
-                if at == own {
-                    continue;
+            for first in (0..bodies).step_by(WIDTH) {
+                let mut parts = [[V::zero(); WIDTH]; 3];
+                for place_in_eight in 0..WIDTH.min(bodies - first) {
+                    let slot = first + place_in_eight;
+                    let at = block * bodies + slot;
+                    if at == own {
+                        continue;
+                    }
+                    let mut w = [V::zero(); 3];
+                    if L::VELOCITY {
+                        w = difference(vector(v, at, rows, components), speed);
+                    }
+                    let d = difference(vector(q, at, rows, components), place);
+                    let term = kernel.law.pull(source.index, strength, d, w);
+                    for c in 0..components {
+                        a[c * rows + at] += term[c];
+                        if slot < kernel.active {
+                            parts[c][place_in_eight] = mass[at] * term[c];
+                        }
+                    }
                 }
-                let mut w = [V::zero(); 3];
-                if L::VELOCITY {
-                    w = difference(vector(v, at, rows, components), speed);
-                }
-                let d = difference(vector(q, at, rows, components), place);
-                let term = kernel.law.pull(source.index, strength, d, w);
-                for c in 0..components {
-                    let a = &mut a[c * rows + at];
-                    *a += term[c];
-                    if slot < kernel.active {
-                        sum[c] += mass[at] * term[c];
+                if first < kernel.active {
+                    for c in 0..components {
+                        let p = &parts[c];
+                        sum[c] += ((p[0] + p[1]) + (p[2] + p[3])) + ((p[4] + p[5]) + (p[6] + p[7]));
                     }
                 }
             }
@@ -204,12 +219,7 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
 }
 
 #[inline(always)]
-fn kernel<V: Vector8 + InverseCube + Binary, L: Law>(
-    kernel: &mut Kernel<L>,
-    q: &[Lanes],
-    v: &[Lanes],
-    a: &mut [Lanes],
-) {
+fn kernel<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) {
     if kernel.packed {
         packed::<V, L>(kernel, q, v, a);
     } else {
@@ -218,7 +228,7 @@ fn kernel<V: Vector8 + InverseCube + Binary, L: Law>(
 }
 
 tiered! {
-    fn kernel_tier[L: Law][L](of: &mut Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) = kernel;
+    fn kernel_tier[L: Law][L](of: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) = kernel;
 }
 
 impl<L: Law> Force<Lanes> for Kernel<L> {
