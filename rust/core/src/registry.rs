@@ -12,7 +12,7 @@ use crate::ode::methods::{
     bogacki_shampine32, boris, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
 };
 use crate::ode::system::{Form, Needs};
-use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
+use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, tabulated, yukawa};
 use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
@@ -68,7 +68,7 @@ pub fn solver(name: &str) -> Result<&'static Method> {
 
 /// Every potential, in the order of the documentation.
 pub static POTENTIALS: &[&PotentialDeclaration] =
-    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION];
+    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION, &tabulated::DECLARATION];
 
 /// The potential of a name.
 pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
