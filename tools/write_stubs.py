@@ -24,8 +24,9 @@ FIELD = {
     "point": "tuple[float, float, float]",
     "potential": "Potential",
     "choice": "str",
+    "table": "NDArray[np.float64]",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point", "table"), "ArrayLike")
 
 FORCES = """from dataclasses import dataclass
 from typing import Any, ClassVar, Self

@@ -33,7 +33,9 @@ _TYPES = {
     "point": "array_like, shape (3,)",
     "potential": "visviva.potentials.Potential",
     "choice": "str",
+    "table": "array_like, shape (P,)",
 }
+_SHOWN = 8  # numbers of a table that are printed
 _SIGNS = {"positive": ", positive", "not_negative": ", not negative"}
 
 
@@ -66,6 +68,9 @@ class Parameter:
             return self._numbers(value)
         if self.kind == "indices":
             return self._indices(value)
+        if self.kind == "table":
+            table: NDArray[np.float64] = _frozen(float_array(self.name, value, (None,)), value)
+            return table
         if self.kind == "potential":
             return _potential(self.name, value)
         if value not in self.choices:
@@ -108,7 +113,7 @@ class Parameter:
 
     def to_core(self, value: Any) -> Any:
         """What the core and a file know it by."""
-        if self.kind in ("numbers", *_VECTORS):
+        if self.kind in ("numbers", "table", *_VECTORS):
             return np.atleast_1d(np.array(value, dtype=float))
         if self.kind == "indices":
             return np.atleast_1d(np.array(value, dtype=np.int64))
@@ -123,6 +128,13 @@ class Parameter:
 
             return potential_from_core(value)
         return value
+
+    def shown(self, value: Any) -> str:
+        """The value as it is printed; of a long table its ends."""
+        if self.kind != "table" or len(value) <= _SHOWN:
+            return repr(_plain(value))
+        first, last = (", ".join(map(repr, part.tolist())) for part in (value[: _SHOWN // 2], value[-1:]))
+        return f"[{first}, ..., {last}]"
 
     def document(self) -> list[str]:
         """Its entry in the documentation."""
@@ -154,7 +166,7 @@ class Declared:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}
 
     def __repr__(self) -> str:
-        shown = (f"{name}={_plain(value)!r}" for name, value in self._values().items())
+        shown = (f"{p.name}={p.shown(getattr(self, p.name))}" for p in self._parameters)
         return f"{type(self).__name__}({', '.join(shown)})"
 
     def __eq__(self, other: object) -> bool:

@@ -15,7 +15,7 @@ use crate::ode::methods::{
     sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
 };
 use crate::ode::system::{Form, Needs};
-use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
+use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, tabulated, yukawa};
 use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
@@ -93,7 +93,7 @@ pub fn solver(name: &str) -> Result<&'static Method> {
 
 /// Every potential, in the order of the documentation.
 pub static POTENTIALS: &[&PotentialDeclaration] =
-    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION];
+    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION, &tabulated::DECLARATION];
 
 /// The potential of a name.
 pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {

@@ -15,6 +15,7 @@ pub mod points;
 pub mod power_of_two;
 pub mod real;
 pub mod rotation;
+pub mod rows;
 pub mod scaled;
 pub mod simd;
 pub mod stumpff;
