@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
@@ -54,10 +55,11 @@ _HOME = {
     "methods": "integrators",
     "solve_ivp": "initial_value",
 }
-_ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing")
+_ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing", "units")
 
 __all__ = [
     "AccuracyWarning",
+    "BodyMotion",
     "CentralField",
     "CloseEncounter",
     "Conservation",
@@ -100,10 +102,12 @@ __all__ = [
     "scattering",
     "solve_ivp",
     "typing",
+    "units",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, typing
+    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, typing, units
+    from visviva.body import BodyMotion
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
