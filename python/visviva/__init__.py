@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
@@ -71,10 +72,12 @@ _ROOMS = (
     "scattering",
     "stress",
     "typing",
+    "units",
 )
 
 __all__ = [
     "AccuracyWarning",
+    "BodyMotion",
     "CentralField",
     "CloseEncounter",
     "Conservation",
@@ -124,10 +127,12 @@ __all__ = [
     "solve_ivp",
     "stress",
     "typing",
+    "units",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
+    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing, units
+    from visviva.body import BodyMotion
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

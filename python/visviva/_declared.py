@@ -14,6 +14,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, in_range, number, positive, whole_number
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -27,7 +28,7 @@ _VECTORS = ("vector", "axial_vector", "point")
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
-    "indices": "int or array_like of int",
+    "indices": "int or str, or array_like of them",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
     "point": "array_like, shape (3,)",
@@ -96,9 +97,14 @@ class Parameter:
         kept: NDArray[np.float64] = _frozen(array, value)
         return kept
 
-    def _indices(self, value: Any) -> int | NDArray[np.int64]:
+    def _indices(self, value: Any) -> int | str | tuple[int | str, ...] | NDArray[np.int64]:
+        if isinstance(value, str):
+            return value
         if not isinstance(value, np.ndarray | list | tuple):
             return whole_number(self.name, value, low=0)
+        if any(isinstance(each, str) for each in value):
+            # Names wait for the scene to say which bodies they are.
+            return tuple(each if isinstance(each, str) else whole_number(self.name, each, low=0) for each in value)
         array = np.asarray(value)
         if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
             raise InvalidInput(
@@ -116,8 +122,16 @@ class Parameter:
         if self.kind in ("numbers", "table", *_VECTORS):
             return np.atleast_1d(np.array(value, dtype=float))
         if self.kind == "indices":
+            if isinstance(value, str | tuple):
+                raise InvalidInput(self.name, f"expected indices of bodies outside a scene, got {value!r}")
             return np.atleast_1d(np.array(value, dtype=np.int64))
         return value._to_core() if self.kind == "potential" else value
+
+    def resolved(self, value: Any, names: tuple[str, ...], count: int) -> Any:
+        """The value with the indices of the bodies that are given by name."""
+        if isinstance(value, str):
+            return body_index(self.name, value, names, count)
+        return self.check([body_index(self.name, each, names, count) for each in value])
 
     def from_core(self, value: Any) -> Any:
         """The value that `to_core` described, from a file."""
