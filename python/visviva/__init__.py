@@ -131,7 +131,19 @@ __all__ = [
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing, units
+    from visviva import (
+        datasets,
+        errors,
+        events,
+        forces,
+        orbits,
+        potentials,
+        problems,
+        scattering,
+        stress,
+        typing,
+        units,
+    )
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory

@@ -110,8 +110,8 @@ class Spring(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Damper(Force):
-    i: int | NDArray[np.int64]
-    j: int | NDArray[np.int64]
+    i: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    j: int | str | tuple[int | str, ...] | NDArray[np.int64]
     c: float | NDArray[np.float64]
     def __init__(self, i: ArrayLike, j: ArrayLike, c: ArrayLike) -> None: ...
 
