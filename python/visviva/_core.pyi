@@ -1,10 +1,13 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
 from collections.abc import Callable
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+# Sets of forces, and which of them each copy has.
+_OwnForces: TypeAlias = tuple[list[list[dict[str, Any]]], list[int]]
 
 class _Scene(TypedDict):
     """One or more copies of a scene: an axis over the copies leads every array."""
@@ -13,6 +16,7 @@ class _Scene(TypedDict):
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     forces: list[dict[str, Any]]
+    own_forces: _OwnForces | None
     t0: float
     continuation: _Continuation | None
 

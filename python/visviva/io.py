@@ -68,6 +68,8 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         "stats": result["stats"],
         "plan": result["plan"],
     }
+    if start["own_forces"] is not None:
+        header["own_forces"] = start["own_forces"]
     if run._start._names:
         header["names"] = run._start._names
     if "looked_for" in result:
@@ -166,6 +168,10 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
         copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
+        if header.get("own_forces") is not None:
+            sets, of_copy = header["own_forces"]
+            own = [tuple(force_from_core(description) for description in forces) for forces in sets]
+            copies = copies._own(tuple(own[which] for which in of_copy))
         run = EnsembleTrajectory(attached(copies, before), result)
     else:
         run = Trajectory(attached(scene, before), result)

@@ -25,7 +25,7 @@ from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -101,6 +101,7 @@ class Scene(Runnable[Trajectory]):
             "position": particles.position[None],
             "velocity": particles.velocity[None],
             "forces": [force._to_core() for force in forces],
+            "own_forces": None,
             "t0": t0,
             "continuation": None,
         }
@@ -129,9 +130,14 @@ class Scene(Runnable[Trajectory]):
         return Trajectory(self, result)
 
     def ensemble(
-        self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None
+        self,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        mass: ArrayLike | None = None,
+        parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
     ) -> EnsembleScene:
-        """Many copies of the scene that differ in their states.
+        """Many copies of the scene that differ in their states, or in the parameters of their forces.
 
         Parameters
         ----------
@@ -139,6 +145,10 @@ class Scene(Runnable[Trajectory]):
             One state per copy; what is not given is the scene's own in every copy.
         mass : array_like, shape (B, N), optional
             Masses per copy.
+        parameters : dict of dict, optional
+            For some forces of the scene (each given itself, by its place among them or by the name of its class),
+            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies with
+            one set of parameters run together, others apart from them.
 
         Returns
         -------
@@ -147,7 +157,8 @@ class Scene(Runnable[Trajectory]):
         Raises
         ------
         visviva.InvalidInput
-            If nothing is given or the numbers of copies disagree.
+            If nothing is given or the numbers of copies disagree; a force or a parameter that is not there, or a value
+            that the force refuses.
 
         Examples
         --------
@@ -156,10 +167,16 @@ class Scene(Runnable[Trajectory]):
         >>> starts = scene.particles.position + 1e-3 * np.random.default_rng(1).normal(size=(8, 3, 3))
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (8, 2, 3, 3)
+        >>> pull = vv.CentralField(vv.potentials.Coulomb(k=-1.0))
+        >>> drag = vv.LinearDrag(tau=1.0)
+        >>> probe = vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]], [[0, 1.0, 0]]), pull, drag)
+        >>> out = probe.ensemble(parameters={drag: {"tau": [1.0, 2.0, 4.0]}}).run(t=1.0)
+        >>> out.velocity[:, -1, 0, 1].round(3).tolist()
+        [0.052, 0.219, 0.355]
         """
         from visviva.ensemble import EnsembleScene
 
-        return EnsembleScene(self, position=position, velocity=velocity, mass=mass)
+        return EnsembleScene(self, position=position, velocity=velocity, mass=mass, parameters=parameters)
 
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state, shape (N, 3).
