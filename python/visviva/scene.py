@@ -147,8 +147,8 @@ class Scene(Runnable[Trajectory]):
             Masses per copy.
         parameters : dict of dict, optional
             For some forces of the scene (each given itself, by its place among them or by the name of its class),
-            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies with
-            one set of parameters run together, others apart from them.
+            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
+            with one set of parameters run together, others apart from them.
 
         Returns
         -------
