@@ -20,10 +20,13 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Coulomb": "forces",
+    "Damper": "forces",
     "Drift": "conservation",
     "DrivenForce": "forces",
     "EnsembleScene": "ensemble",
@@ -31,6 +34,7 @@ _HOME = {
     "Error": "errors",
     "FrozenAttribute": "errors",
     "Gravity": "forces",
+    "Harmonic": "forces",
     "InternalError": "errors",
     "Interrupted": "errors",
     "InvalidInput": "errors",
@@ -42,11 +46,14 @@ _HOME = {
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
+    "QuadraticDrag": "forces",
+    "RotatingFrame": "forces",
     "Scene": "scene",
     "Spring": "forces",
     "Stats": "recorded",
     "Status": "status",
     "Trajectory": "trajectory",
+    "UniformElectricField": "forces",
     "UniformField": "forces",
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
@@ -65,14 +72,18 @@ _ROOMS = (
     "scattering",
     "stress",
     "typing",
+    "units",
 )
 
 __all__ = [
     "AccuracyWarning",
+    "BodyMotion",
     "CentralField",
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Coulomb",
+    "Damper",
     "Drift",
     "DrivenForce",
     "EnsembleScene",
@@ -80,6 +91,7 @@ __all__ = [
     "Error",
     "FrozenAttribute",
     "Gravity",
+    "Harmonic",
     "InternalError",
     "Interrupted",
     "InvalidInput",
@@ -91,11 +103,14 @@ __all__ = [
     "PairPotential",
     "Particles",
     "Plan",
+    "QuadraticDrag",
+    "RotatingFrame",
     "Scene",
     "Spring",
     "Stats",
     "Status",
     "Trajectory",
+    "UniformElectricField",
     "UniformField",
     "UniformMagneticField",
     "UnknownKeyword",
@@ -112,10 +127,24 @@ __all__ = [
     "solve_ivp",
     "stress",
     "typing",
+    "units",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
+    from visviva import (
+        datasets,
+        errors,
+        events,
+        forces,
+        orbits,
+        potentials,
+        problems,
+        scattering,
+        stress,
+        typing,
+        units,
+    )
+    from visviva.body import BodyMotion
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
@@ -131,11 +160,17 @@ if TYPE_CHECKING:
     )
     from visviva.forces import (
         CentralField,
+        Coulomb,
+        Damper,
         DrivenForce,
         Gravity,
+        Harmonic,
         LinearDrag,
         PairPotential,
+        QuadraticDrag,
+        RotatingFrame,
         Spring,
+        UniformElectricField,
         UniformField,
         UniformMagneticField,
     )

@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva.body import BodyMotion
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
@@ -120,8 +121,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             return attached(EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity), continuation)
         from visviva.scene import Scene
 
-        scene = Scene(Particles(mass, position, velocity), *self.scene.forces, t0=self.scene.t0)
-        return attached(scene, continuation)
+        bodies = Particles(mass, position, velocity, self.scene.particles.names)
+        return attached(Scene(bodies, *self.scene.forces, t0=self.scene.t0), continuation)
 
     if not TYPE_CHECKING:
 
@@ -141,6 +142,10 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.scene, self.position, self.velocity, self.mass, self._keywords["continuation"])
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self.scene.particles.names
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)
@@ -163,7 +168,7 @@ class EnsembleTrajectory(Recorded):
         Totals over the copies; `per_trajectory` has them one by one.
 
     Every array is read-only; ``out.position.copy()`` is yours. Indexing with a number gives the `Trajectory` of one
-    copy, with a slice those of a smaller ensemble.
+    copy, with a slice those of a smaller ensemble, with the name of a body its motion in all copies.
 
     Examples
     --------
@@ -189,7 +194,11 @@ class EnsembleTrajectory(Recorded):
     def __getitem__(self, index: int) -> Trajectory: ...
     @overload
     def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
-    def __getitem__(self, index: int | slice) -> Trajectory | EnsembleTrajectory:
+    @overload
+    def __getitem__(self, index: str) -> BodyMotion: ...
+    def __getitem__(self, index: int | slice | str) -> Trajectory | EnsembleTrajectory | BodyMotion:
+        if isinstance(index, str):
+            return self.body(index)
         chosen = _chosen(index, len(self))
         rows = _rows(chosen)
         result = dict(self._result)
@@ -218,6 +227,10 @@ class EnsembleTrajectory(Recorded):
     @property
     def _start(self) -> EnsembleScene:
         return self.ensemble
+
+    @property
+    def _scene(self) -> Scene:
+        return self.ensemble.scene
 
     def _found(self, name: str) -> NDArray[np.float64]:
         recorded: NDArray[np.float64] | None = self._result["columns"].get(name)

@@ -38,6 +38,10 @@ class Potential(Declared):
         if "_parameters" not in vars(cls):
             refuse_subclass(cls, "a force along the line to a fixed center is CentralField(one of visviva.potentials)")
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _core.check_potential(self._to_core())
+
     @property
     def parameters(self) -> tuple[Any, ...]:
         """The parameters, in the order of the constructor."""
@@ -75,7 +79,7 @@ class Potential(Declared):
         Raises
         ------
         visviva.InvalidInput
-            If a distance is negative or no number.
+            If a distance is negative or no number, or one at which the potential is not known.
 
         Examples
         --------
@@ -111,6 +115,13 @@ class Potential(Declared):
         distances = float_array("r", r, None)
         if distances.size and not distances.min() >= 0.0:
             raise InvalidInput("r", f"expected distances, numbers of at least 0, got {float(distances.min())!r}")
+        domain = _core.check_potential(self._to_core())
+        if domain is not None and distances.size:
+            first, last = domain
+            beyond = distances[(distances < first) | (distances > last)]
+            if beyond.size:
+                known = f"from {first!r} to {last!r}, where the {type(self).__name__} is known"
+                raise InvalidInput("r", f"expected distances {known}, got {float(beyond[0])!r}")
         results = _core.potential(self._to_core(), distances.ravel())
         return results[which].reshape(distances.shape)
 

@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from visviva._declared import Declared
 
-__all__ = ["Coulomb", "LennardJones", "Potential", "Yukawa", "potential_by_name"]
+__all__ = ["Coulomb", "LennardJones", "Potential", "Tabulated", "Yukawa", "potential_by_name"]
 
 class Potential(Declared):
     name: ClassVar[str]
@@ -35,6 +35,12 @@ class LennardJones(Potential):
     epsilon: float
     sigma: float
     def __init__(self, epsilon: float, sigma: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Tabulated(Potential):
+    r: NDArray[np.float64]
+    V: NDArray[np.float64]
+    def __init__(self, r: ArrayLike, V: ArrayLike) -> None: ...
 
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...

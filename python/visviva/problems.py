@@ -138,7 +138,7 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     200000.0
     """
     data = outer_solar_system_data(variant)
-    scene = Scene(Particles(data.mass, data.position, data.velocity), Gravity(data.G))
+    scene = data.scene
     if variant == "applegate":
         scene = scene.center_of_mass_frame()
     t_end, positions = OUTER_SOLAR_SYSTEM[variant]

@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
+    from visviva.orbits import Elements
 
 __all__ = ["Scene"]
 
@@ -87,7 +88,9 @@ class Scene(Runnable[Trajectory]):
         if len(found) != 1:
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        self._set(found[0], tuple(part for part in all_parts if isinstance(part, Force)), number("t0", t0))
+        bodies = found[0]
+        acting = (part._resolved(bodies.names, len(bodies)) for part in all_parts if isinstance(part, Force))
+        self._set(bodies, tuple(acting), number("t0", t0))
 
     def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
         object.__setattr__(self, "particles", particles)
@@ -117,6 +120,10 @@ class Scene(Runnable[Trajectory]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"])
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self.particles.names
 
     def _finished(self, result: dict[str, Any]) -> Trajectory:
         return Trajectory(self, result)
@@ -190,6 +197,42 @@ class Scene(Runnable[Trajectory]):
 
         return of_scene(self, about)
 
+    def elements(
+        self,
+        bodies: str | int | Sequence[str | int] | None = None,
+        *,
+        about: str | int = 0,
+        G: float | None = None,
+    ) -> Elements:
+        """The osculating elements of bodies at the scene's state: the way back from `Particles.from_elements`.
+
+        Parameters
+        ----------
+        bodies, about, G : optional
+            As of `Trajectory.elements`.
+
+        Returns
+        -------
+        Elements
+            Arrays of shape (K,) for K bodies, numbers for one that was given alone.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As of `Trajectory.elements`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> planets = vv.datasets.outer_solar_system().scene
+        >>> planets.elements(about="Sun").eccentricity.round(3).tolist()
+        [0.048, 0.053, 0.046, 0.007, 0.255]
+        """
+        from visviva._osculating import elements_of
+
+        p = self.particles
+        return elements_of(self, p.position, p.velocity, p.mass, bodies, about, G)
+
     def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
         """The scene displaced by `position` and boosted by `velocity`, the fields with it.
 
@@ -207,7 +250,7 @@ class Scene(Runnable[Trajectory]):
         """
         displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
         p = self.particles
-        moved = Particles(p.mass, p.position + displacement, p.velocity + boost)
+        moved = p._changed(position=p.position + displacement, velocity=p.velocity + boost)
         return Scene(moved, *(force.shifted(displacement, boost) for force in self.forces), t0=self.t0)
 
     def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
@@ -263,7 +306,7 @@ class Scene(Runnable[Trajectory]):
         if defect > 1e-12:
             raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
         p = self.particles
-        turned = Particles(p.mass, p.position @ matrix.T, p.velocity @ matrix.T)
+        turned = p._changed(position=p.position @ matrix.T, velocity=p.velocity @ matrix.T)
         return Scene(turned, *(force.rotated(matrix) for force in self.forces), t0=self.t0)
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Scene:
@@ -300,9 +343,7 @@ class Scene(Runnable[Trajectory]):
         array([[-1., -2., -3.]])
         """
         p = self.particles
-        return Scene(
-            Particles(p.mass, p.position, -p.velocity), *(force.reversed() for force in self.forces), t0=self.t0
-        )
+        return Scene(p._changed(velocity=-p.velocity), *(force.reversed() for force in self.forces), t0=self.t0)
 
     def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Scene:
         """The scene with other positions and velocities, and another time if given.
@@ -314,7 +355,8 @@ class Scene(Runnable[Trajectory]):
         >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
         array([2., 6., 0.])
         """
-        return Scene(Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0)
+        moved = self.particles._changed(position=position, velocity=velocity)
+        return Scene(moved, *self.forces, t0=self.t0 if t0 is None else t0)
 
 
 def _flat(part: object) -> Iterable[object]:

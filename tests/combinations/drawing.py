@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import inspect
 import random
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 import visviva as vv
 from visviva import _core
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def force_classes() -> dict[str, type[Any]]:
@@ -95,10 +98,20 @@ class Draw:
 
     def potential(self) -> vv.potentials.Potential:
         entry = self.random.choice(list(POTENTIALS.values()))
+        if entry["class_name"] in self.TABLES:
+            return self.TABLES[entry["class_name"]](self)
         made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
             **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
         )
         return made
+
+    def tabulated(self) -> vv.potentials.Potential:
+        """A table that most scenes stay in, with more points where it is steep; wild ones end before a scene does."""
+        r = np.geomspace(2.0**-6, 64.0 if self.tame else 8.0, 80)
+        return vv.potentials.Tabulated(r, self.number() / r + self.number() * np.exp(-r * self.number("positive")))
+
+    # What has a table is drawn as a whole: its columns go together.
+    TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {"Tabulated": tabulated}
 
     def indices(self) -> list[int]:
         """Bodies of the listed pairs: the first of each, and when asked again the second, which is another."""

@@ -4,7 +4,8 @@ use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
-    ForceDeclaration, central_field, driven_force, linear_drag, pair_potential, spring, uniform_field,
+    ForceDeclaration, central_field, coulomb as charges, damper, driven_force, harmonic, linear_drag,
+    pair_potential, quadratic_drag, rotating_frame, spring, uniform_electric_field, uniform_field,
     uniform_magnetic_field,
 };
 use crate::ode::Method;
@@ -15,7 +16,7 @@ use crate::ode::methods::{
     sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
 };
 use crate::ode::system::{Form, Needs};
-use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
+use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, tabulated, yukawa};
 use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
@@ -93,7 +94,7 @@ pub fn solver(name: &str) -> Result<&'static Method> {
 
 /// Every potential, in the order of the documentation.
 pub static POTENTIALS: &[&PotentialDeclaration] =
-    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION];
+    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION, &tabulated::DECLARATION];
 
 /// The potential of a name.
 pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
@@ -103,12 +104,18 @@ pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
 /// Every force, in the order of the documentation.
 pub static FORCES: &[&ForceDeclaration] = &[
     &newton::DECLARATION,
+    &charges::DECLARATION,
     &uniform_field::DECLARATION,
     &central_field::DECLARATION,
+    &harmonic::DECLARATION,
     &linear_drag::DECLARATION,
+    &quadratic_drag::DECLARATION,
+    &uniform_electric_field::DECLARATION,
     &uniform_magnetic_field::DECLARATION,
     &driven_force::DECLARATION,
+    &rotating_frame::DECLARATION,
     &spring::DECLARATION,
+    &damper::DECLARATION,
     &pair_potential::DECLARATION,
 ];
 
@@ -126,4 +133,7 @@ pub static CLOSED_FORMS: &[&ClosedForm] = &[
     &closed_forms::fixed_center::FORM,
     &closed_forms::linear_drag::FORM,
     &closed_forms::crossed_fields::FORM,
+    &closed_forms::rotating_frame::FORM,
+    &closed_forms::oscillation::FORM,
+    &closed_forms::quadratic_drag::FORM,
 ];

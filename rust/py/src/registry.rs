@@ -72,6 +72,7 @@ fn row<'py, T: ?Sized>(py: Python<'py>, declaration: &Declaration<T>) -> PyResul
             Kind::Point => ("point", Sign::Any),
             Kind::Potential => ("potential", Sign::Any),
             Kind::Choice(_) => ("choice", Sign::Any),
+            Kind::Table(sign) => ("table", sign),
         };
         let sign = match sign {
             Sign::Any => "any",
@@ -169,6 +170,9 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
             Value::Potential(described_potential(&get::<Bound<'_, PyDict>>(description, name)?)?)
         }
         Kind::Choice(_) => Value::Word(get(description, name)?),
+        Kind::Table(_) => {
+            Value::Table(copied(name, &get::<Column<'_>>(description, name)?, [None])?.0.into())
+        }
     })
 }
 
@@ -188,6 +192,12 @@ type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Distances between two looks at whether somebody asks to stop.
 const AT_A_TIME: usize = 1024;
+
+/// Refuses what no potential can be made of; gives the distances between which it is known, if not everywhere.
+#[pyfunction]
+pub(crate) fn check_potential(description: &Bound<'_, PyDict>) -> PyResult<Option<(f64, f64)>> {
+    Ok(described_potential(description)?.domain())
+}
 
 /// V(r), −dV/dr and d²V/dr² of a potential at each distance.
 #[pyfunction]

@@ -12,6 +12,7 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
+use crate::potentials::Potential;
 use crate::potentials::parameters::Declaration;
 use crate::units::Units;
 use crate::words::number;
@@ -164,6 +165,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn coupling(&self) -> Coupling {
         Coupling::None
     }
+    /// Whether it tells bodies apart by their place in the scene, as listed pairs do and numbers for each.
+    fn names_bodies(&self) -> bool {
+        matches!(self.coupling(), Coupling::Listed(_))
+    }
     /// What it leaves constant.
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING
@@ -186,6 +191,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     }
     /// The point about which it acts, where it may be singular: distances are measured from there.
     fn center(&self) -> Option<[f64; 3]> {
+        None
+    }
+    /// The distances, of bodies from each other or from its center, between which it is, if not at all.
+    fn domain(&self) -> Option<(f64, f64)> {
         None
     }
     /// A length below which it has no structure, or zero.
@@ -222,6 +231,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_newtonian(&self) -> Option<(f64, f64)> {
         None
     }
+    /// k times the charges of two bodies and the softening length, if it is Coulomb's law.
+    fn as_coulomb(&self, _pair: [usize; 2]) -> Option<(Scaled, f64)> {
+        None
+    }
     /// `k` and the center, if it is that of a potential energy k/r about a fixed point.
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         None
@@ -230,10 +243,41 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_linear_drag(&self) -> Option<f64> {
         None
     }
+    /// The coefficient of a body, if it is the force −coefficient |v| v.
+    fn as_quadratic_drag(&self, _particle: usize) -> Option<f64> {
+        None
+    }
+    /// The stiffness and the center, if it is the force −k (r − center) on every body.
+    fn as_harmonic(&self) -> Option<(f64, [f64; 3])> {
+        None
+    }
+    /// What it is, if it is a cosine of time, the same force on every body.
+    fn as_driven(&self) -> Option<Drive> {
+        None
+    }
+    /// The field and the charge of a body, if it is that of a uniform electric field.
+    fn as_electric(&self, _particle: usize) -> Option<([f64; 3], f64)> {
+        None
+    }
+    /// The angular velocity and a point of the axis, if it is what a rotating frame makes.
+    fn as_rotating(&self) -> Option<([f64; 3], [f64; 3])> {
+        None
+    }
     /// The field and the charges, if it is that of a uniform magnetic field.
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         None
     }
+}
+
+/// The force amplitude·cos(frequency·t + phase), t being the scene's own time.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// The largest force.
+    pub amplitude: [f64; 3],
+    /// The angular frequency.
+    pub frequency: f64,
+    /// The phase at time 0.
+    pub phase: f64,
 }
 
 /// A uniform magnetic field, which acts by the force charge v × field.
@@ -270,6 +314,21 @@ pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
             ),
         )),
     }
+}
+
+/// The refusal of bodies at a distance at which a potential is not.
+pub(super) fn outside(
+    force: &str,
+    potential: &dyn Potential,
+    (first, last): (f64, f64),
+    bodies: &str,
+) -> Error {
+    let class = potential.declaration().class_name;
+    let (first, last) = (number(first), number(last));
+    Error::invalid(
+        "position",
+        format!("{force} has a {class} that is known from {first} to {last} only, and {bodies}; move one"),
+    )
 }
 
 /// What all the forces together leave constant of these bodies.

@@ -5,9 +5,12 @@
 //! documentation and property tests follow from what [`Formula::DECLARATION`] says.
 
 pub mod coulomb;
+mod hermite;
 pub mod kernels;
 pub mod lennard_jones;
 pub mod parameters;
+mod piecewise;
+pub mod tabulated;
 pub mod yukawa;
 
 use crate::error::Result;
@@ -15,6 +18,7 @@ use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::exponent;
+use crate::numerics::rows::Lookup;
 use crate::units::Units;
 use core::fmt::Debug;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
@@ -28,6 +32,11 @@ const FAR: i32 = 300;
 /// What a potential declares about itself.
 pub type PotentialDeclaration = Declaration<dyn Potential>;
 
+/// The scalars of formulas: those with an exponential, that can be looked up in a table.
+pub trait Analytic: Exponential + Lookup {}
+
+impl<S: Exponential + Lookup> Analytic for S {}
+
 /// A potential energy as written by its author: formulas generic over the scalar.
 pub trait Formula: Debug + Send + Sync + Sized + 'static {
     /// What it declares about itself.
@@ -38,14 +47,14 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     /// From the values of its parameters, which are what the declaration says.
     fn new(values: &[Value]) -> Self;
     /// V(r).
-    fn value<S: Exponential>(&self, r: S) -> S;
+    fn value<S: Analytic>(&self, r: S) -> S;
     /// −dV/dr.
-    fn force<S: Exponential>(&self, r: S) -> S;
+    fn force<S: Analytic>(&self, r: S) -> S;
     /// d²V/dr².
-    fn curvature<S: Exponential>(&self, r: S) -> S;
+    fn curvature<S: Analytic>(&self, r: S) -> S;
     /// −dV/dr / r as a function of r²: what a pair needs, which may be less than a root and two divisions.
     #[inline(always)]
-    fn over_distance<S: Exponential>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, r2: S) -> S {
         let r = r2.sqrt();
         if Self::SINGULAR {
             return self.force(r) / r;
@@ -55,6 +64,10 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     }
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64> {
+        None
+    }
+    /// The distances between which it is, if not at all.
+    fn domain(&self) -> Option<(f64, f64)> {
         None
     }
 }
@@ -76,6 +89,8 @@ pub trait Potential: Debug + Send + Sync {
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)>;
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64>;
+    /// The distances between which it is, if not at all. Beyond them it is NaN.
+    fn domain(&self) -> Option<(f64, f64)>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
     /// Adds the forces between the bodies of each lane's system, partners in order of index.
@@ -130,7 +145,7 @@ impl<P: Formula> Potential for Held<P> {
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)> {
         let dimensions = P::DECLARATION.exponents(&self.values);
         // The exponent of the unit of mass in which a strength is near one, while that of time stays.
-        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.number() {
+        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.size() {
             strength if m != 0.0 && strength != 0.0 && strength.is_finite() => {
                 Some(((f64::from(exponent(strength)) - l * f64::from(length)) / m).round() as i32)
             }
@@ -144,6 +159,9 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         self.formula.inverse_distance_strength()
+    }
+    fn domain(&self) -> Option<(f64, f64)> {
+        self.formula.domain()
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);

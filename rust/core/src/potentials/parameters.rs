@@ -43,7 +43,12 @@ pub enum Kind {
     Potential,
     /// One of some words.
     Choice(&'static [&'static str]),
+    /// Several numbers that are one thing, as the places or the values of a table.
+    Table(Sign),
 }
+
+/// The most numbers of a table.
+const TABLE_MAX: usize = 1 << 20;
 
 /// The dimension of a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -110,6 +115,17 @@ impl Parameter {
                     None => Ok(()),
                 }
             }
+            (Kind::Table(_), Value::Table(values)) if values.len() > TABLE_MAX => {
+                refuse(&format!("at most {TABLE_MAX} numbers"), values.len().to_string())
+            }
+            (Kind::Table(sign), Value::Table(values)) => {
+                match values.iter().enumerate().find(|(_, x)| !sign.allows(**x)) {
+                    Some((at, &wrong)) => {
+                        refuse(sign.expected(), format!("{}[{at}] = {}", self.name, number(wrong)))
+                    }
+                    None => Ok(()),
+                }
+            }
             (Kind::Vector | Kind::AxialVector | Kind::Point, Value::Vector(values))
                 if values.iter().any(|x| !x.is_finite()) =>
             {
@@ -161,6 +177,8 @@ pub enum Value {
     Potential(Arc<dyn Potential>),
     /// Of a choice.
     Word(String),
+    /// Of a table.
+    Table(Arc<[f64]>),
 }
 
 impl Value {
@@ -169,6 +187,13 @@ impl Value {
         match self {
             Self::Number(value) => *value,
             _ => f64::NAN,
+        }
+    }
+    /// As [`number`](Self::number), or the largest of a table.
+    pub fn size(&self) -> f64 {
+        match self {
+            Self::Table(values) => values.iter().fold(0.0, |most: f64, x| most.max(x.abs())),
+            other => other.number(),
         }
     }
     /// As [`number`](Self::number), of a vector.
@@ -192,6 +217,20 @@ impl Value {
             _ => Vec::new(),
         }
     }
+    /// As [`numbers`](Self::numbers), of a table.
+    pub fn table(&self) -> &[f64] {
+        match self {
+            Self::Table(values) => values,
+            _ => &[],
+        }
+    }
+    /// The word that it is; none of another kind.
+    pub fn word(&self) -> &str {
+        match self {
+            Self::Word(word) => word,
+            _ => "",
+        }
+    }
     /// The potential that it is.
     ///
     /// # Errors
@@ -211,6 +250,7 @@ impl Value {
             Self::Numbers(values) => Self::Numbers(values.iter().copied().map(divide).collect()),
             Self::Vector(values) => Self::Vector(values.map(divide)),
             Self::Potential(potential) => Self::Potential(potential.scaled(units)),
+            Self::Table(values) => Self::Table(values.iter().copied().map(divide).collect()),
             other => other.clone(),
         }
     }

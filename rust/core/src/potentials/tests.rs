@@ -7,6 +7,9 @@ use proptest::prelude::*;
 
 /// A value for each parameter from seeds; none for a potential that takes what no seed can make.
 fn parameters(declaration: &PotentialDeclaration, seeds: &[f64; 4]) -> Option<Vec<Value>> {
+    if declaration.name == "tabulated" {
+        return Some(table(seeds));
+    }
     let seeds = seeds.iter().cycle();
     let value = |(parameter, seed): (&Parameter, &f64)| match parameter.kind {
         Kind::Number(Sign::Any) => Some(Value::Number(*seed)),
@@ -15,6 +18,13 @@ fn parameters(declaration: &PotentialDeclaration, seeds: &[f64; 4]) -> Option<Ve
         _ => None,
     };
     declaration.parameters.iter().zip(seeds).map(value).collect()
+}
+
+/// A smooth table from 0.6 to 3.2.
+fn table(seeds: &[f64; 4]) -> Vec<Value> {
+    let r: Vec<f64> = (0..200).map(|i| 0.6 + 0.013 * f64::from(i)).collect();
+    let v = |r: &f64| seeds[0] / r + seeds[1] * Exponential::exp(-r * seeds[2].abs()) + seeds[3];
+    vec![Value::Table(r.iter().copied().collect()), Value::Table(r.iter().map(v).collect())]
 }
 
 /// Every potential of the registry that seeds can make.
