@@ -12,8 +12,8 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from collections.abc import Callable
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from mpmath import mp, mpf
 
@@ -21,7 +21,11 @@ import splittings
 from dop853 import dop853
 from embedded_pairs import bogacki_shampine32, dormand_prince54, fractions, tsitouras54, verner98
 from multistep import stormer
-from polish import Row
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polish import Row
 
 mp.dps = 80
 INTEGRATORS = Path(__file__).resolve().parents[1] / "rust/core/src/ode/methods"

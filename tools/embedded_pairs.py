@@ -4,10 +4,11 @@ P. Bogacki & L. F. Shampine, A 3(2) pair of Runge-Kutta formulas, Appl. Math. Le
 J. R. Dormand & P. J. Prince, A family of embedded Runge-Kutta formulae, J. Comput. Appl. Math. 6 (1980) 19, RK5(4)7M;
 its continuous extension of order 4 is L. F. Shampine's, as printed by Hairer, Norsett & Wanner, Solving Ordinary
 Differential Equations I, 2nd ed. (Springer 1993), II.6.
-Ch. Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying assumption, Comput. Math. Appl.
-62 (2011) 770: 16 digits, and the decimals 0.161, 0.327, 0.9, 0.01, 0.1017 and 2.5, which are exact. The weight of the
-derivative at the end in the estimate is -1/66 (the sign is missing in print).
-Verner's pair of orders 9 and 8 is printed with 40 digits (published_verner.py), which satisfy all conditions to 1e-35.
+Ch. Tsitouras, Runge-Kutta pairs of order 5(4) satisfying only the first column simplifying assumption, Comput. Math.
+Appl. 62 (2011) 770: 16 digits, and the decimals 0.161, 0.327, 0.9, 0.01, 0.1017 and 2.5, which are exact. The weight
+of the derivative at the end in the estimate is -1/66 (the sign is missing in print).
+Verner's pair of orders 9 and 8 is printed with 40 digits (published_verner.py), which satisfy all conditions to
+1e-35.
 """
 
 from __future__ import annotations

@@ -121,8 +121,8 @@ def polish(residual: Residual, start: Row, printed: Printed = TWENTY_DIGITS) -> 
     """The zero of ``residual`` nearest to ``start``, by Newton's method with least-norm steps.
 
     Redundant conditions are allowed: the rank of the Jacobian must show as a gap between pivots.
-    Raises ArithmeticError if it does not, if the residual does not fall to the working precision, or if the zero is farther
-    away than the digits allow.
+    Raises ArithmeticError if it does not, if the residual does not fall to the working precision, or if the zero is
+    farther away than the digits allow.
     """
     x = list(start)
     step = mpf(10) ** (-mp.dps // 3)

@@ -2,17 +2,16 @@
 
 Yoshida: H. Yoshida, Construction of higher order symplectic integrators, Phys. Lett. A 150 (1990) 262, solution A of
 order 6 and solution D of order 8. Kahan and Li: W. Kahan & R.-C. Li, Composition constants for raising the orders of
-unconventional schemes for ordinary differential equations, Math. Comp. 66 (1997) 1089, as reprinted in Hairer, Lubich &
-Wanner, Geometric Numerical Integration, V.3.2. Sofroniou and Spaletta: M. Sofroniou & G. Spaletta, Derivation of symmetric
-composition constants for symmetric integrators, Optim. Methods Softw. 20 (2005) 597. Blanes and Moan: S. Blanes &
-P. C. Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, J. Comput. Appl. Math. 142 (2002)
-313, tables 2 and 3. Omelyan, Mryglod and Folk: I. P. Omelyan, I. M. Mryglod & R. Folk, Optimized Forest-Ruth- and
-Suzuki-like algorithms for integration of motion in many-body systems, Comput. Phys. Commun. 146 (2002) 188, eq. (20)
-and (22).
+unconventional schemes for ordinary differential equations, Math. Comp. 66 (1997) 1089, as reprinted in Hairer, Lubich
+& Wanner, Geometric Numerical Integration, V.3.2. Sofroniou and Spaletta: M. Sofroniou & G. Spaletta, Derivation of
+symmetric composition constants for symmetric integrators, Optim. Methods Softw. 20 (2005) 597. Blanes and Moan: S.
+Blanes & P. C. Moan, Practical symplectic partitioned Runge-Kutta and Runge-Kutta-Nystrom methods, J. Comput. Appl.
+Math. 142 (2002) 313, tables 2 and 3. Omelyan, Mryglod and Folk: I. P. Omelyan, I. M. Mryglod & R. Folk, Optimized
+Forest-Ruth- and Suzuki-like algorithms for integration of motion in many-body systems, Comput. Phys. Commun. 146
+(2002) 188, eq. (20) and (22).
 """
 
-# Compositions: the lengths of the first half of a palindrome of leapfrogs, and the middle one. Yoshida's middle one is what
-# is left of 1.
+# Compositions: the lengths of the first half of a palindrome of leapfrogs and its middle (None: what is left of 1).
 YOSHIDA6 = ("0.784513610477560", "0.235573213359357", "-1.17767998417887", None)
 YOSHIDA8 = (
     "0.914844246229740",

@@ -1,7 +1,7 @@
 """Splittings of kicks and drifts, and compositions of leapfrogs: closed forms, or published digits polished.
 
-A palindrome is polished as one: the pieces of its first half are what moves, and the middle ones are what is left of the
-whole step, so that nothing is free that the paper has fixed.
+A palindrome is polished as one: the pieces of its first half are what moves, and the middle ones are what is left of
+the whole step, so that nothing is free that the paper has fixed.
 """
 
 from __future__ import annotations
@@ -148,7 +148,7 @@ def nystrom_residuals(kicks: Row, drifts: Row, order: int) -> Row:
     Solving Ordinary Differential Equations I, II.14), in which a child is a velocity or an acceleration.
     """
     nodes = [sum(drifts[:i], mpf(0)) for i in range(len(kicks))]
-    # Trees by vertices: the exact value of the integral, and the values at the kicks; grown are those beneath a velocity.
+    # By vertices: the exact value of the integral, and the values at the kicks; grown are trees beneath a velocity.
     children: list[list[tuple[mpf, Row]]] = [[] for _ in range(order + 1)]
     children[1] = [(one, nodes)]
     residuals = [sum(drifts, mpf(0)) - 1]

@@ -50,8 +50,8 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
     expected = 0.5 * PERIOD * np.arange(1, 11)
     assert len(table) == 10
     # What the method itself is off after so many periods: of second order the phase, (ωh)²/24 of the time for steps of
-    # a 2000th of the period, times what the eccentricity makes of it; where energy drifts (midpoint, Heun) 6e-4. Euler's
-    # method, at order 1, is off by 0.08.
+    # a 2000th of the period, times what the eccentricity makes of it; where energy drifts (midpoint, Heun) 6e-4. Euler
+    # is off by 0.08.
     bar = {1: 0.2, 2: 2e-4 if symplectic else 1e-3, 3: 1e-4}.get(order, 1e-8 if order == 4 else 1e-10)
     np.testing.assert_allclose(table.t, expected, rtol=0.0, atol=bar)
     relative = table.position[:, 1] - table.position[:, 0]
