@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
-from visviva._arrays import float_array
+from visviva._arrays import float_array, positive
 from visviva._declared import Declared, make
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
@@ -92,6 +92,11 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]:
         """−dV/dr at the distances ``r``: positive where the force repels.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            As `value`, and for a potential that jumps: `SquareWell` and `HardSphere` have no finite force.
+
         Examples
         --------
         >>> import visviva as vv
@@ -102,6 +107,11 @@ class Potential(Declared):
 
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]:
         """d²V/dr² at the distances ``r``.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `force`.
 
         Examples
         --------
@@ -115,7 +125,10 @@ class Potential(Declared):
         distances = float_array("r", r, None)
         if distances.size and not distances.min() >= 0.0:
             raise InvalidInput("r", f"expected distances, numbers of at least 0, got {float(distances.min())!r}")
-        domain = _core.check_potential(self._to_core())
+        domain, jumps = _core.check_potential(self._to_core())
+        if jumps and which > 0:
+            name = type(self).__name__
+            raise InvalidInput("potential", f"expected one with a finite force, and {name} jumps; ask for its value")
         if domain is not None and distances.size:
             first, last = domain
             beyond = distances[(distances < first) | (distances > last)]
@@ -126,8 +139,57 @@ class Potential(Declared):
         return results[which].reshape(distances.shape)
 
 
+def _between(
+    cls: type[Any],
+    Z1: float,
+    Z2: float,
+    screening: str = "zbl",
+    e2: float = 14.399645478,
+    bohr_radius: float = 0.529177210544,
+) -> Any:
+    """The potential between two nuclei, with the screening length that goes with the function.
+
+    Of ``"zbl"`` that is c a / (Z1^0.23 + Z2^0.23), of the others Firsov's, c a / (√Z1 + √Z2)^(2/3), with the Bohr
+    radius a and c = (9 π² / 128)^(1/3) = 0.88534, for which some print 0.8854.
+
+    Parameters
+    ----------
+    Z1, Z2 : float, positive
+        Atomic numbers.
+    screening : {"zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"}, optional
+        Name of φ.
+    e2 : float, positive, optional
+        e²/(4 π ε₀). In eV·Å if not given.
+    bohr_radius : float, positive, optional
+        Bohr's radius in the same units. In Å if not given.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive, or for another name.
+
+    References
+    ----------
+    J. F. Ziegler, J. P. Biersack, U. Littmark, The Stopping and Range of Ions in Solids (1985); O. B. Firsov,
+    Sov. Phys. JETP 6 (1958) 534.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> helium_gold = vv.potentials.ScreenedCoulomb.between(2, 79)
+    >>> round(helium_gold.length, 4)
+    0.12
+    """
+    first, second = positive("Z1", Z1), positive("Z2", Z2)
+    length = positive("bohr_radius", bohr_radius) * _core.screening_length(str(screening), first, second)
+    return cls(positive("e2", e2) * first * second, length, screening)
+
+
+# What a class has beside what is declared.
+_FURTHER: dict[str, dict[str, Any]] = {"screened_coulomb": {"between": classmethod(_between)}}
 _BY_NAME = {
-    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"]}) for entry in _core.potentials()
+    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"], **_FURTHER.get(entry["name"], {})})
+    for entry in _core.potentials()
 }
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
 globals().update(_CLASSES)

@@ -100,9 +100,13 @@ class Draw:
         entry = self.random.choice(list(POTENTIALS.values()))
         if entry["class_name"] in self.TABLES:
             return self.TABLES[entry["class_name"]](self)
-        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
-            **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
-        )
+        values = {parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
+        # Exponents that go together, whole and broken.
+        if "n" in values:
+            values["n"] = self.random.choice([2.0, 3.0, 2.5, 4.0, 2.0 + values["n"]])
+        if "m" in values:
+            values["n"] += 1.0 + values["m"]
+        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(**values)
         return made
 
     def tabulated(self) -> vv.potentials.Potential:

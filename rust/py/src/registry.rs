@@ -10,8 +10,8 @@ use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::memory::reserved;
-use visviva_core::potentials::Potential;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
+use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
 use visviva_core::words::unknown;
 
@@ -193,10 +193,18 @@ type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 /// Distances between two looks at whether somebody asks to stop.
 const AT_A_TIME: usize = 1024;
 
-/// Refuses what no potential can be made of; gives the distances between which it is known, if not everywhere.
+/// The screening length between two nuclei, in Bohr radii.
 #[pyfunction]
-pub(crate) fn check_potential(description: &Bound<'_, PyDict>) -> PyResult<Option<(f64, f64)>> {
-    Ok(described_potential(description)?.domain())
+pub(crate) fn screening_length(py: Python<'_>, name: &str, first: f64, second: f64) -> PyResult<f64> {
+    screening::screening_length(name, [first, second]).map_err(|error| raised(py, error))
+}
+
+/// Refuses what no potential can be made of; gives the distances between which it is known, if not everywhere, and
+/// whether it jumps.
+#[pyfunction]
+pub(crate) fn check_potential(description: &Bound<'_, PyDict>) -> PyResult<(Option<(f64, f64)>, bool)> {
+    let potential = described_potential(description)?;
+    Ok((potential.domain(), potential.jumps()))
 }
 
 /// V(r), −dV/dr and d²V/dr² of a potential at each distance.

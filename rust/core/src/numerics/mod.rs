@@ -12,6 +12,7 @@ pub mod inverse_cube;
 pub mod lanes;
 pub mod philox;
 pub mod points;
+pub mod power;
 pub mod power_of_two;
 pub mod real;
 pub mod rotation;
