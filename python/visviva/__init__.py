@@ -54,7 +54,18 @@ _HOME = {
     "methods": "integrators",
     "solve_ivp": "initial_value",
 }
-_ROOMS = ("datasets", "errors", "events", "forces", "orbits", "potentials", "problems", "scattering", "typing")
+_ROOMS = (
+    "datasets",
+    "errors",
+    "events",
+    "forces",
+    "orbits",
+    "potentials",
+    "problems",
+    "scattering",
+    "stress",
+    "typing",
+)
 
 __all__ = [
     "AccuracyWarning",
@@ -99,11 +110,12 @@ __all__ = [
     "problems",
     "scattering",
     "solve_ivp",
+    "stress",
     "typing",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, typing
+    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

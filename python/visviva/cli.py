@@ -1,4 +1,4 @@
-"""The command line: ``visviva demo``, ``visviva methods``, ``visviva info``."""
+"""The command line: ``visviva demo``, ``visviva methods``, ``visviva stress``, ``visviva info``."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     Returns
     -------
     int
-        0 if all went well, 1 if a request was refused, 130 after Ctrl-C.
+        0 if all went well, 1 if a request was refused or failed, 130 after Ctrl-C.
 
     Examples
     --------
@@ -38,14 +38,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
     options = _parser().parse_args(arguments)
     try:
-        options.command(options)
+        return int(options.command(options) or 0)
     except KeyboardInterrupt:
         print("interrupted", file=sys.stderr)
         return 130
     except (Error, OSError) as error:
         print(f"visviva: {error}", file=sys.stderr)
         return 1
-    return 0
 
 
 def _parser() -> argparse.ArgumentParser:
@@ -61,6 +60,10 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
+    stress = commands.add_parser("stress", help="what each method makes of scenes that nobody should ask for")
+    stress.add_argument("--long", action="store_true", help="with the cases that take minutes")
+    stress.add_argument("--methods", nargs="*", metavar="NAME", help="some methods (default: all)")
+    stress.set_defaults(command=_stress)
     commands.add_parser("info", help="version, SIMD tier, threads, build profile").set_defaults(command=_info)
     return parser
 
@@ -96,6 +99,14 @@ def _methods(_: argparse.Namespace) -> None:
         kinds = [word for word in ("adaptive", "symplectic", "reversible") if getattr(row, word)]
         print(f"{row.name:<{width}}  {row.order:>5}  {row.stages:>6}  {', '.join(kinds) or 'fixed step'}")
         print(f"{'':<{width}}  {row.summary} [{row.reference}]")
+
+
+def _stress(options: argparse.Namespace) -> int:
+    from visviva.stress import run
+
+    report = run(options.methods, long=options.long)
+    print(report)
+    return int(bool(report.failures))
 
 
 def _info(_: argparse.Namespace) -> None:

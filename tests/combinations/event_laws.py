@@ -9,7 +9,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import EVENTS, METHODS
+from drawing import EVENTS
 from law_book import EPSILON, law
 from recipe import COLUMNS, Case, Recipe, Refused
 from running import differences, events, execute, outcome
@@ -158,13 +158,7 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
 
 @law
 def a_stopped_run_ends_where_the_whole_run_passes(recipe: Recipe) -> None:
-    """`final` is the state that the run without an end has at that time, to round-off.
-
-    Of methods that choose their steps: between nodes others take a shadow step from the node at hand, before the time
-    or behind it, which errs as one step does.
-    """
-    if (method := METHODS.get(recipe.method)) and not method.adaptive:
-        raise Refused("shadow steps")
+    """`final` is the state that the run without an end has at that time, to round-off."""
     recipe = _watched(replace(recipe, tame=True, members=0))
     recipe = replace(recipe, terminal=recipe.terminal or 1)
     case = recipe.case()

@@ -4,7 +4,7 @@
 use nalgebra::Vector3;
 use proptest::prelude::*;
 use visviva_core::nbody::kepler::KeplerOrbit;
-use visviva_core::nbody::two_body::{State, TwoBody};
+use visviva_core::nbody::two_body::{PositionVelocity, TwoBody};
 use visviva_core::numerics::double_double::DoubleDouble;
 
 fn exact(x: f64) -> DoubleDouble {
@@ -12,14 +12,14 @@ fn exact(x: f64) -> DoubleDouble {
 }
 
 /// m₁/M and m₂/M, and the center of mass as Σmx/M: the textbook's formulas, with 31 digits for their cancellations.
-fn reference(masses: [f64; 2], states: [State; 2], t: f64) -> [[DoubleDouble; 3]; 2] {
+fn reference(masses: [f64; 2], states: [PositionVelocity; 2], t: f64) -> [[DoubleDouble; 3]; 2] {
     let total = DoubleDouble::sum(masses[0], masses[1]);
     let relative =
         KeplerOrbit::new(total.to_f64(), states[1].0 - states[0].0, states[1].1 - states[0].1).unwrap();
     let (r, _) = relative.state(t);
     [0, 1].map(|body| {
         core::array::from_fn(|c| {
-            let weighted = |pick: fn(&State) -> Vector3<f64>| {
+            let weighted = |pick: fn(&PositionVelocity) -> Vector3<f64>| {
                 (exact(masses[0]) * exact(pick(&states[0])[c])
                     + exact(masses[1]) * exact(pick(&states[1])[c]))
                     / total

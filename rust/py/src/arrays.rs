@@ -71,18 +71,18 @@ pub(crate) fn moved<'py, T: Element>(
 ///
 /// Taken apart, the vector is no longer ours to read: only through the array.
 #[pyclass(frozen)]
-struct Room {
+struct Buffer {
     numbers: NonNull<f64>,
     length: usize,
     capacity: usize,
 }
 
 // SAFETY: nothing is read or written through it but by its `Drop`, when nobody else has the numbers any more.
-unsafe impl Send for Room {}
+unsafe impl Send for Buffer {}
 // SAFETY: as above.
-unsafe impl Sync for Room {}
+unsafe impl Sync for Buffer {}
 
-impl Room {
+impl Buffer {
     fn new(values: Vec<f64>) -> Self {
         let mut values = ManuallyDrop::new(values);
         let (length, capacity) = (values.len(), values.capacity());
@@ -91,7 +91,7 @@ impl Room {
     }
 }
 
-impl Drop for Room {
+impl Drop for Buffer {
     fn drop(&mut self) {
         // SAFETY: these are the parts of a vector that was taken apart, all its numbers initialised, and this is the
         // one time that it is put together; the array that used them is gone, as it kept this alive.
@@ -113,7 +113,7 @@ pub(crate) fn moved_column<'py>(
     if counted != Some(length) {
         return Err(raised(py, Error::Internal(format!("{length} values for an array of shape {shape:?}"))));
     }
-    let room = Bound::new(py, Room::new(values))?;
+    let room = Bound::new(py, Buffer::new(values))?;
     // SAFETY: there are as many numbers as the shape says, in row-major order, and the pointer is the owner's.
     let view = unsafe { ArrayViewD::from_shape_ptr(IxDyn(shape), room.get().numbers.as_ptr()) };
     // SAFETY: the array keeps the room alive as its base, and nothing but the array reads or writes there.

@@ -14,12 +14,12 @@ use visviva_core::{Error, Result};
 
 /// What a run gave, and whether somebody asked to stop it.
 #[must_use]
-pub(crate) struct Outcome<T> {
+pub(crate) struct Worked<T> {
     value: T,
     pending: Option<PyErr>,
 }
 
-impl<T> Outcome<T> {
+impl<T> Worked<T> {
     /// The value of work that has no use for a part of it: whatever stopped it is raised.
     ///
     /// # Errors
@@ -57,7 +57,7 @@ pub(crate) fn compute<T: Send>(
     total: u64,
     progress: Option<&Py<PyAny>>,
     work: impl FnOnce(&mut Ticker<'_>) -> Result<T> + Send,
-) -> PyResult<Outcome<T>> {
+) -> PyResult<Worked<T>> {
     let control = Control::new(total);
     let (result, pending) = py.detach(|| {
         let look = |done, total| Python::try_attach(|py| watched(py, progress, done, total));
@@ -73,7 +73,7 @@ pub(crate) fn compute<T: Send>(
 pub(crate) fn compute_attached<T>(
     py: Python<'_>,
     work: impl FnOnce(&mut Ticker<'_>) -> Result<T>,
-) -> PyResult<Outcome<T>> {
+) -> PyResult<Worked<T>> {
     let control = Control::new(0);
     let (result, pending) = worked(&control, |_, _| Some(py.check_signals()), work);
     finished(py, &control, None, result, pending)
@@ -112,15 +112,15 @@ fn finished<T>(
     progress: Option<&Py<PyAny>>,
     result: Result<T>,
     pending: Option<PyErr>,
-) -> PyResult<Outcome<T>> {
+) -> PyResult<Worked<T>> {
     match (result, pending) {
         (Ok(value), None) => {
             let (done, total) = control.progress();
             // What came after the last look: Python would raise it on the way out, bare and without the value.
             let pending = watched(py, progress, done, total).err();
-            Ok(Outcome { value, pending })
+            Ok(Worked { value, pending })
         }
-        (Ok(value), pending) => Ok(Outcome { value, pending }),
+        (Ok(value), pending) => Ok(Worked { value, pending }),
         // A defect of ours is not hidden by the wish to stop.
         (Err(error @ Error::Internal(_)), _) | (Err(error), None) => Err(raised(py, error)),
         (Err(_), Some(pending)) => Err(stopped(py, pending)),

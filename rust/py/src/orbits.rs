@@ -24,7 +24,7 @@ type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// A value of each result, by name.
 type Columns<T, V = f64> = &'static [(&'static str, fn(&T) -> V)];
-type State = (Vector3<f64>, Vector3<f64>);
+type PositionVelocity = (Vector3<f64>, Vector3<f64>);
 
 const ELEMENTS: Columns<Elements> = &[
     ("energy", |found| found.energy),
@@ -211,7 +211,7 @@ pub(crate) fn orbit_state<'py>(
         each((name, count), ticker, elements.orbits(), one)
     })?
     .whole(py)?;
-    let vectors = |part: fn(&State) -> Vector3<f64>| {
+    let vectors = |part: fn(&PositionVelocity) -> Vector3<f64>| {
         let values = flat(name, states.iter().map(part)).map_err(|error| raised(py, error))?;
         moved(py, values, &[count, 3])
     };

@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use visviva_core::Error;
 use visviva_core::conservation::PreciseBodies;
-use visviva_core::conservation::columns::{COLUMNS, State, column};
+use visviva_core::conservation::columns::{COLUMNS, Snapshot, column};
 use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
@@ -93,7 +93,7 @@ pub(crate) fn conserved<'py>(
                 bodies.set(i, mass, [position, [0.0; 3]], [velocity, [0.0; 3]]);
             }
             bodies.settle();
-            let mut state = State::new(&specs, &bodies, about, threads, ticker);
+            let mut state = Snapshot::new(&specs, &bodies, about, threads, ticker);
             for (column, values) in columns.iter().zip(&mut values) {
                 values.extend(state.value(column)?.iter().take(column.width));
             }

@@ -24,7 +24,7 @@ pub struct Column {
     /// Whether it is computed from velocities, too.
     pub needs_velocity: bool,
     /// Its numbers, the first `width` of these.
-    value: fn(&mut State<'_, '_>) -> Result<[Scaled; 3]>,
+    value: fn(&mut Snapshot<'_, '_>) -> Result<[Scaled; 3]>,
 }
 
 /// Every derived column, in the order of the documentation.
@@ -94,7 +94,7 @@ pub fn column(argument: &str, name: &str) -> Result<&'static Column> {
 }
 
 /// A state whose columns are computed, those that share a sum over pairs from one sum.
-pub struct State<'a, 't> {
+pub struct Snapshot<'a, 't> {
     forces: &'a [Arc<dyn ForceTerm>],
     bodies: &'a PreciseBodies,
     about: [f64; 3],
@@ -103,7 +103,7 @@ pub struct State<'a, 't> {
     pairs: Option<(Scaled, Scaled)>,
 }
 
-impl<'a, 't> State<'a, 't> {
+impl<'a, 't> Snapshot<'a, 't> {
     /// Of bodies that were [settled](PreciseBodies::settle).
     pub fn new(
         forces: &'a [Arc<dyn ForceTerm>],

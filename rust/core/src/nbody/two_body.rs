@@ -18,7 +18,7 @@ use crate::words::{number, numbers};
 use nalgebra::Vector3;
 
 /// Position and velocity.
-pub type State = (Vector3<f64>, Vector3<f64>);
+pub type PositionVelocity = (Vector3<f64>, Vector3<f64>);
 
 /// Position and velocity before they are rounded.
 pub type ExactState = ([DoubleDouble; 3], [DoubleDouble; 3]);
@@ -26,7 +26,7 @@ pub type ExactState = ([DoubleDouble; 3], [DoubleDouble; 3]);
 /// Two bodies, ready to be asked for their states at any time.
 #[derive(Clone, Debug)]
 pub struct TwoBody {
-    initial: [State; 2],
+    initial: [PositionVelocity; 2],
     /// R and its velocity.
     center: ExactState,
     /// The same if all sizes are moderate: the numbers of R and of its velocity, each with what it leaves out, and what
@@ -61,7 +61,7 @@ impl TwoBody {
     /// # Errors
     /// [`Error::InvalidInput`] for negative, infinite or two zero masses, for numbers that are not finite or whose
     /// difference is not, and for two bodies at one place.
-    pub fn new(gravitational_constant: f64, masses: [f64; 2], states: [State; 2]) -> Result<Self> {
+    pub fn new(gravitational_constant: f64, masses: [f64; 2], states: [PositionVelocity; 2]) -> Result<Self> {
         for mass in masses {
             if !(mass.is_finite() && mass >= 0.0) {
                 return Err(Error::invalid(
@@ -118,7 +118,7 @@ impl TwoBody {
     }
 
     /// The states of both bodies at the time `t` since the epoch; `t = 0` gives the input bits.
-    pub fn states(&self, t: f64) -> [State; 2] {
+    pub fn states(&self, t: f64) -> [PositionVelocity; 2] {
         if t == 0.0 {
             return self.initial;
         }

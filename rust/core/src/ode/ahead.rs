@@ -58,21 +58,17 @@ pub(super) struct Ahead<S> {
     /// Before the steps ahead and after them.
     start: Stand<S>,
     end: Stand<S>,
-    /// The state before a step that is looked into.
-    before: State<S>,
 }
 
 impl<S: Element> Ahead<S> {
     /// For states like this one, if they are small enough for it to save time.
     pub(super) fn new(state: &State<S>) -> Option<Self> {
-        (state.all().0.len() <= MOST_ELEMENTS).then(|| Self {
-            start: Stand::new(state),
-            end: Stand::new(state),
-            before: state.clone(),
-        })
+        (state.all().0.len() <= MOST_ELEMENTS)
+            .then(|| Self { start: Stand::new(state), end: Stand::new(state) })
     }
 
-    /// Takes steps, up to so many, from a node after the first step of the run; `false` if one of them ends it.
+    /// Takes steps, up to so many, from a node after the first step of the run; `false` if one of them ends it. There is
+    /// room for the state before a step that is looked into.
     ///
     /// # Errors
     /// Those of the steps and of the looks.
@@ -80,6 +76,7 @@ impl<S: Element> Ahead<S> {
         &mut self,
         at_most: u64,
         walk: &mut Walk<'_, S>,
+        before: &mut State<S>,
         ticker: &mut Ticker<'_>,
         recorder: &mut impl Recorder<S>,
     ) -> Result<bool> {
@@ -108,13 +105,13 @@ impl<S: Element> Ahead<S> {
         let mut again = 0;
         for index in 0..last as usize {
             if suspects.lane(index) {
-                self.before.copy_from(walk.state);
+                before.copy_from(walk.state);
             }
             let evaluations = walk.system.evaluations();
             walk.step(1, ticker)?;
             walk.stepper.settle(walk.state);
             again += walk.system.evaluations() - evaluations;
-            if suspects.lane(index) && !walk.look(Some(&self.before), ticker, recorder)? {
+            if suspects.lane(index) && !walk.look(before, ticker, recorder)? {
                 return Ok(false);
             }
         }
@@ -171,14 +168,15 @@ mod tests {
             wanted.fold(Bits(0), |mask, step| Bits(mask.0 | 1 << step))
         }
         fn look(&mut self, taken: Taken<'_, f64>, ticker: &mut Ticker<'_>) -> Result<bool> {
-            if self.wanted.contains(&taken.node) {
-                // A shadow step shows whether the stepper stands at this node.
-                let mut between = taken.present.clone();
+            let end = taken.node + 1;
+            if self.wanted.contains(&end) {
+                // Shadow steps go from where the step began, and a whole one leads to where it ended.
+                let mut between = taken.before.clone();
                 taken.stepper.between(taken.node, 0.01, &mut between, taken.system, ticker)?;
                 let paid = taken.system.evaluations() - taken.repeated;
-                self.seen.push((taken.node, bits(&between), paid));
+                self.seen.push((end, bits(&between), paid));
             }
-            Ok(taken.node != self.stops)
+            Ok(end != self.stops)
         }
         fn goes_on(&mut self, _: &State<f64>) -> bool {
             true

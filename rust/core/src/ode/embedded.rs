@@ -13,7 +13,7 @@ use super::passes::extension::Coordinate;
 use super::passes::stages::{Positions, Term, Weighted};
 use super::runge_kutta::Stages;
 use super::state::State;
-use super::step_control::{Clock, Controlled, Outcome, Rule, root};
+use super::step_control::{Clock, Controlled, Rule, Settled, root};
 use super::system::{Form, System};
 use super::trial::{Cost, Trial};
 use crate::error::Result;
@@ -220,7 +220,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         clock: &mut Clock<S>,
         norm: &Norm<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<Outcome<S>> {
+    ) -> Result<Settled<S>> {
         if let Some(mean) = &norm.mean {
             return S::pass(Attempt { method: self, running, system, state, clock, mean, ticker });
         }
@@ -244,7 +244,7 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
 
     fn dense(
         &mut self,
-        outcome: &Outcome<S>,
+        outcome: &Settled<S>,
         system: &mut dyn System<S>,
         state: &State<S>,
         ticker: &mut Ticker<'_>,

@@ -7,7 +7,7 @@ use super::Tableau;
 use super::norm::Norm;
 use super::runge_kutta::Stages;
 use super::state::State;
-use super::step_control::{Clock, Controlled, Outcome, Rule};
+use super::step_control::{Clock, Controlled, Rule, Settled};
 use super::system::System;
 use super::trial::{Cost, Trial};
 use crate::error::Result;
@@ -72,7 +72,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         clock: &mut Clock<S>,
         _: &Norm<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<Outcome<S>> {
+    ) -> Result<Settled<S>> {
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;
         let outcome = S::settle(clock, running, S::zero(), &self.rule);
@@ -86,7 +86,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
 
     fn dense(
         &mut self,
-        outcome: &Outcome<S>,
+        outcome: &Settled<S>,
         system: &mut dyn System<S>,
         state: &State<S>,
         ticker: &mut Ticker<'_>,

@@ -103,17 +103,17 @@ pub trait Recorder<S: Element> {
     fn goes_on(&mut self, state: &State<S>) -> bool;
 }
 
-/// A step that was taken, to be looked into.
+/// A step that was taken, to be looked into, or the last part of the run, which is shorter than a step.
 pub struct Taken<'a, S: Element> {
-    /// The present node.
+    /// The node at which it begins.
     pub node: u64,
     /// The settled state there.
-    pub present: &'a State<S>,
-    /// The state that the run has come to past the present node, and how far past; else it has come to the node.
-    pub past: Option<(f64, &'a State<S>)>,
-    /// The state from which the step led, if those before it were not looked into.
-    pub before: Option<&'a State<S>>,
-    /// To take shadow steps from the present node.
+    pub before: &'a State<S>,
+    /// The one to which it led.
+    pub after: &'a State<S>,
+    /// How long it is, if that is no whole step.
+    pub part: Option<f64>,
+    /// To take shadow steps from the node at which it begins.
     pub stepper: &'a mut dyn Stepper<S>,
     /// For those steps.
     pub system: &'a mut dyn System<S>,
@@ -192,20 +192,20 @@ impl<S: Element> Walk<'_, S> {
         outcome
     }
 
-    /// Has the last step looked into, from the state before it if that is not known to have been.
+    /// Has the last step looked into, which began at that state.
     ///
     /// # Errors
     /// Whatever ends the run.
     pub(super) fn look(
         &mut self,
-        before: Option<&State<S>>,
+        before: &State<S>,
         ticker: &mut Ticker<'_>,
         recorder: &mut impl Recorder<S>,
     ) -> Result<bool> {
-        let Self { node, repeated, .. } = *self;
+        let (node, repeated) = (self.node - 1, self.repeated);
         let (stepper, system) = (&mut *self.stepper, &mut *self.system);
-        let step = Taken { node, present: self.state, past: None, before, stepper, system, repeated };
-        recorder.look(step, ticker)
+        recorder
+            .look(Taken { node, before, after: self.state, part: None, stepper, system, repeated }, ticker)
     }
 }
 
@@ -240,6 +240,11 @@ fn through<S: Element>(
     let last = from.saturating_add(max_steps);
     let mut between = None;
     let watches = recorder.watches();
+    // Where the step began that is looked into.
+    let mut before = watches.map(|_| walk.state.clone());
+    if watches.is_some() {
+        walk.stepper.look_back();
+    }
     let mut ahead = if recorder.looks_ahead() { Ahead::new(walk.state) } else { None };
     for (index, place) in places.enumerate() {
         while walk.node < place.node {
@@ -249,17 +254,20 @@ fn through<S: Element>(
             }
             let past = walk.node - from;
             let at_most = (place.node.min(last) - walk.node).min(PROGRESS_STEPS - past % PROGRESS_STEPS);
-            let going = match &mut ahead {
-                _ if watches.is_none() => {
+            let going = match (&mut before, &mut ahead) {
+                (None, _) => {
                     walk.step(at_most, ticker)?;
                     true
                 }
                 // What starts at zero is told from what comes there in the first step alone.
-                Some(ahead) if past > 0 => ahead.advance(at_most, walk, ticker, recorder)?,
-                _ => {
+                (Some(before), Some(ahead)) if past > 0 => {
+                    ahead.advance(at_most, walk, before, ticker, recorder)?
+                }
+                (Some(before), _) => {
+                    before.copy_from(walk.state);
                     walk.step(1, ticker)?;
                     walk.stepper.settle(walk.state);
-                    walk.look(None, ticker, recorder)?
+                    walk.look(before, ticker, recorder)?
                 }
             };
             let past = walk.node - from;
@@ -293,9 +301,9 @@ fn through<S: Element>(
             }
         };
         if let (true, Some(past)) = (watches == Some(index), place.past) {
-            let past = Some((past, reached));
-            let step = Taken { node, present: state, past, before: None, stepper, system, repeated };
-            let _: bool = recorder.look(step, ticker)?;
+            let part = Some(past);
+            let taken = Taken { node, before: state, after: reached, part, stepper, system, repeated };
+            let _: bool = recorder.look(taken, ticker)?;
         }
         recorder.record(index, reached, ticker)?;
     }

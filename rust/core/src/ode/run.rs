@@ -6,7 +6,7 @@
 use super::extension::Extension;
 use super::norm::Norm;
 use super::state::State;
-use super::step_control::{Clock, Outcome};
+use super::step_control::{Clock, Settled};
 use super::system::System;
 use super::trial::Trial;
 use crate::error::{Error, Result};
@@ -51,7 +51,7 @@ pub struct Step<'a, 'b> {
     pub from: f64,
     /// The time after it.
     pub to: f64,
-    outcome: Outcome<f64>,
+    outcome: Settled<f64>,
     trial: &'a mut dyn Trial<f64>,
     system: &'a mut dyn System<f64>,
     state: &'a State<f64>,

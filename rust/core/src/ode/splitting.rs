@@ -57,6 +57,14 @@ struct Force<S> {
     fresh: bool,
 }
 
+/// What was kept of the acceleration at a node.
+#[derive(Debug)]
+struct AtNode<S> {
+    node: u64,
+    acceleration: Vec<S>,
+    fresh: bool,
+}
+
 impl<S: Element> Force<S> {
     #[inline(always)]
     fn advance(
@@ -96,8 +104,10 @@ pub struct SplittingStep<S> {
     moves: Moves<S>,
     force: Force<S>,
     nodes: Nodes,
-    /// What takes steps to times between nodes, from the first of them on, and the acceleration at the node.
+    /// What takes steps to times between nodes, from the first of them on, and the acceleration at the present node.
     between: Option<(Moves<S>, Vec<S>)>,
+    /// Of the node before the present one, for who looks back.
+    before: Option<AtNode<S>>,
 }
 
 impl<S: Element> SplittingStep<S> {
@@ -111,13 +121,16 @@ impl<S: Element> SplittingStep<S> {
             acceleration: vec![S::zero(); system.form().evaluated()],
             fresh: false,
         };
-        Self { moves: Moves::new(table, h), force, nodes: Nodes::new(h, system), between: None }
+        Self { moves: Moves::new(table, h), force, nodes: Nodes::new(h, system), between: None, before: None }
     }
 }
 
 impl<S: Element> Stepper<S> for SplittingStep<S> {
     fn restart(&mut self) {
         self.force.fresh = false;
+        if let Some(before) = &mut self.before {
+            before.node = u64::MAX;
+        }
     }
 
     fn step(
@@ -129,6 +142,11 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         ticker: &mut Ticker<'_>,
     ) -> Result<u64> {
         let steps = per_call(state.q().len(), at_most);
+        if let Some(before) = &mut self.before {
+            before.node = node;
+            before.acceleration.copy_from_slice(&self.force.acceleration);
+            before.fresh = self.force.fresh;
+        }
         for step in 0..steps {
             self.force.advance(&self.moves, (&self.nodes, node + step), state, system, ticker)?;
         }
@@ -158,6 +176,11 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         }
     }
 
+    fn look_back(&mut self) {
+        let acceleration = self.force.acceleration.clone();
+        self.before = Some(AtNode { node: u64::MAX, acceleration, fresh: false });
+    }
+
     fn between(
         &mut self,
         node: u64,
@@ -166,12 +189,16 @@ impl<S: Element> Stepper<S> for SplittingStep<S> {
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { moves, force, nodes, between } = self;
+        let Self { moves, force, nodes, between, before } = self;
         let (shorter, at_node) =
             between.get_or_insert_with(|| (Moves::new(moves.table, past), force.acceleration.clone()));
         shorter.set(past);
         at_node.copy_from_slice(&force.acceleration);
         let fresh = force.fresh;
+        if let Some(before) = before.as_ref().filter(|before| before.node == node) {
+            force.acceleration.copy_from_slice(&before.acceleration);
+            force.fresh = before.fresh;
+        }
         let outcome = force.advance(shorter, (&*nodes, node), state, system, ticker);
         // What was looked at leaves no trace.
         core::mem::swap(&mut force.acceleration, at_node);

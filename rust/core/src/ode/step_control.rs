@@ -34,7 +34,7 @@ pub struct Clock<S: Real> {
 
 /// What a step did, lane by lane.
 #[derive(Clone, Copy, Debug)]
-pub struct Outcome<S: Real> {
+pub struct Settled<S: Real> {
     /// The state moved.
     pub accepted: S::Mask,
     /// The end is reached.
@@ -106,7 +106,7 @@ impl<S: Real> Clock<S> {
 
     /// Moves on by the step if its squared scaled error is at most 1, and chooses the next one.
     #[inline(always)]
-    fn settle(&mut self, running: S::Mask, size2: S, rule: &Rule<S>) -> Outcome<S> {
+    fn settle(&mut self, running: S::Mask, size2: S, rule: &Rule<S>) -> Settled<S> {
         let (h, last) = self.next_step(running);
         let accepted = size2.less_equal(S::one()).and(running);
 
@@ -128,7 +128,7 @@ impl<S: Real> Clock<S> {
         let finished = accepted.and(last);
         let smallest = (S::splat(SMALLEST_STEP) * self.elapsed.abs()).max(S::splat(f64::MIN_POSITIVE));
         let stuck = self.h.abs().less_equal(smallest).and(running).and(finished.not());
-        Outcome { accepted, finished, stuck, from, h }
+        Settled { accepted, finished, stuck, from, h }
     }
 }
 
@@ -153,7 +153,7 @@ pub trait Controlled: Element {
     /// The next step of the running lanes, 0 in the others.
     fn next_step(clock: &Clock<Self>, running: Self::Mask) -> Self;
     /// Moves the clock on by that step if its squared scaled error is at most 1, and chooses the next one.
-    fn settle(clock: &mut Clock<Self>, running: Self::Mask, size2: Self, rule: &Rule<Self>) -> Outcome<Self>;
+    fn settle(clock: &mut Clock<Self>, running: Self::Mask, size2: Self, rule: &Rule<Self>) -> Settled<Self>;
     /// The largest of the lanes, in every lane.
     #[must_use]
     fn largest_lane(self) -> Self;
@@ -170,7 +170,7 @@ macro_rules! controlled {
                 clock.next_step(running).0
             }
             #[inline(always)]
-            fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: &Rule<Self>) -> Outcome<Self> {
+            fn settle(clock: &mut Clock<Self>, running: bool, size2: Self, rule: &Rule<Self>) -> Settled<Self> {
                 clock.settle(running, size2, rule)
             }
             fn largest_lane(self) -> Self {
@@ -208,26 +208,26 @@ fn settle_lanes<V: Vector8>(
     running: Bits,
     size2: Lanes,
     rule: &Rule<Lanes>,
-) -> Outcome<Lanes> {
+) -> Settled<Lanes> {
     let mut now = load::<V>(clock);
     let rule = Rule { power: rule.power, max_step: V::load(rule.max_step), limits: rule.limits };
-    let Outcome { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), &rule);
+    let Settled { accepted, finished, stuck, from, h } = now.settle(running, V::load(size2), &rule);
     let Clock { elapsed, error, h: next, end, rejected } = now;
     *clock =
         Clock { elapsed: elapsed.store(), error: error.store(), h: next.store(), end: end.store(), rejected };
-    Outcome { accepted, finished, stuck, from: from.store(), h: h.store() }
+    Settled { accepted, finished, stuck, from: from.store(), h: h.store() }
 }
 
 tiered! {
     fn next_step_tier[][](clock: &Clock<Lanes>, running: Bits) -> Lanes = next_step_lanes;
-    fn settle_tier[][](clock: &mut Clock<Lanes>, running: Bits, size2: Lanes, rule: &Rule<Lanes>) -> Outcome<Lanes> = settle_lanes;
+    fn settle_tier[][](clock: &mut Clock<Lanes>, running: Bits, size2: Lanes, rule: &Rule<Lanes>) -> Settled<Lanes> = settle_lanes;
 }
 
 impl Controlled for Lanes {
     fn next_step(clock: &Clock<Self>, running: Bits) -> Self {
         next_step_tier(clock, running)
     }
-    fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: &Rule<Self>) -> Outcome<Self> {
+    fn settle(clock: &mut Clock<Self>, running: Bits, size2: Self, rule: &Rule<Self>) -> Settled<Self> {
         settle_tier(clock, running, size2, rule)
     }
     fn largest_lane(self) -> Self {

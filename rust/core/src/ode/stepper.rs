@@ -66,7 +66,11 @@ pub trait Stepper<S: Element>: Send {
         let _ = (node, each);
     }
 
-    /// Advances a copy of the settled state at `node` by a step `past` instead, leaving the sequence as it is.
+    /// From now on shadow steps may begin at the node before the present one, too, if one step has led from there.
+    fn look_back(&mut self) {}
+
+    /// Advances a copy of the settled state at `node`, the present one or where one [may look back](Self::look_back) to, by a
+    /// step `past` instead, leaving the sequence as it is.
     ///
     /// # Errors
     /// Those of an evaluation.

@@ -9,7 +9,7 @@ use super::Scheme;
 use super::embedded::EmbeddedStep;
 use super::norm::Norm;
 use super::state::State;
-use super::step_control::{Clock, Controlled, Outcome};
+use super::step_control::{Clock, Controlled, Settled};
 use super::system::System;
 use crate::error::{Error, Result};
 use crate::parallel::Ticker;
@@ -56,7 +56,7 @@ pub trait Trial<S: Controlled>: Send {
         clock: &mut Clock<S>,
         norm: &Norm<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<Outcome<S>>;
+    ) -> Result<Settled<S>>;
 
     /// The state at the end of the step tried last.
     fn next(&self) -> &State<S>;
@@ -67,7 +67,7 @@ pub trait Trial<S: Controlled>: Send {
     /// Those of an evaluation.
     fn dense(
         &mut self,
-        outcome: &Outcome<S>,
+        outcome: &Settled<S>,
         system: &mut dyn System<S>,
         state: &State<S>,
         ticker: &mut Ticker<'_>,

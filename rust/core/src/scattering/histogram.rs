@@ -77,7 +77,7 @@ impl Edges {
 
 /// Counts of the bins, below the first and above the last.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Counts {
+pub struct BinCounts {
     /// For each bin.
     pub bins: Vec<u64>,
     /// Below the first edge.
@@ -86,7 +86,7 @@ pub struct Counts {
     pub overflow: u64,
 }
 
-impl Counts {
+impl BinCounts {
     /// None yet, of so many bins.
     pub fn none(bins: usize) -> Self {
         Self { bins: vec![0; bins], underflow: 0, overflow: 0 }
@@ -188,12 +188,12 @@ impl Steps {
         }
     }
     /// Sums counters into the slots of the histogram.
-    pub fn collect(&self, bins: usize, counters: &[[u64; BANKS]]) -> Counts {
+    pub fn collect(&self, bins: usize, counters: &[[u64; BANKS]]) -> BinCounts {
         let mut slots = vec![0_u64; bins + 2];
         for (slot, banks) in self.slots.iter().zip(counters) {
             slots[*slot] += banks.iter().sum::<u64>();
         }
-        Counts { underflow: slots[0], overflow: slots[bins + 1], bins: slots[1..=bins].to_vec() }
+        BinCounts { underflow: slots[0], overflow: slots[bins + 1], bins: slots[1..=bins].to_vec() }
     }
 }
 

@@ -11,7 +11,7 @@
 //! event, is b² / b_max². Whatever else an event will need one day (azimuth, foil, detector) takes draws 1, 2, …
 //! and leaves draw 0 as it is, so that counts that were published stay what they are.
 
-use super::histogram::{Counts, Edges, Steps};
+use super::histogram::{BinCounts, Edges, Steps};
 use super::kinematics::{Collision, HalfAngle};
 use super::reach::Limits;
 use super::rutherford::half_distance;
@@ -232,7 +232,7 @@ pub struct Counted {
     /// How many events, from the first on and without a gap: all of them unless the run was cancelled.
     pub events: u64,
     /// One histogram per tally.
-    pub counts: Vec<Counts>,
+    pub counts: Vec<BinCounts>,
 }
 
 /// Runs the events `first_event..first_event + n_events` and gives one histogram per tally.
@@ -264,7 +264,7 @@ pub fn monte_carlo(
         .iter()
         .map(|(quantity, edges)| beam.steps(*quantity, edges, ticker))
         .collect::<Result<_>>()?;
-    let counts = tallies.iter().map(|(_, edges)| Counts::none(edges.bins())).collect();
+    let counts = tallies.iter().map(|(_, edges)| BinCounts::none(edges.bins())).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
     let mut first = first_event;

@@ -6,7 +6,7 @@
 
 use super::Scene;
 use super::room;
-use crate::conservation::columns::{Column, State};
+use crate::conservation::columns::{Column, Snapshot};
 use crate::error::Result;
 use crate::forces::ForceTerm;
 use crate::forces::bodies::PreciseBodies;
@@ -206,7 +206,7 @@ pub struct Entry {
 
 /// Particles that follow each other, at most eight, in the lanes of a row from the first on.
 #[derive(Clone, Copy, Debug)]
-pub struct Run {
+pub struct Consecutive {
     first: usize,
     /// How many coordinates they have.
     numbers: usize,
@@ -216,7 +216,7 @@ pub struct Run {
     pub idle: Bits,
 }
 
-impl Run {
+impl Consecutive {
     /// From the first and how many they are.
     pub fn new(first: usize, particles: usize) -> Self {
         let numbers = 3 * particles;
@@ -283,7 +283,7 @@ impl Output<'_> {
     /// [`Error::Interrupted`](crate::Error::Interrupted), and then not all are written.
     pub fn derive(&self, bodies: &PreciseBodies, ticker: &mut Ticker<'_>) -> Result<()> {
         let Writer { derived, forces, threads, .. } = self.writer;
-        let mut state = State::new(forces, bodies, [0.0; 3], *threads, ticker);
+        let mut state = Snapshot::new(forces, bodies, [0.0; 3], *threads, ticker);
         for &(column, (array, len)) in derived {
             let values = state.value(column)?;
             let at = self.row * column.width;
@@ -305,13 +305,13 @@ impl Output<'_> {
 
     /// As [`write_rounded`](Self::write_rounded), of a run of particles, point after point.
     #[inline(always)]
-    pub fn write_points<V: Vector8>(&self, run: &Run, position: [V; 3], velocity: [V; 3]) {
+    pub fn write_points<V: Vector8>(&self, run: &Consecutive, position: [V; 3], velocity: [V; 3]) {
         self.put_points(self.writer.position, run, position);
         self.put_points(self.writer.velocity, run, velocity);
     }
 
     #[inline(always)]
-    fn put_points<V: Vector8>(&self, (array, len): (*mut f64, usize), run: &Run, points: [V; 3]) {
+    fn put_points<V: Vector8>(&self, (array, len): (*mut f64, usize), run: &Consecutive, points: [V; 3]) {
         if len == 0 {
             return;
         }

@@ -12,7 +12,7 @@ pub use sight::{Moving, Sight, apart};
 use super::Scene;
 use super::frame::{Moved, Origin, restored};
 use super::plan::Groups;
-use crate::conservation::columns::{State, column};
+use crate::conservation::columns::{Snapshot, column};
 use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::Ticker;
@@ -255,6 +255,6 @@ fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -
         bodies.set(if around.massive { place } else { body }, masses[body], position, velocity);
     }
     bodies.settle();
-    let mut state = State::new(&around.scene.forces, &bodies, [0.0; 3], 1, ticker);
+    let mut state = Snapshot::new(&around.scene.forces, &bodies, [0.0; 3], 1, ticker);
     Ok(state.value(column("events", "energy")?)?[0])
 }

@@ -10,7 +10,7 @@ use crate::numerics::real::Mask;
 use crate::ode::norm::RootMeanSquare;
 use crate::ode::passes::rates::RateErrors;
 use crate::ode::state::State;
-use crate::ode::step_control::{Clock, Controlled, Outcome};
+use crate::ode::step_control::{Clock, Controlled, Settled};
 use crate::ode::system::System;
 use crate::parallel::Ticker;
 
@@ -26,9 +26,9 @@ pub(super) struct Attempt<'a, 'b, S: Controlled> {
 }
 
 impl<S: Controlled> Pass<S> for Attempt<'_, '_, S> {
-    type Output = Result<Outcome<S>>;
+    type Output = Result<Settled<S>>;
     #[inline(always)]
-    fn run<V: View<S>>(self) -> Result<Outcome<S>> {
+    fn run<V: View<S>>(self) -> Result<Settled<S>> {
         let Self { method, running, system, state, clock, mean, ticker } = self;
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         let end_stage = method.end_stage();

@@ -7,7 +7,7 @@ fn all(beam: &Beam, bins: usize) -> Vec<(Quantity, Edges)> {
     Quantity::ALL.iter().map(|(_, q)| (*q, beam.uniform_edges(*q, bins).unwrap())).collect()
 }
 
-fn run(beam: &Beam, tallies: &[(Quantity, Edges)], first: u64, count: u64, threads: usize) -> Vec<Counts> {
+fn run(beam: &Beam, tallies: &[(Quantity, Edges)], first: u64, count: u64, threads: usize) -> Vec<BinCounts> {
     let control = Control::new(count);
     monte_carlo(beam, tallies, 7, first, count, threads, &mut Ticker::quiet(&control)).unwrap().counts
 }

@@ -25,7 +25,7 @@ use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
-use crate::ode::step_control::{Clock, Outcome};
+use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::System;
 use crate::ode::trial::{Cost, Trial, trial};
 use crate::parallel::Ticker;
@@ -279,7 +279,7 @@ impl<'a> Run<'a> {
     }
 
     /// Tries a step and records the outputs on it, up to where the state moves.
-    fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Outcome<Lanes>> {
+    fn step(&mut self, running: Bits, ticker: &mut Ticker<'_>) -> Result<Settled<Lanes>> {
         let Self { trial, state, clock, forces, norm, .. } = self;
         let outcome = trial.attempt(running, forces.system(), state, clock, norm, ticker)?;
         let guiding = self.followers.is_some() && outcome.accepted.any();

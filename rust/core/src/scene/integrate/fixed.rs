@@ -29,19 +29,24 @@ pub(super) fn run(
     let mut reports = Vec::with_capacity(units.len());
     let mut room = None;
     for group in units.chunks(job.plan.layout.in_lockstep()) {
+        // Nothing is prepared for a run that is to stop: of millions of units it takes seconds.
+        if ticker.tick().is_err() {
+            reports.extend(group.iter().map(|unit| job.not_begun(unit)));
+            continue;
+        }
         reports.extend(lockstep(job, group, threads, &mut room, ticker)?);
     }
     Ok(reports)
 }
 
 /// How a state lies, the state and what advances it, for one group of units after another.
-type Room = (Shape, State<Lanes>, Box<dyn Stepper<Lanes>>);
+type Workspace = (Shape, State<Lanes>, Box<dyn Stepper<Lanes>>);
 
 fn lockstep(
     job: &Job<'_>,
     units: &[Unit],
     threads: usize,
-    room: &mut Option<Room>,
+    room: &mut Option<Workspace>,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Report>> {
     let (plan, t0) = (job.plan, job.scene.t0);
@@ -103,7 +108,7 @@ fn lockstep(
     let mut records = Records {
         job,
         along,
-        before: abreast.iter().any(Option::is_some).then(|| state.clone()),
+        node: plan.from,
         abreast,
         step: scale(dt, -unit_of_time),
         between: None,
@@ -153,9 +158,10 @@ struct Records<'a> {
     watched: bool,
     /// The events of the only unit, if they are looked for in several steps side by side.
     along: Option<Along<'a>>,
-    /// The events of eight units after another, if they are looked for side by side, and the last node.
+    /// The node at which their watch stands, then.
+    node: u64,
+    /// The events of eight units after another, if they are looked for side by side.
     abreast: Vec<Option<Abreast<'a>>>,
-    before: Option<State<Lanes>>,
     /// The events of each unit.
     watches: Vec<Option<Box<Watch<'a>>>>,
     /// What looking for them took, which each unit pays for itself.
@@ -216,23 +222,22 @@ impl Recorder<Lanes> for Records<'_> {
     }
 
     fn look(&mut self, taken: Taken<'_, Lanes>, ticker: &mut Ticker<'_>) -> Result<bool> {
-        let Taken { node, present, past, before, stepper, system, repeated } = taken;
-        let here = self.step * node as f64;
-        let (span, after, back) = match past {
-            None => (Span { from: self.step * (node - 1) as f64, to: here }, present, self.step),
-            Some((past, state)) => (Span { from: here, to: here + past }, state, 0.0),
-        };
-        let between = self.between.get_or_insert_with(|| present.clone());
+        let Taken { node, before, after, part, stepper, system, repeated } = taken;
+        let from = self.step * node as f64;
+        let to = part.map_or_else(|| self.step * (node + 1) as f64, |part| from + part);
+        let (span, steps) = (Span { from, to }, node + u64::from(part.is_none()));
+        let between = self.between.get_or_insert_with(|| before.clone());
         let length = Lanes::splat(scale(span.to - span.from, self.job.plan.units.time));
         // Whose watches must look, and which of them are where the step begins.
-        let mut blocks = [[Bits(0xff), Bits::splat(self.along.is_none())]; 2];
+        let mut blocks = [[Bits(0xff), Bits::splat(self.along.is_none() || self.node == node)]; 2];
+        self.node = steps;
         for (block, abreast) in blocks.iter_mut().zip(&mut self.abreast) {
             if let Some(abreast) = abreast {
                 *block = abreast.step(Bits(0xff), &length, after);
             }
         }
-        let mut inside =
-            Shadow { stepper, system, node, present, between, last: None, back, length: span.to - span.from };
+        let step = part.unwrap_or(self.step);
+        let mut inside = Shadow { stepper, system, node, before, between, last: None, step };
         let mut going = false;
         for (lane, unit) in self.units.iter().enumerate() {
             let watch = self.watches.get_mut(lane).and_then(Option::as_mut);
@@ -251,12 +256,8 @@ impl Recorder<Lanes> for Records<'_> {
                     // A unit pays for what it looks at, whatever was looked at for another one.
                     inside.last = None;
                     // Who has not seen every node turns to where the step begins.
-                    let earlier = match past {
-                        None => before.or(self.before.as_ref()),
-                        Some(_) => Some(present),
-                    };
-                    if let (false, Some(earlier)) = (in_step, earlier) {
-                        watch.turn_to(unit, span.from, earlier, ticker)?;
+                    if !in_step {
+                        watch.turn_to(unit, span.from, before, ticker)?;
                     }
                     if watch.step(unit, span, after, ticker)? {
                         watch.look(unit, span, (after, lane), &mut inside, ticker)?;
@@ -265,15 +266,12 @@ impl Recorder<Lanes> for Records<'_> {
                     self.looks[lane] += evaluations - begun;
                     going |= !watch.stopped;
                     if watch.stopped {
-                        let counts = Counts { steps: node, rejected: 0, evaluations: evaluations - repeated };
+                        let counts = Counts { steps, rejected: 0, evaluations: evaluations - repeated };
                         self.stopped[lane] = Some(paid_by(lane, counts, &self.looks));
                     }
                 }
                 None => going = true,
             }
-        }
-        if let (None, Some(before)) = (past, &mut self.before) {
-            before.copy_from(present);
         }
         Ok(going)
     }
@@ -322,18 +320,16 @@ fn paid_by(lane: usize, all: Counts, looks: &[u64]) -> Counts {
     Counts { evaluations: all.evaluations - others, ..all }
 }
 
-/// The inside of a step, by shadow steps from the present node.
+/// The inside of a step, by shadow steps from the node at which it begins: as outputs are, so that both tell the same.
 struct Shadow<'r> {
     stepper: &'r mut dyn Stepper<Lanes>,
     system: &'r mut dyn System<Lanes>,
     node: u64,
-    present: &'r State<Lanes>,
+    before: &'r State<Lanes>,
     between: &'r mut State<Lanes>,
     /// The fraction of the step that it was taken to last.
     last: Option<f64>,
-    /// How far before the node the step begins.
-    back: f64,
-    length: f64,
+    step: f64,
 }
 
 impl Interpolant for Shadow<'_> {
@@ -342,9 +338,8 @@ impl Interpolant for Shadow<'_> {
             return Ok(self.between);
         }
         self.last = None;
-        let past = if self.back == 0.0 { theta * self.length } else { (theta - 1.0) * self.back };
-        self.between.copy_from(self.present);
-        self.stepper.between(self.node, past, self.between, self.system, ticker)?;
+        self.between.copy_from(self.before);
+        self.stepper.between(self.node, theta * self.step, self.between, self.system, ticker)?;
         self.last = Some(theta);
         Ok(self.between)
     }

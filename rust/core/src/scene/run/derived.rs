@@ -2,7 +2,7 @@
 
 use super::super::Scene;
 use super::super::columns::{Columns, Derived};
-use crate::conservation::columns::State;
+use crate::conservation::columns::Snapshot;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::{Ticker, for_chunks};
@@ -39,7 +39,7 @@ pub(super) fn derive(
                 break;
             }
             read(scene, columns, copy, time, &mut bodies);
-            let mut state = State::new(&scene.forces, &bodies, [0.0; 3], 1, ticker);
+            let mut state = Snapshot::new(&scene.forces, &bodies, [0.0; 3], 1, ticker);
             let mut row = Vec::new();
             for column in &widths {
                 let Ok(numbers) = state.value(column) else { return Ok(values) };

@@ -3,7 +3,7 @@
 //! A run of cheap steps with many outputs spends its time here, so what can be decided is decided once, when the
 //! unit is prepared; and packed bodies go eight at a time (`rows`), coordinates into points by the tier's vectors.
 
-use super::super::columns::{Output, Run, Writer};
+use super::super::columns::{Consecutive, Output, Writer};
 use super::super::frame::{Moved, Units, restored};
 use super::rows::{derive_rows, record_rows};
 use super::{Layout, Origin, Prepared, Unit};
@@ -34,7 +34,7 @@ enum Way {
     /// Body after body.
     Bodies,
     /// Row after row, from the row `start` on.
-    Rows { start: usize, runs: Vec<Run> },
+    Rows { start: usize, runs: Vec<Consecutive> },
 }
 
 impl Reading {
@@ -66,7 +66,7 @@ fn rows(unit: &Unit) -> Option<Way> {
     let rows = kinds.into_iter().flat_map(|kind| unit.bodies[kind].chunks(WIDTH));
     let runs = rows.map(|bodies| {
         let (first, last) = (bodies[0], bodies[bodies.len() - 1]);
-        (last - first + 1 == bodies.len()).then(|| Run::new(first, bodies.len()))
+        (last - first + 1 == bodies.len()).then(|| Consecutive::new(first, bodies.len()))
     });
     Some(Way::Rows { start, runs: runs.collect::<Option<_>>()? })
 }

@@ -7,13 +7,13 @@ use crate::forces::bodies::{Of, PreciseBodies};
 use crate::numerics::fused_double::FusedDouble;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Mask;
-use crate::scene::columns::Run;
+use crate::scene::columns::Consecutive;
 use crate::scene::frame::{Moved, drifted, restored};
 use crate::tiered;
 
 tiered! {
-    pub(super) fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, start: usize, runs: &[Run]) -> bool = rows_as_points;
-    pub(super) fn derive_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, runs: &[Run], bodies: &mut PreciseBodies) -> bool = rows_as_bodies;
+    pub(super) fn record_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, start: usize, runs: &[Consecutive]) -> bool = rows_as_points;
+    pub(super) fn derive_rows[const COMPONENTS: usize, const MOVED: bool][COMPONENTS, MOVED](read: Read<'_>, runs: &[Consecutive], bodies: &mut PreciseBodies) -> bool = rows_as_bodies;
 }
 
 /// An origin, coordinate by coordinate in the first lanes: its place and what that leaves out, its velocity likewise.
@@ -52,7 +52,7 @@ impl Moving {
 fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
     read: Read<'_>,
     start: usize,
-    runs: &[Run],
+    runs: &[Consecutive],
 ) -> bool {
     each_row::<V, COMPONENTS, MOVED>(read, (start, runs), None)
 }
@@ -60,7 +60,7 @@ fn rows_as_points<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
 #[inline(always)]
 fn rows_as_bodies<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
     read: Read<'_>,
-    runs: &[Run],
+    runs: &[Consecutive],
     bodies: &mut PreciseBodies,
 ) -> bool {
     each_row::<V, COMPONENTS, MOVED>(read, (0, runs), Some(bodies))
@@ -71,7 +71,7 @@ fn rows_as_bodies<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
 #[inline(always)]
 fn each_row<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
     (unit, state, elapsed, output): Read<'_>,
-    (start, runs): (usize, &[Run]),
+    (start, runs): (usize, &[Consecutive]),
     mut bodies: Option<&mut PreciseBodies>,
 ) -> bool {
     let zero = V::zero();

@@ -5,7 +5,7 @@ use super::{Forces, PROGRESS_PER_UNIT, Run, Slot, stuck};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Mask;
-use crate::ode::step_control::Outcome;
+use crate::ode::step_control::Settled;
 use crate::parallel::Ticker;
 use crate::scene::integrate::report::{Ending, Report};
 use crate::scene::unit::Unit;
@@ -13,7 +13,7 @@ use std::collections::BTreeSet;
 
 impl<'a> Run<'a> {
     /// Counts what the step was to the unit in a lane, and lets the unit go if it has ended.
-    pub(super) fn settle(&mut self, lane: usize, outcome: &Outcome<Lanes>, ticker: &mut Ticker<'_>) {
+    pub(super) fn settle(&mut self, lane: usize, outcome: &Settled<Lanes>, ticker: &mut Ticker<'_>) {
         let (end, elapsed) = (self.end(), self.elapsed(lane));
         let Some(slot) = self.slots[lane].as_mut() else { return };
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only

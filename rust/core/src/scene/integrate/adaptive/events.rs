@@ -6,7 +6,7 @@ use crate::numerics::lanes::{Bits, Lanes};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
-use crate::ode::step_control::Outcome;
+use crate::ode::step_control::Settled;
 use crate::ode::system::System;
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
@@ -19,7 +19,7 @@ struct Inside<'r> {
     between: &'r mut State<Lanes>,
     /// The polynomials of coordinates that were asked for.
     terms: Vec<(usize, Vec<[Lanes; 2]>)>,
-    outcome: &'r Outcome<Lanes>,
+    outcome: &'r Settled<Lanes>,
     ready: bool,
 }
 
@@ -68,7 +68,7 @@ impl Run<'_> {
     /// Those of the functions and of an evaluation.
     pub(super) fn watch(
         &mut self,
-        outcome: &Outcome<Lanes>,
+        outcome: &Settled<Lanes>,
         dense: Bits,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {

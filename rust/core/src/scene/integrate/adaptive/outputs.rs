@@ -7,7 +7,7 @@ use super::{Run, Slot};
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
-use crate::ode::step_control::Outcome;
+use crate::ode::step_control::Settled;
 use crate::parallel::Ticker;
 
 /// The next outputs that a step has passed.
@@ -49,7 +49,7 @@ impl Run<'_> {
     /// When the caller asks to stop.
     pub(super) fn record(
         &mut self,
-        outcome: &Outcome<Lanes>,
+        outcome: &Settled<Lanes>,
         mut ready: bool,
         ticker: &mut Ticker<'_>,
     ) -> Result<Bits> {
@@ -74,7 +74,7 @@ impl Run<'_> {
     }
 
     /// The next output of each lane that lies inside the step.
-    fn round(&self, outcome: &Outcome<Lanes>) -> Round {
+    fn round(&self, outcome: &Settled<Lanes>) -> Round {
         let direction = self.job.plan.direction;
         let mut round = Round { due: Bits(0), inside: Bits(0), theta: Lanes::one() };
         for lane in 0..WIDTH {
