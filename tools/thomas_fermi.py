@@ -102,24 +102,24 @@ class Function:
         return mpf(1) / 16 if y0 == 0 else min(y0, 1 + y0 / 4) / 12
 
 
-def polynomial(phi: Function, low: mpf, high: mpf) -> tuple[list[mpf], mpf]:
-    """Coefficients in t = (2 y − low − high)/(high − low), and the largest relative error found."""
-    count = DEGREE + 1
-    nodes = [cos(pi * (2 * i + 1) / (2 * count)) for i in range(count)]
-    place = lambda t: ((high - low) * t + low + high) / 2  # noqa: E731
-    system = matrix(count, count)
-    right = matrix(count, 1)
-    for i, t in enumerate(nodes):
-        right[i] = phi(place(t))[0]
+def through(function, low: mpf, high: mpf, count: int, middle: mpf, inverse: mpf) -> list[mpf]:  # type: ignore[no-untyped-def]
+    """The polynomial in t = (y − middle) inverse through Chebyshev points of a piece."""
+    system, right = matrix(count, count), matrix(count, 1)
+    for i in range(count):
+        y = (low + high + (high - low) * cos(pi * (2 * i + 1) / (2 * count))) / 2
+        right[i] = function(y)
         for k in range(count):
-            system[i, k] = t**k
-    solved = list(lu_solve(system, right))
-    worst = mpf(0)
-    for i in range(41):
-        t = mpf(i - 20) / 20
-        exact = phi(place(t))[0]
-        worst = max(worst, abs(horner(solved, t)[0] / exact - 1))
-    return solved, worst
+            system[i, k] = ((y - middle) * inverse) ** k
+    return list(lu_solve(system, right))
+
+
+def polynomial(phi: Function, low: mpf, high: mpf) -> tuple[list[mpf], mpf, mpf]:
+    """Coefficients in t = (y − middle) inverse, middle, inverse; of the first piece about 0, where φ = 1 + B y² + …."""
+    if low == 0:
+        first = through(lambda y: (phi(y)[0] - 1) / (y * y), low, high, DEGREE - 1, mpf(0), 1 / high)
+        return [mpf(1), mpf(0), *(c * high * high for c in first)], mpf(0), 1 / high
+    middle, inverse = (low + high) / 2, 2 / (high - low)
+    return through(lambda y: phi(y)[0], low, high, DEGREE + 1, middle, inverse), middle, inverse
 
 
 def tail(count: int) -> list[mpf]:
@@ -140,9 +140,10 @@ def main() -> None:
     phi = Function(b)
     rows = []
     for low, high in pairwise(EDGES):
-        solved, worst = polynomial(phi, low, high)
+        solved, middle, inverse = polynomial(phi, low, high)
+        places = [low + (high - low) * i / 40 for i in range(41)]
+        worst = max(abs(horner(solved, (y - middle) * inverse)[0] / phi(y)[0] - 1) for y in places)
         print(nstr(low, 6), nstr(high, 6), nstr(worst, 3))
-        middle, inverse = (low + high) / 2, 2 / (high - low)
         rows.append([low, middle, inverse, *solved])
     lam = (sqrt(mpf(73)) - 7) / 2
     a = tail(40)

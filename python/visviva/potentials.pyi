@@ -11,10 +11,12 @@ from visviva._declared import Declared
 __all__ = [
     "Buckingham",
     "Coulomb",
+    "Custom",
     "HardSphere",
     "LennardJones",
     "Mie",
     "Morse",
+    "PiecewisePolynomial",
     "Plummer",
     "Potential",
     "PowerLaw",
@@ -131,5 +133,15 @@ class Tabulated(Potential):
     V: NDArray[np.float64]
     def __init__(self, r: ArrayLike, V: ArrayLike) -> None: ...
 
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PiecewisePolynomial(Potential):
+    breaks: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    error: float
+    def __init__(self, breaks: ArrayLike, coefficients: ArrayLike, error: float = 0.0) -> None: ...
+
+def Custom(  # noqa: N802
+    function: Any, r_min: float, r_max: float, *, tolerance: float = ...
+) -> PiecewisePolynomial: ...
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...

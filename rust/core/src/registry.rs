@@ -13,8 +13,8 @@ use crate::ode::methods::{
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{
-    PotentialDeclaration, buckingham, coulomb, hard_sphere, lennard_jones, mie, morse, plummer, power_law,
-    screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
+    PotentialDeclaration, buckingham, coulomb, hard_sphere, lennard_jones, mie, morse, piecewise_polynomial,
+    plummer, power_law, screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
 };
 use crate::words::unknown;
 
@@ -84,6 +84,7 @@ pub static POTENTIALS: &[&PotentialDeclaration] = &[
     &hard_sphere::DECLARATION,
     &screened_coulomb::DECLARATION,
     &tabulated::DECLARATION,
+    &piecewise_polynomial::DECLARATION,
 ];
 
 /// The potential of a name.

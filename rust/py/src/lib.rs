@@ -37,7 +37,7 @@ mod _core {
     };
     #[pymodule_export]
     use crate::registry::{
-        check_potential, dimensions, forces, methods, potential, potentials, screening_length,
+        check_potential, dimensions, fitted, forces, methods, potential, potentials, screening_length,
     };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};

@@ -6,7 +6,7 @@
 //! Method: ln m = 2 artanh((m − 1)/(m + 1)), its leading terms in double-double.
 
 use super::binary::Binary;
-use super::double_double::DoubleDouble;
+use super::double_double::{DoubleDouble, two_sum};
 use super::elementary::{EXPONENTIAL, Exponential, nearest_integer, polynomial};
 use super::lanes::Lanes;
 use super::power_of_two;
@@ -145,6 +145,7 @@ fn power<S: Binary>(x: S, power: &Power) -> S {
         let r = f * S::splat(LN2[0]);
         let rest = f.multiply_add(S::splat(LN2[0]), -r)
             + (f * S::splat(LN2[1]) + S::select(near, t_low, S::zero()) * S::splat(LN2[0]));
+        let (r, rest) = two_sum(r, rest);
         let value = S::one() + (r + (r * r * polynomial(r, &EXPONENTIAL) + (rest + rest * r)));
         shifted(value, whole + to)
     };

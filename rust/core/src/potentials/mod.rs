@@ -6,6 +6,7 @@
 
 pub mod buckingham;
 pub mod coulomb;
+pub mod fit;
 pub mod hard_sphere;
 mod hermite;
 pub mod kernels;
@@ -14,6 +15,7 @@ pub mod mie;
 pub mod morse;
 pub mod parameters;
 mod piecewise;
+pub mod piecewise_polynomial;
 pub mod plummer;
 pub mod power_law;
 pub mod screened_coulomb;

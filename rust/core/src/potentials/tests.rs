@@ -10,6 +10,9 @@ fn parameters(declaration: &PotentialDeclaration, seeds: &[f64; 4]) -> Option<Ve
     if declaration.name == "tabulated" {
         return Some(table(seeds));
     }
+    if declaration.name == "piecewise_polynomial" {
+        return Some(fitted(seeds));
+    }
     let seeds = seeds.iter().cycle();
     let value = |(parameter, seed): (&Parameter, &f64)| match parameter.kind {
         Kind::Number(Sign::Any) => Some(Value::Number(*seed)),
@@ -40,6 +43,13 @@ fn table(seeds: &[f64; 4]) -> Vec<Value> {
     let r: Vec<f64> = (0..200).map(|i| 0.6 + 0.013 * f64::from(i)).collect();
     let v = |r: &f64| seeds[0] / r + seeds[1] * Exponential::exp(-r * seeds[2].abs()) + seeds[3];
     vec![Value::Table(r.iter().copied().collect()), Value::Table(r.iter().map(v).collect())]
+}
+
+/// What is made of a smooth function from 0.6 to 3.2.
+fn fitted(seeds: &[f64; 4]) -> Vec<Value> {
+    let v = |r: &f64| seeds[0] / r + seeds[1] * Exponential::exp(-r * seeds[2].abs()) + seeds[3];
+    let made = fit::fit(&mut |r: &[f64]| Ok(r.iter().map(v).collect()), [0.6, 3.2], 1e-12).unwrap();
+    vec![Value::Table(made.breaks.into()), Value::Table(made.coefficients.into()), Value::Number(made.error)]
 }
 
 /// Every potential of the registry that seeds can make and that has a force.
@@ -107,12 +117,23 @@ proptest! {
 #[test]
 fn a_strength_of_any_size_is_brought_near_one() {
     let seeds = [1.25, 0.75, 1.5, 1.0];
-    for potential in all(&seeds) {
+    for declaration in POTENTIALS {
+        let Some(values) = parameters(declaration, &seeds) else { continue };
+        let potential = declaration.build(&values).unwrap();
+        if potential.jumps() {
+            continue;
+        }
         assert!(potential.near_one(0).is_none(), "{potential:?} is near one already");
         let r = DoubleDouble::from(1.75);
         let (value, force) = potential.precise(r);
         for (length, energy) in [(0, -1000), (0, 900), (-310, 20), (150, -600)] {
-            let far = potential.scaled(Units { length, mass: energy - 2 * length, time: 0 });
+            let units = Units { length, mass: energy - 2 * length, time: 0 };
+            // An energy times length⁶ in such units may be no number.
+            let fine = |value: &Value| !matches!(value, Value::Number(x) if !x.is_normal());
+            if !declaration.scaled(&values, units).iter().all(fine) {
+                continue;
+            }
+            let far = potential.scaled(units);
             let (near, unit) = far.near_one(-length).unwrap();
             let (near_value, near_force) = near.precise(r);
             let factor = 2.0f64.powi(unit + energy);
