@@ -28,6 +28,20 @@ FIELD = {
 }
 ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point", "table"), "ArrayLike")
 
+# What a class has beside what is declared.
+FURTHER = {
+    "ScreenedCoulomb": """    @classmethod
+    def between(
+        cls,
+        Z1: float,
+        Z2: float,
+        screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"] = "zbl",
+        e2: float = 14.399645478,
+        bohr_radius: float = 0.529177210544,
+    ) -> Self: ...
+"""
+}
+
 FORCES = """from dataclasses import dataclass
 from typing import Any, ClassVar, Self
 
@@ -71,6 +85,9 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]: ...
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]: ...
 {classes}
+def Custom(  # noqa: N802
+    function: Any, r_min: float, r_max: float, *, tolerance: float = ...
+) -> PiecewisePolynomial: ...
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...
 """
@@ -81,16 +98,31 @@ def class_stub(entry: dict[str, Any], base: str) -> str:
     fields, arguments = [], []
     for parameter in entry["parameters"]:
         name, kind, default = parameter["name"], parameter["kind"], parameter["default"]
-        words = f"Literal[{', '.join(map(repr, parameter['choices']))}]" if parameter["choices"] else None
+        choices = ", ".join(f'"{word}"' for word in parameter["choices"])
+        words = f"Literal[{choices}]" if choices else None
         fields.append(f"    {name}: {words or FIELD[kind]}\n")
+        if default is not None and kind == "choice":
+            default = f'"{parameter["choices"][int(default)]}"'
         given = "" if default is None else f" = {(default,) * 3 if FIELD[kind].startswith('tuple') else default}"
         arguments.append(f"{name}: {words or ARGUMENT[kind]}{given}")
     return (
         "\n@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)\n"
         f"class {entry['class_name']}({base}):\n"
         + "".join(fields)
-        + f"    def __init__(self, {', '.join(arguments)}) -> None: ...\n"
+        + signature(["self", *arguments])
+        + FURTHER.get(entry["class_name"], "")
     )
+
+
+def signature(arguments: list[str]) -> str:
+    """The line of ``__init__``, broken as the formatter breaks it."""
+    line = f"    def __init__({', '.join(arguments)}) -> None: ...\n"
+    if len(line) <= 121:
+        return line
+    line = f"        {', '.join(arguments)}\n"
+    if len(line) > 121:
+        line = "".join(f"        {argument},\n" for argument in arguments)
+    return f"    def __init__(\n{line}    ) -> None: ...\n"
 
 
 def stub(template: str, entries: list[dict[str, Any]], base: str, others: list[str]) -> str:
@@ -139,7 +171,7 @@ def main() -> int:
     init = PACKAGE / "__init__.py"
     files = {
         PACKAGE / "forces.pyi": stub(FORCES, forces, "Force", []),
-        PACKAGE / "potentials.pyi": stub(POTENTIALS, potentials, "Potential", ["potential_by_name"]),
+        PACKAGE / "potentials.pyi": stub(POTENTIALS, potentials, "Potential", ["Custom", "potential_by_name"]),
         init: package(init.read_text(), [entry["class_name"] for entry in forces]),
     }
     stale = [path for path, text in files.items() if not path.exists() or path.read_text() != text]

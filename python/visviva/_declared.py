@@ -57,6 +57,8 @@ class Parameter:
         """The value of a parameter that is not given; None if it has to be."""
         if self.default is None:
             return None
+        if self.kind == "choice":
+            return self.choices[int(self.default)]
         return (self.default,) * 3 if self.kind in _VECTORS else self.default
 
     def check(self, value: Any) -> Any:

@@ -33,6 +33,8 @@ def force_classes() -> dict[str, type[Any]]:
 FORCES = force_classes()
 POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
 METHODS = {method.name: method for method in vv.methods()}
+# Potentials a derivative of which jumps somewhere, the third or a higher one.
+ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
 # A function of one's own is no value that a recipe could hold.
 EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function"})
 
@@ -100,9 +102,13 @@ class Draw:
         entry = self.random.choice(list(POTENTIALS.values()))
         if entry["class_name"] in self.TABLES:
             return self.TABLES[entry["class_name"]](self)
-        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
-            **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
-        )
+        values = {parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
+        # Exponents that go together, whole and broken.
+        if "n" in values:
+            values["n"] = self.random.choice([2.0, 3.0, 2.5, 4.0, 2.0 + values["n"]])
+        if "m" in values:
+            values["n"] += 1.0 + values["m"]
+        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(**values)
         return made
 
     def tabulated(self) -> vv.potentials.Potential:
@@ -110,8 +116,17 @@ class Draw:
         r = np.geomspace(2.0**-6, 64.0 if self.tame else 8.0, 80)
         return vv.potentials.Tabulated(r, self.number() / r + self.number() * np.exp(-r * self.number("positive")))
 
+    def custom(self) -> vv.potentials.Potential:
+        """What `Custom` makes of a function, over distances as of a table."""
+        strength, decay, rate = self.number(), self.number(), self.number("positive")
+        last = 64.0 if self.tame else 8.0
+        return vv.potentials.Custom(lambda r: strength / r + decay * np.exp(-rate * r), 2.0**-6, last, tolerance=1e-9)
+
     # What has a table is drawn as a whole: its columns go together.
-    TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {"Tabulated": tabulated}
+    TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {
+        "Tabulated": tabulated,
+        "PiecewisePolynomial": custom,
+    }
 
     def indices(self) -> list[int]:
         """Bodies of the listed pairs: the first of each, and when asked again the second, which is another."""

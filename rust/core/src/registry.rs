@@ -16,7 +16,10 @@ use crate::ode::methods::{
     sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
 };
 use crate::ode::system::{Form, Needs};
-use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, tabulated, yukawa};
+use crate::potentials::{
+    PotentialDeclaration, buckingham, coulomb, hard_sphere, lennard_jones, mie, morse, piecewise_polynomial,
+    plummer, power_law, screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
+};
 use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
@@ -93,8 +96,22 @@ pub fn solver(name: &str) -> Result<&'static Method> {
 }
 
 /// Every potential, in the order of the documentation.
-pub static POTENTIALS: &[&PotentialDeclaration] =
-    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION, &tabulated::DECLARATION];
+pub static POTENTIALS: &[&PotentialDeclaration] = &[
+    &coulomb::DECLARATION,
+    &power_law::DECLARATION,
+    &yukawa::DECLARATION,
+    &lennard_jones::DECLARATION,
+    &mie::DECLARATION,
+    &morse::DECLARATION,
+    &buckingham::DECLARATION,
+    &plummer::DECLARATION,
+    &soft_sphere::DECLARATION,
+    &square_well::DECLARATION,
+    &hard_sphere::DECLARATION,
+    &screened_coulomb::DECLARATION,
+    &tabulated::DECLARATION,
+    &piecewise_polynomial::DECLARATION,
+];
 
 /// The potential of a name.
 pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {

@@ -36,7 +36,9 @@ mod _core {
         orbit_period, orbit_propagate, orbit_semi_major_axis, orbit_state,
     };
     #[pymodule_export]
-    use crate::registry::{check_potential, dimensions, forces, methods, potential, potentials};
+    use crate::registry::{
+        check_potential, dimensions, fitted, forces, methods, potential, potentials, screening_length,
+    };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]

@@ -2,7 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
-use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm, outside};
+use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm, check_force, outside};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
@@ -88,6 +88,7 @@ impl ForceTerm for CentralField {
     }
 
     fn validate(&self, bodies: &Bodies<'_>) -> Result<()> {
+        check_force("CentralField", &*self.potential)?;
         if let Some(domain) = self.domain() {
             let from = |position: [f64; 3]| distance(position, self.center);
             let beyond = |position: &[f64; 3]| !(domain.0..=domain.1).contains(&from(*position));

@@ -10,7 +10,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context};
 use super::gravity::RING_MAX;
-use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm, outside};
+use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm, check_force, outside};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;
@@ -107,6 +107,7 @@ impl ForceTerm for PairPotential {
         Ok((energy, work))
     }
     fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        check_force("PairPotential", &*self.potential)?;
         self.within(view)?;
         match view.coincident(|_, _| self.potential.singular()) {
             None => Ok(()),

@@ -316,6 +316,19 @@ pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
     }
 }
 
+/// Refuses a potential that jumps.
+///
+/// # Errors
+/// By name.
+pub(super) fn check_force(force: &str, potential: &dyn Potential) -> Result<()> {
+    if !potential.jumps() {
+        return Ok(());
+    }
+    let class = potential.declaration().class_name;
+    let expected = format!("{force} expected a potential with a finite force, and {class} jumps");
+    Err(Error::invalid("potential", format!("{expected}; use a smooth one, as SoftSphere or Morse")))
+}
+
 /// The refusal of bodies at a distance at which a potential is not.
 pub(super) fn outside(
     force: &str,

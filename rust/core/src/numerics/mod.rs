@@ -14,6 +14,7 @@ pub mod lanes;
 pub mod logarithm;
 pub mod philox;
 pub mod points;
+pub mod power;
 pub mod power_of_two;
 pub mod real;
 pub mod rotation;

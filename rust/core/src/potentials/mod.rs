@@ -4,19 +4,34 @@
 //! [`registry::POTENTIALS`](crate::registry::POTENTIALS). Its Python class, parameter checks,
 //! documentation and property tests follow from what [`Formula::DECLARATION`] says.
 
+pub mod buckingham;
 pub mod coulomb;
+pub mod fit;
+pub mod hard_sphere;
 mod hermite;
 pub mod kernels;
 pub mod lennard_jones;
+pub mod mie;
+pub mod morse;
 pub mod parameters;
 mod piecewise;
+pub mod piecewise_polynomial;
+pub mod plummer;
+pub mod power_law;
+pub mod screened_coulomb;
+pub mod screening;
+pub mod soft_sphere;
+pub mod square_well;
 pub mod tabulated;
+mod thomas_fermi;
+mod thomas_fermi_table;
 pub mod yukawa;
 
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
+use crate::numerics::power::Powers;
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::rows::Lookup;
 use crate::units::Units;
@@ -32,10 +47,10 @@ const FAR: i32 = 300;
 /// What a potential declares about itself.
 pub type PotentialDeclaration = Declaration<dyn Potential>;
 
-/// The scalars of formulas: those with an exponential, that can be looked up in a table.
-pub trait Analytic: Exponential + Lookup {}
+/// The scalars of formulas: those with an exponential and powers, that can be looked up in a table.
+pub trait Analytic: Exponential + Powers + Lookup {}
 
-impl<S: Exponential + Lookup> Analytic for S {}
+impl<S: Exponential + Powers + Lookup> Analytic for S {}
 
 /// A potential energy as written by its author: formulas generic over the scalar.
 pub trait Formula: Debug + Send + Sync + Sized + 'static {
@@ -43,9 +58,15 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     const DECLARATION: &'static PotentialDeclaration;
     /// Whether it diverges at r = 0.
     const SINGULAR: bool;
+    /// Whether it jumps, so that there is no finite force.
+    const JUMPS: bool = false;
 
     /// From the values of its parameters, which are what the declaration says.
     fn new(values: &[Value]) -> Self;
+    /// The same in other units, in which the values of its parameters are those.
+    fn scaled(&self, values: &[Value], _: Units) -> Self {
+        Self::new(values)
+    }
     /// V(r).
     fn value<S: Analytic>(&self, r: S) -> S;
     /// −dV/dr.
@@ -78,6 +99,8 @@ pub trait Potential: Debug + Send + Sync {
     fn declaration(&self) -> &'static PotentialDeclaration;
     /// Whether it diverges at r = 0.
     fn singular(&self) -> bool;
+    /// Whether it jumps, so that there is no finite force.
+    fn jumps(&self) -> bool;
     /// V(r), −dV/dr and d²V/dr² at each distance.
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3];
     /// V(r) and −dV/dr to about thirty digits.
@@ -128,6 +151,9 @@ impl<P: Formula> Potential for Held<P> {
     fn singular(&self) -> bool {
         P::SINGULAR
     }
+    fn jumps(&self) -> bool {
+        P::JUMPS
+    }
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3] {
         [
             r.iter().map(|&r| self.formula.value(r)).collect(),
@@ -140,7 +166,7 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn scaled(&self, units: Units) -> Arc<dyn Potential> {
         let values = P::DECLARATION.scaled(&self.values, units);
-        Arc::new(Self { formula: P::new(&values), values })
+        Arc::new(Self { formula: self.formula.scaled(&values, units), values })
     }
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)> {
         let dimensions = P::DECLARATION.exponents(&self.values);

@@ -70,7 +70,7 @@ pub struct Parameter {
     pub kind: Kind,
     /// Its dimension.
     pub dimensions: Dimensions,
-    /// Its value, or each of its components, if it is not given.
+    /// Its value, or each of its components, or the place of the word, if it is not given.
     pub default: Option<f64>,
 }
 

@@ -32,6 +32,17 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     make: held::<Yukawa>,
 };
 
+/// The exponential of minus this is nothing, and the square of this is a number.
+const FAR: f64 = 1e100;
+
+impl Yukawa {
+    /// r/length, cut off where there is nothing left.
+    #[inline(always)]
+    fn lengths<S: Analytic>(&self, r: S) -> S {
+        (r / S::splat(self.length)).min(S::splat(FAR))
+    }
+}
+
 impl Formula for Yukawa {
     const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = true;
@@ -47,12 +58,12 @@ impl Formula for Yukawa {
     #[inline(always)]
     fn force<S: Analytic>(&self, r: S) -> S {
         // −dV/dr = V (1/r + 1/length)
-        let s = r / S::splat(self.length);
+        let s = self.lengths(r);
         S::splat(self.k) * (-s).exp() * (S::one() + s) / (r * r)
     }
     #[inline(always)]
     fn curvature<S: Analytic>(&self, r: S) -> S {
-        let s = r / S::splat(self.length);
+        let s = self.lengths(r);
         let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
         S::splat(self.k) * (-s).exp() * polynomial / (r * r * r)
     }
