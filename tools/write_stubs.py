@@ -21,12 +21,13 @@ FIELD = {
     "indices": "int | str | tuple[int | str, ...] | NDArray[np.int64]",
     "vector": "tuple[float, float, float]",
     "axial_vector": "tuple[float, float, float]",
+    "direction": "tuple[float, float, float]",
     "point": "tuple[float, float, float]",
     "potential": "Potential",
     "choice": "str",
     "table": "NDArray[np.float64]",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point", "table"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "direction", "point", "table"), "ArrayLike")
 
 # What a class has beside what is declared.
 FURTHER = {

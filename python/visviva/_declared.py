@@ -24,13 +24,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Declared", "Parameter", "make"]
 
-_VECTORS = ("vector", "axial_vector", "point")
+_VECTORS = ("vector", "axial_vector", "direction", "point")
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
     "indices": "int or str, or array_like of them",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
+    "direction": "array_like, shape (3,)",
     "point": "array_like, shape (3,)",
     "potential": "visviva.potentials.Potential",
     "choice": "str",
@@ -64,7 +65,10 @@ class Parameter:
     def check(self, value: Any) -> Any:
         """The value as it is kept: frozen, comparable, of one type for each kind."""
         if self.kind in _VECTORS:
-            return tuple(float_array(self.name, value, (3,)).tolist())
+            vector = float_array(self.name, value, (3,))
+            if self.kind == "direction" and not vector.any():
+                raise InvalidInput(self.name, "expected a direction, got 0.0 in every component")
+            return tuple(vector.tolist())
         if self.kind == "number":
             return self._signed(number(self.name, value))
         if self.kind == "numbers":

@@ -64,7 +64,7 @@ class Force(Declared):
         turned = {
             p.name: rotation @ np.array(getattr(self, p.name))
             for p in self._parameters
-            if p.kind in ("vector", "point")
+            if p.kind in ("vector", "direction", "point")
         }
         axial = np.sign(np.linalg.det(rotation)) * rotation
         turned |= {

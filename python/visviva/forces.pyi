@@ -17,7 +17,9 @@ __all__ = [
     "Gravity",
     "Harmonic",
     "LinearDrag",
+    "Oblate",
     "PairPotential",
+    "PostNewtonian",
     "QuadraticDrag",
     "RotatingFrame",
     "Spring",
@@ -47,6 +49,25 @@ class Coulomb(Force):
     k: float
     softening: float
     def __init__(self, charge: ArrayLike, k: float, softening: float = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Oblate(Force):
+    body: int | NDArray[np.int64]
+    G: float
+    J2: float | NDArray[np.float64]
+    radius: float | NDArray[np.float64]
+    axis: tuple[float, float, float]
+    J4: float | NDArray[np.float64]
+    def __init__(
+        self, body: ArrayLike, G: float, J2: ArrayLike, radius: ArrayLike, axis: ArrayLike, J4: ArrayLike = 0.0
+    ) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PostNewtonian(Force):
+    body: int | NDArray[np.int64]
+    G: float
+    c: float
+    def __init__(self, body: ArrayLike, G: float, c: float) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class UniformField(Force):

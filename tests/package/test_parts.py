@@ -84,6 +84,9 @@ FORCES = [
     vv.Damper([0, 1], [1, 0], c=[1.0, 2.0]),
     vv.Coulomb([1.0, -2.0], k=3.0),
     vv.Coulomb(1.0, k=3.0, softening=0.5),
+    vv.Oblate(0, G=1.0, J2=1e-3, radius=0.5, axis=[0.0, 0.6, 0.8]),
+    vv.Oblate([0, 1], G=1.0, J2=[1e-3, 2e-3], radius=0.5, axis=[0.0, 0.0, 2.0], J4=-1e-5),
+    vv.PostNewtonian(0, G=1.0, c=1e4),
     vv.PairPotential(vv.potentials.Yukawa(k=2.0, length=0.5)),
 ]
 

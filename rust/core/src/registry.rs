@@ -4,9 +4,9 @@ use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
-    ForceDeclaration, central_field, coulomb as charges, damper, driven_force, harmonic, linear_drag,
-    pair_potential, quadratic_drag, rotating_frame, spring, uniform_electric_field, uniform_field,
-    uniform_magnetic_field,
+    ForceDeclaration, central_field, coulomb as charges, damper, driven_force, harmonic, linear_drag, oblate,
+    pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring, uniform_electric_field,
+    uniform_field, uniform_magnetic_field,
 };
 use crate::ode::Method;
 use crate::ode::methods::{
@@ -122,6 +122,8 @@ pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
 pub static FORCES: &[&ForceDeclaration] = &[
     &newton::DECLARATION,
     &charges::DECLARATION,
+    &oblate::DECLARATION,
+    &post_newtonian::DECLARATION,
     &uniform_field::DECLARATION,
     &central_field::DECLARATION,
     &harmonic::DECLARATION,

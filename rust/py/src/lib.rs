@@ -8,6 +8,7 @@
 
 mod arrays;
 mod diagnostic;
+mod drag;
 mod errors;
 mod gate;
 mod info;
@@ -28,6 +29,8 @@ mod _core {
 
     #[pymodule_export]
     use crate::diagnostic::{_busy, _echo};
+    #[pymodule_export]
+    use crate::drag::{drag_crossover_speed, drag_quadratic, drag_reynolds_number, drag_stokes, drag_throw};
     #[pymodule_export]
     use crate::info::info;
     #[pymodule_export]

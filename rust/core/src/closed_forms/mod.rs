@@ -21,6 +21,7 @@ pub mod quadratic_drag;
 pub mod rotating_frame;
 pub mod two_body;
 pub mod uniform;
+pub mod vertical;
 
 use crate::error::Result;
 use crate::forces::ForceTerm;

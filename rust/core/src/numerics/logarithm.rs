@@ -49,6 +49,10 @@ mod tests {
             let back = ln(Scaled::new(y, 0)).plus(Scaled::from(-x)).to_f64();
             // The exponential has 30 digits relative to 1 + |x|.
             assert!(back.abs() < 2e-30 * (1.0 + f64::abs(x)), "{x}: {back:e}");
+            // What the sum with −1 rounds away is more than that far below.
+            if x < -1.0 {
+                continue;
+            }
             let back = ln_1p(Scaled::new(y, 0).plus(Scaled::from(-1.0))).plus(Scaled::from(-x)).to_f64();
             assert!(back.abs() < 2e-30 * (1.0 + f64::abs(x)), "{x}: {back:e}");
         }
