@@ -25,6 +25,7 @@ _HOME = {
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Cost": "plan",
     "Coulomb": "forces",
     "Damper": "forces",
     "Drift": "conservation",
@@ -82,6 +83,7 @@ __all__ = [
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Cost",
     "Coulomb",
     "Damper",
     "Drift",
@@ -179,7 +181,7 @@ if TYPE_CHECKING:
     from visviva.invariants import Invariants
     from visviva.io import load
     from visviva.particles import Particles
-    from visviva.plan import Plan
+    from visviva.plan import Cost, Plan
     from visviva.recorded import Stats
     from visviva.scene import Scene
     from visviva.status import Status
