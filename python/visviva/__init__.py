@@ -20,6 +20,7 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "Advice": "advice",
     "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
@@ -44,6 +45,7 @@ _HOME = {
     "Method": "integrators",
     "OdeResult": "initial_value",
     "OdeSolution": "initial_value",
+    "Option": "advice",
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
@@ -78,6 +80,7 @@ _ROOMS = (
 
 __all__ = [
     "AccuracyWarning",
+    "Advice",
     "BodyMotion",
     "CentralField",
     "CloseEncounter",
@@ -102,6 +105,7 @@ __all__ = [
     "Method",
     "OdeResult",
     "OdeSolution",
+    "Option",
     "PairPotential",
     "Particles",
     "Plan",
@@ -146,6 +150,7 @@ if TYPE_CHECKING:
         typing,
         units,
     )
+    from visviva.advice import Advice, Option
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
