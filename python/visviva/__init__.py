@@ -49,6 +49,7 @@ _HOME = {
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
+    "Point": "comparison",
     "QuadraticDrag": "forces",
     "RotatingFrame": "forces",
     "Scene": "scene",
@@ -60,9 +61,11 @@ _HOME = {
     "UniformField": "forces",
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
+    "WorkPrecision": "comparison",
     "load": "io",
     "methods": "integrators",
     "solve_ivp": "initial_value",
+    "work_precision": "comparison",
 }
 _ROOMS = (
     "datasets",
@@ -109,6 +112,7 @@ __all__ = [
     "PairPotential",
     "Particles",
     "Plan",
+    "Point",
     "QuadraticDrag",
     "RotatingFrame",
     "Scene",
@@ -120,6 +124,7 @@ __all__ = [
     "UniformField",
     "UniformMagneticField",
     "UnknownKeyword",
+    "WorkPrecision",
     "datasets",
     "errors",
     "events",
@@ -134,6 +139,7 @@ __all__ = [
     "stress",
     "typing",
     "units",
+    "work_precision",
 ]
 
 if TYPE_CHECKING:
@@ -152,6 +158,7 @@ if TYPE_CHECKING:
     )
     from visviva.advice import Advice, Option
     from visviva.body import BodyMotion
+    from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (

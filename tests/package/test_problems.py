@@ -31,7 +31,7 @@ def test_references_hold(problem: vv.problems.Problem) -> None:
 
 
 def test_arenstorf_s_orbit_closes_in_the_turned_frame() -> None:
-    """Turned back by the angle of the pair the satellite is where it began: what its name is for, to 15 digits of mu."""
+    """Turned back by the angle of the pair the satellite is where it began."""
     problem = vv.problems.arenstorf()
     place, angle = problem.references[0].position[2], problem.t_end
     back = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]) @ place[:2]
