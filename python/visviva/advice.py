@@ -31,7 +31,7 @@ __all__ = ["Advice", "Option", "advise"]
 _SECONDS, _FLOOR = 0.03, 5e-13
 _OUTPUTS = 32
 _TIGHTEST = 2.3e-14
-# Beyond so many halvings of a step, or if a trial takes so many times the reference, a method is given up.
+# Beyond so many halvings of a step, or if a trial takes so many times the fastest, a method is given up.
 _HALVINGS, _PATIENCE = 16, 8.0
 
 
@@ -130,7 +130,13 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
         # Closed forms are right to some ulps.
         return Advice(wanted, of, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)
     trial = _reference(prepared, dict(asked), of)
-    options = [option for method in methods() if (option := _option(trial, method, wanted)) is not None]
+    options: list[Option] = []
+    # The best are likely among those of high order: with their times known, others are soon given up.
+    for method in sorted(methods(), key=lambda method: -method.order):
+        fastest = min((option.seconds * trial.fraction for option in options), default=trial.seconds)
+        option = _option(trial, method, wanted, _PATIENCE * max(fastest, _SECONDS / 8.0))
+        if option is not None:
+            options.append(option)
     if not options:
         raise ConvergenceError(
             f"no method holds {wanted:g} of {of} over this span, as far as a trial of its first {trial.fraction:.2g} "
@@ -178,31 +184,38 @@ def _reference(prepared: _core._Scene, asked: dict[str, Any], of: str) -> _Trial
     return _Trial(asked, fraction, of, values, scale or 1.0, seconds, span / steps)
 
 
-def _option(trial: _Trial, method: Method, accuracy: float) -> Option | None:
-    """The largest step or tolerance with which a method holds the error over the whole, if it does."""
+def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> Option | None:
+    """The largest step or tolerance with which a method holds the error over the whole, if it does in time."""
     whole = 1.0 / trial.fraction
     growth = whole ** ((0 if method.symplectic else 1) + (1 if trial.of == "position" else 0))
     allowed = accuracy / growth
     if allowed < _FLOOR:
         return None
-    best = None
     direction = 1.0 if float(trial.asked["times"][-1]) >= trial.asked["t0"] else -1.0
     # From a step that is too long on: of as many evaluations as a longest one of the reference.
     sizes = (
-        [10.0 ** (-0.5 * k) for k in range(4, 28)]
+        [max(10.0 ** (-0.5 * k), _TIGHTEST) for k in range(4, 28)]
         if method.adaptive
-        else [16.0 * trial.step * method.stages / 12.0 * 2.0 ** (-0.5 * k) for k in range(2 * _HALVINGS)]
+        else [16.0 * direction * trial.step * method.stages / 12.0 * 2.0 ** (-0.5 * k) for k in range(2 * _HALVINGS)]
     )
-    for size in sizes:
-        how = {"rtol": max(size, _TIGHTEST)} if method.adaptive else {"dt": direction * size}
-        found = trial.of_method(method, **how)
-        if found is None:
-            # Too long a step may be refused or fail; whatever takes the method no step does.
-            continue
-        error, steps, seconds = found
-        if error <= allowed:
-            best = Option({"method": method.name, **how}, error * growth, round(steps * whole), seconds * whole)
+    name = "rtol" if method.adaptive else "dt"
+    # Every fourth until one holds, then those that were passed over, the longest first.
+    stride = 4
+    held = None
+    for k in range(0, len(sizes), stride):
+        found = trial.of_method(method, **{name: sizes[k]})
+        if found is not None and found[0] <= allowed:
+            held = k
             break
-        if seconds > _PATIENCE * max(trial.seconds, _SECONDS):
-            break
-    return best
+        # Too long a step may be refused or fail; one that takes too long is no better when it is shorter.
+        if found is not None and found[2] > patience:
+            return None
+    if held is None:
+        return None
+    for k in [*range(max(0, held - stride + 1), held), held]:
+        found = trial.of_method(method, **{name: sizes[k]})
+        if found is not None and found[0] <= allowed:
+            error, steps, seconds = found
+            how = {"method": method.name, name: sizes[k]}
+            return Option(how, error * growth, round(steps * whole), seconds * whole)
+    return None

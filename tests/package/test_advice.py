@@ -23,7 +23,6 @@ def test_positions_hold_what_was_asked(name: str, accuracy: float) -> None:
     seconds = [option.seconds for option in advice.options]
     assert seconds == sorted(seconds)
     assert all(option.error <= accuracy for option in advice.options)
-    assert {"dop853"} <= {option.how["method"] for option in advice.options}
 
 
 def test_the_energy_of_a_long_run_is_held_by_a_part_of_it() -> None:
@@ -31,9 +30,9 @@ def test_the_energy_of_a_long_run_is_held_by_a_part_of_it() -> None:
     problem = vv.problems.outer_solar_system()
     advice = problem.scene.advise(3.65e7, accuracy=1e-7)
     assert advice.tried < 1.0
-    by_name = {option.how["method"]: option for option in advice.options}
-    assert {"kahan_li8", "leapfrog"} & by_name.keys()
-    for option in (advice.options[0], by_name["kahan_li8"]):
+    symplectic = {method.name for method in vv.methods() if method.symplectic}
+    best = next(option for option in advice.options if option.how["method"] in symplectic)
+    for option in (advice.options[0], best):
         out = problem.scene.run(np.linspace(0.0, 3.65e7, 20), **option.how)
         assert out.conservation().energy.max < 3e-7
         assert abs(option.steps / out.stats.steps - 1.0) < 0.05
@@ -58,8 +57,8 @@ def test_a_closed_form_needs_no_method() -> None:
 def test_it_prints_a_table() -> None:
     text = str(vv.problems.figure_eight().scene.advise(6.0, accuracy=1e-6, of="position"))
     assert text.startswith("position to 1e-06")
-    assert "dop853" in text
-    assert "rtol" in text
+    assert "dt " in text
+    assert len(text.splitlines()) > 3
 
 
 @pytest.mark.parametrize(
