@@ -40,6 +40,7 @@ PROBLEMS: dict[str, vv.problems.Problem] = {
     "arenstorf": vv.problems.arenstorf(),
     "driven oscillator": vv.problems.driven_oscillator(),
     "crossed fields": vv.problems.crossed_fields(),
+    "projectile, quadratic drag": vv.problems.projectile(),
 }
 BARS = {"SciPy": 50.0, "REBOUND": 3.0, "heyoka": 1.0}
 
@@ -271,12 +272,18 @@ def uniform_term(force: Any, mass: NDArray[np.float64]) -> Any:
     return lambda _, __, ___: everywhere
 
 
+def quadratic_term(force: Any, mass: NDArray[np.float64]) -> Any:
+    share = -force.coefficient / mass[:, None]
+    return lambda _, __, velocity: share * np.linalg.norm(velocity, axis=1, keepdims=True) * velocity
+
+
 TERMS: dict[str, Any] = {
     "gravity": gravity_term,
     "spring": spring_term,
     "driven_force": driven_term,
     "uniform_magnetic_field": magnetic_term,
     "linear_drag": lambda force, _: lambda _t, _x, velocity: velocity * (-1.0 / force.tau),
+    "quadratic_drag": quadratic_term,
     "uniform_field": uniform_term,
 }
 

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
-from visviva._field_problems import arenstorf, crossed_fields, driven_oscillator
+from visviva._field_problems import arenstorf, crossed_fields, driven_oscillator, projectile
 from visviva._keywords import known_keywords
 from visviva._problem import Problem, Reference, reference, rows
 from visviva._reference_states import (
@@ -44,6 +44,7 @@ __all__ = [
     "lagrange_triangle",
     "outer_solar_system",
     "pleiades",
+    "projectile",
     "pythagorean",
 ]
 

@@ -17,6 +17,7 @@ ALL = [
     vv.problems.arenstorf(),
     vv.problems.driven_oscillator(),
     vv.problems.crossed_fields(),
+    vv.problems.projectile(),
 ]
 
 
@@ -64,6 +65,18 @@ def test_linear_problems_against_45_digits() -> None:
             end = mp.expm(flow * 100) * begun
             assert abs(problem.references[0].position[0, axis] - float(end[0])) < 1e-14
             assert abs(problem.references[0].position[1, axis] - float(end[1])) < 1e-14
+
+
+def test_the_projectile_against_taylor_series() -> None:
+    """mpmath's solver of differential equations, which knows nothing of ours, to 20 digits."""
+    with mp.workdps(20):
+
+        def rates(_: object, y: list[mp.mpf]) -> list[mp.mpf]:
+            resistance = mp.sqrt(y[2] ** 2 + y[3] ** 2) / 16
+            return [y[2], y[3], -resistance * y[2], -9.75 - resistance * y[3]]
+
+        x, z, *_ = mp.odefun(rates, 0, [mp.mpf(0), mp.mpf(0), mp.mpf(40), mp.mpf(30)])(4)
+    assert np.abs(vv.problems.projectile().references[0].position[0] - [float(x), 0.0, float(z)]).max() < 1e-14
 
 
 def test_pythagorean_up_to_30() -> None:
