@@ -29,8 +29,6 @@ if TYPE_CHECKING:
 
     from visviva.particles import Particles
 
-    Array = NDArray[np.float64]
-
 __all__ = ["from_elements"]
 
 _SIZES = ("semi_major_axis", "pericenter", "semi_latus_rectum", "period")
@@ -43,8 +41,8 @@ class _Bodies:
     """The bodies that are there already."""
 
     mass: list[float]
-    position: list[Array]
-    velocity: list[Array]
+    position: list[NDArray[np.float64]]
+    velocity: list[NDArray[np.float64]]
     names: tuple[str, ...]
 
 
@@ -141,7 +139,7 @@ def _parents(about: Any, before: int, count: int, names: tuple[str, ...]) -> lis
     return parents
 
 
-def _attracting(there: _Bodies, mass: Array, parents: list[int | str]) -> Array:
+def _attracting(there: _Bodies, mass: NDArray[np.float64], parents: list[int | str]) -> NDArray[np.float64]:
     """The mass of what each new body is about."""
     given = fsum(there.mass)
     all_masses = there.mass + mass.tolist()
@@ -154,7 +152,7 @@ def _attracting(there: _Bodies, mass: Array, parents: list[int | str]) -> Array:
     return inside
 
 
-def _check_mu(mu: Array, names: tuple[str, ...], before: int) -> None:
+def _check_mu(mu: NDArray[np.float64], names: tuple[str, ...], before: int) -> None:
     for new, value in enumerate(mu.tolist()):
         who = names[new] if names else f"body {before + new}"
         if value == 0.0:
@@ -165,7 +163,9 @@ def _check_mu(mu: Array, names: tuple[str, ...], before: int) -> None:
             raise InvalidInput("mass", "expected units in which G times the masses is within the range of float64")
 
 
-def _relative(mu: Array, of: dict[str, Array], size: str, direction: str, place: str, t0: float) -> tuple[Array, Array]:
+def _relative(
+    mu: NDArray[np.float64], of: dict[str, NDArray[np.float64]], size: str, direction: str, place: str, t0: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """The states relative to what the bodies are about."""
     node, argument = of["longitude_of_ascending_node"], of[direction]
     longitude = node + argument
@@ -195,7 +195,7 @@ def _relative(mu: Array, of: dict[str, Array], size: str, direction: str, place:
     return r, v
 
 
-def _pericenter(mu: Array, of: dict[str, Array], size: str) -> Array:
+def _pericenter(mu: NDArray[np.float64], of: dict[str, NDArray[np.float64]], size: str) -> NDArray[np.float64]:
     """The least distance q = a|1 − e| = p/(1 + e); of repulsion a(e + 1) and p/(e − 1)."""
     given, e = of[size], of["eccentricity"]
     for name, values, good, expected in (
@@ -219,7 +219,9 @@ def _pericenter(mu: Array, of: dict[str, Array], size: str) -> Array:
     return given * np.where(mu > 0.0, np.abs(1.0 - e), e + 1.0)
 
 
-def _put(there: _Bodies, mass: Array, parents: list[int | str], r: Array, v: Array) -> tuple[Array, Array, Array]:
+def _put(
+    there: _Bodies, mass: NDArray[np.float64], parents: list[int | str], r: NDArray[np.float64], v: NDArray[np.float64]
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Each relative state on that of what it is about."""
     position, velocity = list(there.position), list(there.velocity)
     center, rate, total = (np.array(part) for part in _center(there))
@@ -241,7 +243,7 @@ def _put(there: _Bodies, mass: Array, parents: list[int | str], r: Array, v: Arr
     return np.concatenate([there.mass, mass]), np.array(position), np.array(velocity)
 
 
-def _center(there: _Bodies) -> tuple[Array, Array, float]:
+def _center(there: _Bodies) -> tuple[NDArray[np.float64], NDArray[np.float64], float]:
     """Place and velocity of the centre of mass of the bodies that are there, and their mass; their mean if none has."""
     from visviva.particles import weighted_mean
 

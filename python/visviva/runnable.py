@@ -129,4 +129,5 @@ class Runnable(ABC, Generic[_Result]):
         >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
         ('leapfrog', 1, 15)
         """
-        return Plan._from_core(_core.plan(request.to_core(self._keywords, self._names)))
+        asked = request.to_core(self._keywords, self._names)
+        return Plan._from_core(_core.plan(asked), asked)

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.advice import Advice
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
     from visviva.orbits import Elements
@@ -177,6 +178,52 @@ class Scene(Runnable[Trajectory]):
         from visviva.ensemble import EnsembleScene
 
         return EnsembleScene(self, position=position, velocity=velocity, mass=mass, parameters=parameters)
+
+    def advise(self, t: ArrayLike, *, accuracy: float, of: Literal["energy", "position"] = "energy") -> Advice:
+        """Which method and which step would hold an error, by a trial of the first stretch of the run.
+
+        Every method of the registry is tried on as much of the run as a reference does in a moment, with ever smaller
+        steps until it holds what the stretch may be off, if over the whole span its error grows as theory says: the
+        energy of a symplectic method not at all and its phase linearly, any other's linearly and quadratically. That
+        is a guess where the motion is chaotic or has its hardest part later; steps are equal in such a run, or follow
+        the tolerance. It takes some seconds.
+
+        Parameters
+        ----------
+        t : float or array_like
+            The end of the run, or its output times, as of ``run``.
+        accuracy : float
+            The error that may be made, from 5e-13: of the energy, relative to it; of positions, relative to the size of
+            the system.
+        of : {"energy", "position"}, optional
+            Of what.
+
+        Returns
+        -------
+        Advice
+            Print it; ``scene.run(t, **advice.how)`` runs the fastest.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            By name.
+        visviva.ConvergenceError
+            If no method holds it, or a trial ends early.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.outer_solar_system().scene
+        >>> advice = scene.advise(1e5, accuracy=1e-8)
+        >>> out = scene.run(1e5, **advice.how)
+        >>> out.conservation().energy.max < 1e-8
+        True
+        """
+        from visviva.advice import advise
+        from visviva.request import PlanRequest
+
+        asked = PlanRequest(t).to_core(self._keywords, self._names)
+        return advise(self._keywords, asked, accuracy, of, closed=self.plan(t).closed_form)
 
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state, shape (N, 3).

@@ -170,6 +170,49 @@ def test_the_way_back_is_about_the_same(e: float, nu: float, masses: list[float]
     assert np.allclose(found.mu, np.array(inside[: len(masses)]) + masses, rtol=1e-15)
 
 
+def test_what_a_center_of_mass_is() -> None:
+    """Where `Particles.center_of_mass` has it: of the bodies before, or of those that were given."""
+    binary = vv.Particles.from_elements(1.0, 0.3, G=2.0, semi_major_axis=0.1, eccentricity=0.3, true_anomaly=1.0)
+    orbit = {"pericenter": [1.0, 2.0], "eccentricity": 0.2, "true_anomaly": [0.0, 0.5], "inclination": 0.3}
+    for about in ("jacobi", "center_of_mass"):
+        bodies = vv.Particles.from_elements(binary, [0.5, 0.25], G=2.0, about=about, **orbit)
+        for new, mass in ((2, 0.5), (3, 0.25)):
+            before = bodies[:new] if about == "jacobi" else binary
+            place, rate = before.center_of_mass()
+            mu = 2.0 * (before.mass.sum() + mass)
+            r, v = vv.orbits.state(
+                mu,
+                **{name: value[new - 2] if isinstance(value, list) else value for name, value in orbit.items()},
+            )
+            assert np.allclose(bodies.position[new] - place, r, rtol=0, atol=1e-15)
+            assert np.allclose(bodies.velocity[new] - rate, v, rtol=0, atol=4e-15)
+        # And the way back, about the centre of mass of all others.
+        scene = vv.Scene(bodies, vv.Gravity(2.0))
+        place, rate = bodies[[0, 1, 3]].center_of_mass()
+        found = scene.elements(2, about="center_of_mass")
+        expected = vv.orbits.elements(2.0 * 2.05, bodies.position[2] - place, bodies.velocity[2] - rate)
+        assert np.isclose(found.semi_major_axis, expected.semi_major_axis, rtol=1e-13)
+        assert np.isclose(found.mean_anomaly, expected.mean_anomaly, rtol=1e-12)
+
+
+def test_longitudes_are_sums_of_angles() -> None:
+    angles = {"inclination": 0.4, "longitude_of_ascending_node": 1.1}
+    one = vv.Particles.from_elements(
+        1.0, 0.1, G=1.0, semi_major_axis=1.0, eccentricity=0.3, argument_of_pericenter=0.7, mean_anomaly=0.5, **angles
+    )
+    for given in (
+        {"longitude_of_pericenter": 1.8, "mean_longitude": 2.3},
+        {"argument_of_pericenter": 0.7, "mean_longitude": 2.3},
+        {"longitude_of_pericenter": 1.8, "mean_anomaly": 0.5},
+    ):
+        other = vv.Particles.from_elements(1.0, 0.1, G=1.0, semi_major_axis=1.0, eccentricity=0.3, **given, **angles)
+        assert np.allclose(one.position, other.position, rtol=0, atol=1e-15)
+    found = vv.Scene(one, vv.Gravity(1.0)).elements(1)
+    assert np.isclose(found.longitude_of_ascending_node, 1.1, rtol=1e-14)
+    assert np.isclose(found.longitude_of_pericenter, 1.8, rtol=1e-14)
+    assert np.isclose(found.mean_longitude, 2.3, rtol=1e-14)
+
+
 def test_a_moon_of_a_planet() -> None:
     """Each about the body that was named, which may itself have come in the same call."""
     particles = vv.Particles.from_elements(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 __all__ = ["Bodies", "columns"]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class Bodies:
     """Named bodies that attract each other, as somebody published them."""
 

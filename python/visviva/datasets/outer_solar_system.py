@@ -62,7 +62,7 @@ _APPLEGATE = (
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
+@dataclass(frozen=True, eq=False)
 class OuterSolarSystem(Bodies):
     """Bodies of the outer Solar System; lengths in astronomical units, times in days, masses of the Sun.
 
