@@ -27,7 +27,9 @@ FIELD = {
     "choice": "str",
     "table": "NDArray[np.float64]",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "direction", "point", "table"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(
+    ("numbers", "indices", "vector", "axial_vector", "direction", "point", "table"), "ArrayLike"
+)
 
 # What a class has beside what is declared.
 FURTHER = {

@@ -52,7 +52,7 @@ class Coulomb(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Oblate(Force):
-    body: int | NDArray[np.int64]
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
     G: float
     J2: float | NDArray[np.float64]
     radius: float | NDArray[np.float64]
@@ -64,7 +64,7 @@ class Oblate(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class PostNewtonian(Force):
-    body: int | NDArray[np.int64]
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
     G: float
     c: float
     def __init__(self, body: ArrayLike, G: float, c: float) -> None: ...

@@ -200,12 +200,12 @@ def test_longitudes_are_sums_of_angles() -> None:
     one = vv.Particles.from_elements(
         1.0, 0.1, G=1.0, semi_major_axis=1.0, eccentricity=0.3, argument_of_pericenter=0.7, mean_anomaly=0.5, **angles
     )
-    for given in (
+    for named in (
         {"longitude_of_pericenter": 1.8, "mean_longitude": 2.3},
         {"argument_of_pericenter": 0.7, "mean_longitude": 2.3},
         {"longitude_of_pericenter": 1.8, "mean_anomaly": 0.5},
     ):
-        other = vv.Particles.from_elements(1.0, 0.1, G=1.0, semi_major_axis=1.0, eccentricity=0.3, **given, **angles)
+        other = vv.Particles.from_elements(1.0, 0.1, G=1.0, semi_major_axis=1.0, eccentricity=0.3, **named, **angles)
         assert np.allclose(one.position, other.position, rtol=0, atol=1e-15)
     found = vv.Scene(one, vv.Gravity(1.0)).elements(1)
     assert np.isclose(found.longitude_of_ascending_node, 1.1, rtol=1e-14)
