@@ -18,15 +18,32 @@ WRITTEN = "# Written by tools/write_stubs.py from the core's registry.\n"
 FIELD = {
     "number": "float",
     "numbers": "float | NDArray[np.float64]",
-    "indices": "int | NDArray[np.int64]",
+    "indices": "int | str | tuple[int | str, ...] | NDArray[np.int64]",
     "vector": "tuple[float, float, float]",
     "axial_vector": "tuple[float, float, float]",
     "direction": "tuple[float, float, float]",
     "point": "tuple[float, float, float]",
     "potential": "Potential",
     "choice": "str",
+    "table": "NDArray[np.float64]",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "direction", "point"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(
+    ("numbers", "indices", "vector", "axial_vector", "direction", "point", "table"), "ArrayLike"
+)
+
+# What a class has beside what is declared.
+FURTHER = {
+    "ScreenedCoulomb": """    @classmethod
+    def between(
+        cls,
+        Z1: float,
+        Z2: float,
+        screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"] = "zbl",
+        e2: float = 14.399645478,
+        bohr_radius: float = 0.529177210544,
+    ) -> Self: ...
+"""
+}
 
 FORCES = """from dataclasses import dataclass
 from typing import Any, ClassVar, Self
@@ -43,6 +60,7 @@ class Force(Declared):
     kind: ClassVar[str]
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
+    def _resolved(self, names: tuple[str, ...], count: int) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
     def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
@@ -70,6 +88,9 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]: ...
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]: ...
 {classes}
+def Custom(  # noqa: N802
+    function: Any, r_min: float, r_max: float, *, tolerance: float = ...
+) -> PiecewisePolynomial: ...
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...
 """
@@ -80,16 +101,31 @@ def class_stub(entry: dict[str, Any], base: str) -> str:
     fields, arguments = [], []
     for parameter in entry["parameters"]:
         name, kind, default = parameter["name"], parameter["kind"], parameter["default"]
-        words = f"Literal[{', '.join(map(repr, parameter['choices']))}]" if parameter["choices"] else None
+        choices = ", ".join(f'"{word}"' for word in parameter["choices"])
+        words = f"Literal[{choices}]" if choices else None
         fields.append(f"    {name}: {words or FIELD[kind]}\n")
+        if default is not None and kind == "choice":
+            default = f'"{parameter["choices"][int(default)]}"'
         given = "" if default is None else f" = {(default,) * 3 if FIELD[kind].startswith('tuple') else default}"
         arguments.append(f"{name}: {words or ARGUMENT[kind]}{given}")
     return (
         "\n@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)\n"
         f"class {entry['class_name']}({base}):\n"
         + "".join(fields)
-        + f"    def __init__(self, {', '.join(arguments)}) -> None: ...\n"
+        + signature(["self", *arguments])
+        + FURTHER.get(entry["class_name"], "")
     )
+
+
+def signature(arguments: list[str]) -> str:
+    """The line of ``__init__``, broken as the formatter breaks it."""
+    line = f"    def __init__({', '.join(arguments)}) -> None: ...\n"
+    if len(line) <= 121:
+        return line
+    line = f"        {', '.join(arguments)}\n"
+    if len(line) > 121:
+        line = "".join(f"        {argument},\n" for argument in arguments)
+    return f"    def __init__(\n{line}    ) -> None: ...\n"
 
 
 def stub(template: str, entries: list[dict[str, Any]], base: str, others: list[str]) -> str:
@@ -138,7 +174,7 @@ def main() -> int:
     init = PACKAGE / "__init__.py"
     files = {
         PACKAGE / "forces.pyi": stub(FORCES, forces, "Force", []),
-        PACKAGE / "potentials.pyi": stub(POTENTIALS, potentials, "Potential", ["potential_by_name"]),
+        PACKAGE / "potentials.pyi": stub(POTENTIALS, potentials, "Potential", ["Custom", "potential_by_name"]),
         init: package(init.read_text(), [entry["class_name"] for entry in forces]),
     }
     stale = [path for path, text in files.items() if not path.exists() or path.read_text() != text]

@@ -23,6 +23,7 @@ SCRIPTS = (
     "same_bits",
     "solve_ivp",
     "overhead",
+    "work_precision",
 )
 
 

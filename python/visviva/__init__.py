@@ -20,10 +20,13 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "Advice": "advice",
+    "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Cost": "plan",
     "Coulomb": "forces",
     "Damper": "forces",
     "Drift": "conservation",
@@ -43,9 +46,11 @@ _HOME = {
     "Oblate": "forces",
     "OdeResult": "initial_value",
     "OdeSolution": "initial_value",
+    "Option": "advice",
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
+    "Point": "comparison",
     "PostNewtonian": "forces",
     "QuadraticDrag": "forces",
     "RotatingFrame": "forces",
@@ -58,9 +63,11 @@ _HOME = {
     "UniformField": "forces",
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
+    "WorkPrecision": "comparison",
     "load": "io",
     "methods": "integrators",
     "solve_ivp": "initial_value",
+    "work_precision": "comparison",
 }
 _ROOMS = (
     "datasets",
@@ -74,14 +81,18 @@ _ROOMS = (
     "scattering",
     "stress",
     "typing",
+    "units",
 )
 
 __all__ = [
     "AccuracyWarning",
+    "Advice",
+    "BodyMotion",
     "CentralField",
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Cost",
     "Coulomb",
     "Damper",
     "Drift",
@@ -101,9 +112,11 @@ __all__ = [
     "Oblate",
     "OdeResult",
     "OdeSolution",
+    "Option",
     "PairPotential",
     "Particles",
     "Plan",
+    "Point",
     "PostNewtonian",
     "QuadraticDrag",
     "RotatingFrame",
@@ -116,6 +129,7 @@ __all__ = [
     "UniformField",
     "UniformMagneticField",
     "UnknownKeyword",
+    "WorkPrecision",
     "datasets",
     "drag",
     "errors",
@@ -130,10 +144,28 @@ __all__ = [
     "solve_ivp",
     "stress",
     "typing",
+    "units",
+    "work_precision",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, drag, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
+    from visviva import (
+        datasets,
+        drag,
+        errors,
+        events,
+        forces,
+        orbits,
+        potentials,
+        problems,
+        scattering,
+        stress,
+        typing,
+        units,
+    )
+    from visviva.advice import Advice, Option
+    from visviva.body import BodyMotion
+    from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
@@ -170,7 +202,7 @@ if TYPE_CHECKING:
     from visviva.invariants import Invariants
     from visviva.io import load
     from visviva.particles import Particles
-    from visviva.plan import Plan
+    from visviva.plan import Cost, Plan
     from visviva.recorded import Stats
     from visviva.scene import Scene
     from visviva.status import Status

@@ -64,6 +64,36 @@ def compiled(fun: Any, args: object) -> Compiled | None:
     return None
 
 
+def of_distance(function: Any) -> Callable[[float], float] | None:
+    """Give the compiled function ``double f(double r)`` that this is, or None for a function of Python.
+
+    Raises
+    ------
+    InvalidInput
+        For a compiled function of another signature.
+    """
+    prototype = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)
+    expected = "double(double)"
+    address, signature, keep = None, expected, function
+    if isinstance(function, int | np.integer) and not isinstance(function, bool):
+        address = int(function)
+    elif isinstance(function, _FUNCTION):
+        address, signature = ctypes.cast(function, ctypes.c_void_p).value, _of_ctypes(function, expected)
+    elif isinstance(function, tuple) and type(function).__name__ == "LowLevelCallable":
+        address, _, signature = _capsule(function, "function", "double f(double r)")
+    elif isinstance(getattr(function, "address", None), int) and hasattr(function, "native_name"):  # numba's CFunc
+        address, signature = function.address, _of_numba(function)
+    else:
+        return None
+    if signature != expected:
+        raise InvalidInput("function", f"expected a compiled function double f(double r), got {signature}")
+    if not address:
+        raise InvalidInput("function", f"expected the address of double f(double r), got {address}")
+    compiled: Any = prototype(address)
+    compiled.kept = keep  # alive as long as what is called
+    return compiled  # type: ignore[no-any-return]
+
+
 def _with(fun: object, address: int | None, takes_data: bool, args: object) -> Compiled:
     data = _numbers(args)
     if data is not None and not takes_data:
@@ -86,12 +116,12 @@ def _takes_data(signature: str) -> bool:
     raise InvalidInput("fun", f"expected a compiled function {_SIGNATURE}, got {signature}")
 
 
-def _of_ctypes(fun: Any) -> str:
+def _of_ctypes(fun: Any, expected: str = _PLAIN) -> str:
     """Its signature; one that declares none is taken for what is expected."""
     if fun.argtypes is None:
-        return _PLAIN
+        return expected
     names = {ctypes.c_double: "double", _POINTER: "double*", ctypes.c_void_p: "void*"}
-    result = "void" if fun.restype is None else fun.restype.__name__
+    result = "void" if fun.restype is None else names.get(fun.restype, fun.restype.__name__)
     return f"{result}({','.join(names.get(kind, kind.__name__) for kind in fun.argtypes)})"
 
 
@@ -103,6 +133,15 @@ def _of_numba(fun: Any) -> str:
 
 
 def _low_level(fun: Any, args: object) -> Compiled:
+    address, context, signature = _capsule(fun, "fun", _SIGNATURE)
+    if context is None:
+        return _with(fun, address, _takes_data(signature), args)
+    if args is not None:
+        raise InvalidInput("args", "expected none beside the user_data of the LowLevelCallable; give one of them")
+    return Compiled(address, context if _takes_data(signature) else None, fun)
+
+
+def _capsule(fun: Any, argument: str, expected: str) -> tuple[int | None, int | None, str]:
     """Take the pointers out of the capsule that SciPy keeps in the tuple; a C string there is the signature."""
     api = ctypes.pythonapi
     kinds: dict[str, tuple[type, list[type]]] = {
@@ -118,12 +157,6 @@ def _low_level(fun: Any, args: object) -> Compiled:
     capsule = tuple.__getitem__(fun, 0)
     name = ask("PyCapsule_GetName", capsule)
     if name is None:
-        raise InvalidInput("fun", f"expected a LowLevelCallable of {_SIGNATURE}, got one without a signature")
+        raise InvalidInput(argument, f"expected a LowLevelCallable of {expected}, got one without a signature")
     signature = name.decode().replace("const ", "").replace(" ", "")
-    address = ask("PyCapsule_GetPointer", capsule, name)
-    context = ask("PyCapsule_GetContext", capsule)
-    if context is None:
-        return _with(fun, address, _takes_data(signature), args)
-    if args is not None:
-        raise InvalidInput("args", "expected none beside the user_data of the LowLevelCallable; give one of them")
-    return Compiled(address, context if _takes_data(signature) else None, fun)
+    return ask("PyCapsule_GetPointer", capsule, name), ask("PyCapsule_GetContext", capsule), signature

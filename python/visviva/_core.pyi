@@ -1,10 +1,13 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
 from collections.abc import Callable
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+# Sets of forces, and which of them each copy has.
+_OwnForces: TypeAlias = tuple[list[list[dict[str, Any]]], list[int]]
 
 class _Scene(TypedDict):
     """One or more copies of a scene: an axis over the copies leads every array."""
@@ -13,6 +16,7 @@ class _Scene(TypedDict):
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     forces: list[dict[str, Any]]
+    own_forces: _OwnForces | None
     t0: float
     continuation: _Continuation | None
 
@@ -108,6 +112,11 @@ def methods() -> list[dict[str, Any]]: ...
 def potentials() -> list[dict[str, Any]]: ...
 def forces() -> list[dict[str, Any]]: ...
 def dimensions(description: dict[str, Any]) -> list[tuple[float, float, float]]: ...
+def fitted(
+    sample: Callable[[NDArray[np.float64]], NDArray[np.float64]], between: tuple[float, float], tolerance: float
+) -> tuple[NDArray[np.float64], NDArray[np.float64], float]: ...
+def screening_length(name: str, first: float, second: float) -> float: ...
+def check_potential(description: dict[str, Any]) -> tuple[tuple[float, float] | None, bool]: ...
 def potential(
     description: dict[str, Any], r: NDArray[np.float64]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
@@ -156,6 +165,7 @@ def orbit_anomaly(
     name: str, anomaly: NDArray[np.float64], eccentricity: NDArray[np.float64], repulsive: bool
 ) -> NDArray[np.float64]: ...
 def orbit_period(mu: NDArray[np.float64], semi_major_axis: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def orbit_semi_major_axis(mu: NDArray[np.float64], period: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def orbit_free_fall_time(
     mu: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
 ) -> NDArray[np.float64]: ...

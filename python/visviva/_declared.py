@@ -14,6 +14,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, in_range, number, positive, whole_number
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -27,14 +28,16 @@ _VECTORS = ("vector", "axial_vector", "direction", "point")
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
-    "indices": "int or array_like of int",
+    "indices": "int or str, or array_like of them",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
     "direction": "array_like, shape (3,)",
     "point": "array_like, shape (3,)",
     "potential": "visviva.potentials.Potential",
     "choice": "str",
+    "table": "array_like, shape (P,)",
 }
+_SHOWN = 8  # numbers of a table that are printed
 _SIGNS = {"positive": ", positive", "not_negative": ", not negative"}
 
 
@@ -55,6 +58,8 @@ class Parameter:
         """The value of a parameter that is not given; None if it has to be."""
         if self.default is None:
             return None
+        if self.kind == "choice":
+            return self.choices[int(self.default)]
         return (self.default,) * 3 if self.kind in _VECTORS else self.default
 
     def check(self, value: Any) -> Any:
@@ -70,6 +75,9 @@ class Parameter:
             return self._numbers(value)
         if self.kind == "indices":
             return self._indices(value)
+        if self.kind == "table":
+            table: NDArray[np.float64] = _frozen(float_array(self.name, value, (None,)), value)
+            return table
         if self.kind == "potential":
             return _potential(self.name, value)
         if value not in self.choices:
@@ -95,9 +103,14 @@ class Parameter:
         kept: NDArray[np.float64] = _frozen(array, value)
         return kept
 
-    def _indices(self, value: Any) -> int | NDArray[np.int64]:
+    def _indices(self, value: Any) -> int | str | tuple[int | str, ...] | NDArray[np.int64]:
+        if isinstance(value, str):
+            return value
         if not isinstance(value, np.ndarray | list | tuple):
             return whole_number(self.name, value, low=0)
+        if any(isinstance(each, str) for each in value):
+            # Names wait for the scene to say which bodies they are.
+            return tuple(each if isinstance(each, str) else whole_number(self.name, each, low=0) for each in value)
         array = np.asarray(value)
         if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
             raise InvalidInput(
@@ -112,11 +125,19 @@ class Parameter:
 
     def to_core(self, value: Any) -> Any:
         """What the core and a file know it by."""
-        if self.kind in ("numbers", *_VECTORS):
+        if self.kind in ("numbers", "table", *_VECTORS):
             return np.atleast_1d(np.array(value, dtype=float))
         if self.kind == "indices":
+            if isinstance(value, str | tuple):
+                raise InvalidInput(self.name, f"expected indices of bodies outside a scene, got {value!r}")
             return np.atleast_1d(np.array(value, dtype=np.int64))
         return value._to_core() if self.kind == "potential" else value
+
+    def resolved(self, value: Any, names: tuple[str, ...], count: int) -> Any:
+        """The value with the indices of the bodies that are given by name."""
+        if isinstance(value, str):
+            return body_index(self.name, value, names, count)
+        return self.check([body_index(self.name, each, names, count) for each in value])
 
     def from_core(self, value: Any) -> Any:
         """The value that `to_core` described, from a file."""
@@ -127,6 +148,13 @@ class Parameter:
 
             return potential_from_core(value)
         return value
+
+    def shown(self, value: Any) -> str:
+        """The value as it is printed; of a long table its ends."""
+        if self.kind != "table" or len(value) <= _SHOWN:
+            return repr(_plain(value))
+        first, last = (", ".join(map(repr, part.tolist())) for part in (value[: _SHOWN // 2], value[-1:]))
+        return f"[{first}, ..., {last}]"
 
     def document(self) -> list[str]:
         """Its entry in the documentation."""
@@ -158,7 +186,7 @@ class Declared:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}
 
     def __repr__(self) -> str:
-        shown = (f"{name}={_plain(value)!r}" for name, value in self._values().items())
+        shown = (f"{p.name}={p.shown(getattr(self, p.name))}" for p in self._parameters)
         return f"{type(self).__name__}({', '.join(shown)})"
 
     def __eq__(self, other: object) -> bool:

@@ -1,7 +1,7 @@
 """Drag of spheres: which law holds and how strong it is, and what is told of a body thrown straight up.
 
-The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both together
-are the mixed law.
+The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both
+together are the mixed law.
 """
 
 from __future__ import annotations

@@ -32,6 +32,7 @@ class Force(Declared):
     kind: ClassVar[str]
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
+    def _resolved(self, names: tuple[str, ...], count: int) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
     def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
@@ -51,7 +52,7 @@ class Coulomb(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Oblate(Force):
-    body: int | NDArray[np.int64]
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
     G: float
     J2: float | NDArray[np.float64]
     radius: float | NDArray[np.float64]
@@ -63,7 +64,7 @@ class Oblate(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class PostNewtonian(Force):
-    body: int | NDArray[np.int64]
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
     G: float
     c: float
     def __init__(self, body: ArrayLike, G: float, c: float) -> None: ...
@@ -122,16 +123,16 @@ class RotatingFrame(Force):
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Spring(Force):
-    i: int | NDArray[np.int64]
-    j: int | NDArray[np.int64]
+    i: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    j: int | str | tuple[int | str, ...] | NDArray[np.int64]
     k: float | NDArray[np.float64]
     length: float | NDArray[np.float64]
     def __init__(self, i: ArrayLike, j: ArrayLike, k: ArrayLike, length: ArrayLike = 0.0) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Damper(Force):
-    i: int | NDArray[np.int64]
-    j: int | NDArray[np.int64]
+    i: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    j: int | str | tuple[int | str, ...] | NDArray[np.int64]
     c: float | NDArray[np.float64]
     def __init__(self, i: ArrayLike, j: ArrayLike, c: ArrayLike) -> None: ...
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
+import numpy as np
+
 from visviva import _core
-from visviva._arrays import float_array
+from visviva._arrays import float_array, number, positive
 from visviva._declared import Declared, make
 from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
@@ -18,7 +20,6 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -37,6 +38,10 @@ class Potential(Declared):
         super().__init_subclass__(**arguments)
         if "_parameters" not in vars(cls):
             refuse_subclass(cls, "a force along the line to a fixed center is CentralField(one of visviva.potentials)")
+
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        _core.check_potential(self._to_core())
 
     @property
     def parameters(self) -> tuple[Any, ...]:
@@ -75,7 +80,7 @@ class Potential(Declared):
         Raises
         ------
         visviva.InvalidInput
-            If a distance is negative or no number.
+            If a distance is negative or no number, or one at which the potential is not known.
 
         Examples
         --------
@@ -88,6 +93,11 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]:
         """−dV/dr at the distances ``r``: positive where the force repels.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            As `value`, and for a potential that jumps: `SquareWell` and `HardSphere` have no finite force.
+
         Examples
         --------
         >>> import visviva as vv
@@ -98,6 +108,11 @@ class Potential(Declared):
 
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]:
         """d²V/dr² at the distances ``r``.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As `force`.
 
         Examples
         --------
@@ -111,16 +126,145 @@ class Potential(Declared):
         distances = float_array("r", r, None)
         if distances.size and not distances.min() >= 0.0:
             raise InvalidInput("r", f"expected distances, numbers of at least 0, got {float(distances.min())!r}")
+        domain, jumps = _core.check_potential(self._to_core())
+        if jumps and which > 0:
+            name = type(self).__name__
+            raise InvalidInput("potential", f"expected one with a finite force, and {name} jumps; ask for its value")
+        if domain is not None and distances.size:
+            first, last = domain
+            beyond = distances[(distances < first) | (distances > last)]
+            if beyond.size:
+                known = f"from {first!r} to {last!r}, where the {type(self).__name__} is known"
+                raise InvalidInput("r", f"expected distances {known}, got {float(beyond[0])!r}")
         results = _core.potential(self._to_core(), distances.ravel())
         return results[which].reshape(distances.shape)
 
 
+def _between(
+    cls: type[Any],
+    Z1: float,
+    Z2: float,
+    screening: str = "zbl",
+    e2: float = 14.399645478,
+    bohr_radius: float = 0.529177210544,
+) -> Any:
+    """The potential between two nuclei, with the screening length that goes with the function.
+
+    Of ``"zbl"`` that is c a / (Z1^0.23 + Z2^0.23), of the others Firsov's, c a / (√Z1 + √Z2)^(2/3), with the Bohr
+    radius a and c = (9 π² / 128)^(1/3) = 0.88534, for which some print 0.8854.
+
+    Parameters
+    ----------
+    Z1, Z2 : float, positive
+        Atomic numbers.
+    screening : {"zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"}, optional
+        Name of φ.
+    e2 : float, positive, optional
+        e²/(4 π ε₀). In eV·Å if not given.
+    bohr_radius : float, positive, optional
+        Bohr's radius in the same units. In Å if not given.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive, or for another name.
+
+    References
+    ----------
+    J. F. Ziegler, J. P. Biersack, U. Littmark, The Stopping and Range of Ions in Solids (1985); O. B. Firsov,
+    Sov. Phys. JETP 6 (1958) 534.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> helium_gold = vv.potentials.ScreenedCoulomb.between(2, 79)
+    >>> round(helium_gold.length, 4)
+    0.12
+    """
+    first, second = positive("Z1", Z1), positive("Z2", Z2)
+    length = positive("bohr_radius", bohr_radius) * _core.screening_length(str(screening), first, second)
+    return cls(positive("e2", e2) * first * second, length, screening)
+
+
+@known_keywords
+def Custom(function: Any, r_min: float, r_max: float, *, tolerance: float = 1e-12) -> Potential:  # noqa: N802
+    """A potential of a function V(r), sampled once: polynomials in pieces that were checked where they were not made.
+
+    Parameters
+    ----------
+    function : callable, int, numba CFunc, ctypes function or scipy.LowLevelCallable
+        V(r) of an array of distances, elementwise; or a compiled ``double f(double r)``, or its address.
+    r_min, r_max : float
+        Distances between which it is known. Beyond them there is no value: asking for one is refused, and a run that
+        comes there ends with `Status.OUTSIDE_DOMAIN`.
+    tolerance : float, optional
+        Largest error of V allowed, from 1e-12 to 1e-4, relative to abs(V) + r abs(dV/dr). The second is taken between a
+        hundredth and a hundred times the largest abs(V) of the piece, so that no jump passes, and the sum as no less
+        than 1e-16 of the largest abs(V) within the octave, as a cutoff comes to zero. It is met at each of 28 places of
+        every piece where its polynomial of degree 13 was not made; pieces are cut in two until it is, and reach over an
+        octave at most.
+
+    Returns
+    -------
+    PiecewisePolynomial
+        With continuous force and curvature, the derivatives of its V(r), and in `error` the largest error found. The
+        function is not kept: it is this that is compared, hashed, pickled and written to files.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a range or tolerance that is none, values that are not finite numbers of the shape of r, and a function that
+        is not smooth enough: the message says how near it came, and where.
+
+    References
+    ----------
+    L. N. Trefethen, Approximation Theory and Approximation Practice (2013), chapters 3 to 8.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> soft = vv.potentials.Custom(lambda r: 1.0 / np.sqrt(1.0 + r**4), r_min=0.0, r_max=50.0)
+    >>> bool(soft.error <= 1e-12), round(float(soft.force(1.0)), 9)
+    (True, 0.707106781)
+    """
+    from visviva._compiled import of_distance
+
+    compiled = of_distance(function)
+    if compiled is None and not callable(function):
+        raise InvalidInput(
+            "function", f"expected a function of r, or a compiled double f(double r), got {type(function).__name__}"
+        )
+
+    def sample(r: NDArray[np.float64]) -> NDArray[np.float64]:
+        if compiled is not None:
+            return np.array([compiled(place) for place in r.tolist()])
+        shape = r.shape
+        values = np.asarray(function(r))
+        if values.shape != shape:
+            raise InvalidInput(
+                "function",
+                f"expected one value for each distance, shape {shape}, got shape {values.shape}; write it for arrays, "
+                "or wrap it in numpy.vectorize",
+            )
+        if values.dtype.kind not in "fiu":
+            raise InvalidInput("function", f"expected real numbers, got an array of {values.dtype.name}")
+        return values.astype(np.float64)
+
+    low, high = number("r_min", r_min), number("r_max", r_max)
+    breaks, coefficients, error = _core.fitted(sample, (low, high), number("tolerance", tolerance))
+    made: Potential = _BY_NAME["piecewise_polynomial"](breaks, coefficients, error)
+    return made
+
+
+# What a class has beside what is declared.
+_FURTHER: dict[str, dict[str, Any]] = {"screened_coulomb": {"between": classmethod(_between)}}
 _BY_NAME = {
-    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"]}) for entry in _core.potentials()
+    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"], **_FURTHER.get(entry["name"], {})})
+    for entry in _core.potentials()
 }
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
 globals().update(_CLASSES)
-__all__ = ["Potential", "potential_by_name"]
+__all__ = ["Custom", "Potential", "potential_by_name"]
 __all__ += list(_CLASSES)
 
 

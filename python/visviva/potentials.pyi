@@ -1,14 +1,32 @@
 # Written by tools/write_stubs.py from the core's registry.
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from visviva._declared import Declared
 
-__all__ = ["Coulomb", "LennardJones", "Potential", "Yukawa", "potential_by_name"]
+__all__ = [
+    "Buckingham",
+    "Coulomb",
+    "Custom",
+    "HardSphere",
+    "LennardJones",
+    "Mie",
+    "Morse",
+    "PiecewisePolynomial",
+    "Plummer",
+    "Potential",
+    "PowerLaw",
+    "ScreenedCoulomb",
+    "SoftSphere",
+    "SquareWell",
+    "Tabulated",
+    "Yukawa",
+    "potential_by_name",
+]
 
 class Potential(Declared):
     name: ClassVar[str]
@@ -25,6 +43,12 @@ class Coulomb(Potential):
     def __init__(self, k: float) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PowerLaw(Potential):
+    k: float
+    n: float
+    def __init__(self, k: float, n: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Yukawa(Potential):
     k: float
     length: float
@@ -36,5 +60,88 @@ class LennardJones(Potential):
     sigma: float
     def __init__(self, epsilon: float, sigma: float) -> None: ...
 
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Mie(Potential):
+    epsilon: float
+    sigma: float
+    n: float
+    m: float
+    def __init__(self, epsilon: float, sigma: float, n: float, m: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Morse(Potential):
+    depth: float
+    a: float
+    r_e: float
+    def __init__(self, depth: float, a: float, r_e: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Buckingham(Potential):
+    A: float
+    b: float
+    C: float
+    def __init__(self, A: float, b: float, C: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Plummer(Potential):
+    k: float
+    a: float
+    def __init__(self, k: float, a: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class SoftSphere(Potential):
+    k: float
+    radius: float
+    n: float
+    def __init__(self, k: float, radius: float, n: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class SquareWell(Potential):
+    depth: float
+    radius: float
+    def __init__(self, depth: float, radius: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class HardSphere(Potential):
+    radius: float
+    def __init__(self, radius: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class ScreenedCoulomb(Potential):
+    k: float
+    length: float
+    screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"]
+    def __init__(
+        self,
+        k: float,
+        length: float,
+        screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"] = "zbl",
+    ) -> None: ...
+    @classmethod
+    def between(
+        cls,
+        Z1: float,
+        Z2: float,
+        screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"] = "zbl",
+        e2: float = 14.399645478,
+        bohr_radius: float = 0.529177210544,
+    ) -> Self: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Tabulated(Potential):
+    r: NDArray[np.float64]
+    V: NDArray[np.float64]
+    def __init__(self, r: ArrayLike, V: ArrayLike) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PiecewisePolynomial(Potential):
+    breaks: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    error: float
+    def __init__(self, breaks: ArrayLike, coefficients: ArrayLike, error: float = 0.0) -> None: ...
+
+def Custom(  # noqa: N802
+    function: Any, r_min: float, r_max: float, *, tolerance: float = ...
+) -> PiecewisePolynomial: ...
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...

@@ -8,6 +8,8 @@ __all__ = ["Status"]
 class Status(IntEnum):
     """How a trajectory ended: `STOPPED` is by a terminal event, which is no failure.
 
+    `OUTSIDE_DOMAIN`: bodies came to a distance at which a potential of the scene is not known, as beyond a table.
+
     Examples
     --------
     >>> import visviva as vv
@@ -21,3 +23,4 @@ class Status(IntEnum):
     INTERRUPTED = 3
     TOO_MANY_STEPS = 4
     STOPPED = 5
+    OUTSIDE_DOMAIN = 6

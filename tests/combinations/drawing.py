@@ -11,12 +11,15 @@ from __future__ import annotations
 
 import inspect
 import random
-from typing import Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
 import visviva as vv
 from visviva import _core
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def force_classes() -> dict[str, type[Any]]:
@@ -30,6 +33,8 @@ def force_classes() -> dict[str, type[Any]]:
 FORCES = force_classes()
 POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
 METHODS = {method.name: method for method in vv.methods()}
+# Potentials a derivative of which jumps somewhere, the third or a higher one.
+ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
 # A function of one's own is no value that a recipe could hold.
 EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function"})
 
@@ -99,10 +104,33 @@ class Draw:
 
     def potential(self) -> vv.potentials.Potential:
         entry = self.random.choice(list(POTENTIALS.values()))
-        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(
-            **{parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
-        )
+        if entry["class_name"] in self.TABLES:
+            return self.TABLES[entry["class_name"]](self)
+        values = {parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
+        # Exponents that go together, whole and broken.
+        if "n" in values:
+            values["n"] = self.random.choice([2.0, 3.0, 2.5, 4.0, 2.0 + values["n"]])
+        if "m" in values:
+            values["n"] += 1.0 + values["m"]
+        made: vv.potentials.Potential = getattr(vv.potentials, entry["class_name"])(**values)
         return made
+
+    def tabulated(self) -> vv.potentials.Potential:
+        """A table that most scenes stay in, with more points where it is steep; wild ones end before a scene does."""
+        r = np.geomspace(2.0**-6, 64.0 if self.tame else 8.0, 80)
+        return vv.potentials.Tabulated(r, self.number() / r + self.number() * np.exp(-r * self.number("positive")))
+
+    def custom(self) -> vv.potentials.Potential:
+        """What `Custom` makes of a function, over distances as of a table."""
+        strength, decay, rate = self.number(), self.number(), self.number("positive")
+        last = 64.0 if self.tame else 8.0
+        return vv.potentials.Custom(lambda r: strength / r + decay * np.exp(-rate * r), 2.0**-6, last, tolerance=1e-9)
+
+    # What has a table is drawn as a whole: its columns go together.
+    TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {
+        "Tabulated": tabulated,
+        "PiecewisePolynomial": custom,
+    }
 
     def indices(self) -> list[int]:
         """Bodies of the listed pairs: the first of each, and when asked again the second, which is another."""

@@ -1,6 +1,5 @@
 """Throws against drag: against a hundred digits, and against the runs of the forces themselves."""
 
-
 import mpmath
 import numpy as np
 import pytest

@@ -14,12 +14,25 @@ from visviva import _core, potentials
 
 # Something to try each parameter with; every potential of the registry is tried.
 VALUES = (1.3, 0.7, 2.1, 0.4)
-ALL = [potentials.potential_by_name(e["name"], VALUES[: len(e["parameters"])]) for e in _core.potentials()]
+JUMPING = ("hard_sphere", "square_well")
+PLACES = np.linspace(0.25, 6.0, 600)
+OTHERS = {
+    "tabulated": (PLACES, 1.3 * np.exp(-0.7 * PLACES) / PLACES),
+    "piecewise_polynomial": potentials.Custom(lambda r: 1.3 * np.exp(-0.7 * r) / r, 0.25, 6.0).parameters,
+    "soft_sphere": (1.3, 9.0, 2.5),
+    "screened_coulomb": (1.3, 0.7, "zbl"),
+}
+SCREENINGS = ("moliere", "kr_c", "lenz_jensen", "thomas_fermi")
+ALL = [
+    potentials.potential_by_name(e["name"], OTHERS.get(e["name"], VALUES[: len(e["parameters"])]))
+    for e in _core.potentials()
+] + [potentials.ScreenedCoulomb(1.3, 0.7, screening) for screening in SCREENINGS]
+SMOOTH = [potential for potential in ALL if potential.name not in JUMPING]
 
 
-@pytest.mark.parametrize("potential", ALL, ids=repr)
+@pytest.mark.parametrize("potential", SMOOTH, ids=repr)
 def test_force_and_curvature_are_derivatives(potential: potentials.Potential) -> None:
-    r = np.geomspace(0.5, 5.0, 23)
+    r = np.geomspace(0.5, 4.9, 23)
     h = 1e-3 * r
     v = [potential.value(r + k * h) for k in (-2, -1, 0, 1, 2)]
     slope = (v[0] - 8 * v[1] + 8 * v[3] - v[4]) / (12 * h)
@@ -36,7 +49,7 @@ def test_values_of_any_shape(potential: potentials.Potential) -> None:
     r = np.linspace(1.0, 2.0, 6).reshape(2, 3)
     assert potential.value(r).shape == (2, 3)
     assert potential.value(1.5).shape == ()
-    assert potential.force(r.T)[2, 1] == potential.force(r)[1, 2]
+    assert potential.value(r.T)[2, 1] == potential.value(r)[1, 2]
     with pytest.raises(vv.InvalidInput) as caught:
         potential.value([1.0, np.nan])
     assert caught.value.argument == "r"
@@ -47,13 +60,13 @@ def test_frozen_hashable_picklable_documented(potential: potentials.Potential) -
     again = pickle.loads(pickle.dumps(potential))
     assert again == potential
     assert hash(again) == hash(potential)
-    assert again.parameters == potential.parameters
+    assert all(map(np.array_equal, again.parameters, potential.parameters))
     name = type(potential).__dataclass_fields__  # type: ignore[attr-defined]
     with pytest.raises(FrozenInstanceError):
         setattr(potential, next(iter(name)), 1.0)
     document = type(potential).__doc__ or ""
     assert "V(r) = " in document
-    assert all(f"\n{field} : float" in document for field in name)
+    assert all(f"\n{field} : " in document for field in name)
 
 
 def test_closed_forms() -> None:

@@ -10,22 +10,50 @@ use crate::forces::{
 };
 use crate::ode::Method;
 use crate::ode::methods::{
-    bogacki_shampine32, boris, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+    blanes_moan_rkn4, blanes_moan_rkn6_11, blanes_moan_rkn6_14, blanes_moan_s6, blanes_moan_s10,
+    bogacki_shampine32, boris, boris4, dop853, dormand_prince54, euler, heun, kahan_li6, kahan_li8, leapfrog,
+    leapfrog_dkd, mclachlan4, midpoint, pefrl4, rk4, ruth3, sofroniou_spaletta6, sofroniou_spaletta8,
+    sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
 };
 use crate::ode::system::{Form, Needs};
-use crate::potentials::{PotentialDeclaration, coulomb, lennard_jones, yukawa};
+use crate::potentials::{
+    PotentialDeclaration, buckingham, coulomb, hard_sphere, lennard_jones, mie, morse, piecewise_polynomial,
+    plummer, power_law, screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
+};
 use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
 pub static METHODS: &[&Method] = &[
+    &euler::METHOD,
+    &midpoint::METHOD,
+    &heun::METHOD,
     &rk4::METHOD,
     &bogacki_shampine32::METHOD,
     &dormand_prince54::METHOD,
+    &tsitouras54::METHOD,
     &dop853::METHOD,
+    &verner98::METHOD,
+    &symplectic_euler::METHOD,
     &leapfrog::METHOD,
+    &leapfrog_dkd::METHOD,
+    &ruth3::METHOD,
     &yoshida4::METHOD,
+    &mclachlan4::METHOD,
+    &pefrl4::METHOD,
+    &blanes_moan_s6::METHOD,
+    &blanes_moan_rkn4::METHOD,
+    &yoshida6::METHOD,
+    &kahan_li6::METHOD,
+    &sofroniou_spaletta6::METHOD,
+    &blanes_moan_s10::METHOD,
+    &blanes_moan_rkn6_11::METHOD,
+    &blanes_moan_rkn6_14::METHOD,
+    &yoshida8::METHOD,
     &kahan_li8::METHOD,
+    &sofroniou_spaletta8::METHOD,
+    &sofroniou_spaletta10::METHOD,
     &boris::METHOD,
+    &boris4::METHOD,
     &stormer13::METHOD,
 ];
 
@@ -68,8 +96,22 @@ pub fn solver(name: &str) -> Result<&'static Method> {
 }
 
 /// Every potential, in the order of the documentation.
-pub static POTENTIALS: &[&PotentialDeclaration] =
-    &[&coulomb::DECLARATION, &yukawa::DECLARATION, &lennard_jones::DECLARATION];
+pub static POTENTIALS: &[&PotentialDeclaration] = &[
+    &coulomb::DECLARATION,
+    &power_law::DECLARATION,
+    &yukawa::DECLARATION,
+    &lennard_jones::DECLARATION,
+    &mie::DECLARATION,
+    &morse::DECLARATION,
+    &buckingham::DECLARATION,
+    &plummer::DECLARATION,
+    &soft_sphere::DECLARATION,
+    &square_well::DECLARATION,
+    &hard_sphere::DECLARATION,
+    &screened_coulomb::DECLARATION,
+    &tabulated::DECLARATION,
+    &piecewise_polynomial::DECLARATION,
+];
 
 /// The potential of a name.
 pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {

@@ -36,10 +36,12 @@ mod _core {
     #[pymodule_export]
     use crate::orbits::{
         conic_from_constants, conic_from_state, orbit_anomaly, orbit_elements, orbit_free_fall_time,
-        orbit_period, orbit_propagate, orbit_state,
+        orbit_period, orbit_propagate, orbit_semi_major_axis, orbit_state,
     };
     #[pymodule_export]
-    use crate::registry::{dimensions, forces, methods, potential, potentials};
+    use crate::registry::{
+        check_potential, dimensions, fitted, forces, methods, potential, potentials, screening_length,
+    };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]

@@ -2,16 +2,18 @@
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
-use crate::gate::compute;
-use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
+use crate::gate::{compute, compute_attached};
+use crate::solve_ivp::Raised;
+use numpy::{PyArray1, PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::memory::reserved;
-use visviva_core::potentials::Potential;
+use visviva_core::potentials::fit::fit;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
+use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
 use visviva_core::words::unknown;
 
@@ -73,6 +75,7 @@ fn row<'py, T: ?Sized>(py: Python<'py>, declaration: &Declaration<T>) -> PyResul
             Kind::Point => ("point", Sign::Any),
             Kind::Potential => ("potential", Sign::Any),
             Kind::Choice(_) => ("choice", Sign::Any),
+            Kind::Table(sign) => ("table", sign),
         };
         let sign = match sign {
             Sign::Any => "any",
@@ -170,6 +173,9 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
             Value::Potential(described_potential(&get::<Bound<'_, PyDict>>(description, name)?)?)
         }
         Kind::Choice(_) => Value::Word(get(description, name)?),
+        Kind::Table(_) => {
+            Value::Table(copied(name, &get::<Column<'_>>(description, name)?, [None])?.0.into())
+        }
     })
 }
 
@@ -189,6 +195,46 @@ type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Distances between two looks at whether somebody asks to stop.
 const AT_A_TIME: usize = 1024;
+
+/// A function of the distance as polynomials in pieces: where they meet, their coefficients and the largest error found.
+/// `sample` gives the values at an array of distances.
+#[pyfunction]
+pub(crate) fn fitted<'py>(
+    py: Python<'py>,
+    sample: &Bound<'py, PyAny>,
+    between: (f64, f64),
+    tolerance: f64,
+) -> PyResult<(Values<'py>, Values<'py>, f64)> {
+    let exception = Raised::default();
+    let outcome = compute_attached(py, |_| {
+        let mut values = |r: &[f64]| {
+            let asked =
+                |values: Bound<'py, PyAny>| copied("function", &values.extract::<Column<'_>>()?, [None]);
+            Ok(exception.kept(sample.call1((PyArray1::from_slice(py, r),)).and_then(asked))?.0)
+        };
+        fit(&mut values, [between.0, between.1], tolerance)
+    });
+    if let Some(exception) = exception.exception() {
+        return Err(exception);
+    }
+    let made = outcome?.whole(py)?;
+    let (breaks, terms) = (made.breaks.len(), made.coefficients.len());
+    Ok((moved(py, made.breaks, &[breaks])?, moved(py, made.coefficients, &[terms])?, made.error))
+}
+
+/// The screening length between two nuclei, in Bohr radii.
+#[pyfunction]
+pub(crate) fn screening_length(py: Python<'_>, name: &str, first: f64, second: f64) -> PyResult<f64> {
+    screening::screening_length(name, [first, second]).map_err(|error| raised(py, error))
+}
+
+/// Refuses what no potential can be made of; gives the distances between which it is known, if not everywhere, and
+/// whether it jumps.
+#[pyfunction]
+pub(crate) fn check_potential(description: &Bound<'_, PyDict>) -> PyResult<(Option<(f64, f64)>, bool)> {
+    let potential = described_potential(description)?;
+    Ok((potential.domain(), potential.jumps()))
+}
 
 /// V(r), −dV/dr and d²V/dr² of a potential at each distance.
 #[pyfunction]

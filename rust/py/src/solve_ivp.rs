@@ -23,16 +23,20 @@ type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 
 /// The exception of a function of Python that ended a run.
 #[derive(Default)]
-struct Raised(Mutex<Option<PyErr>>);
+pub(crate) struct Raised(Mutex<Option<PyErr>>);
 
 impl Raised {
     /// The value, or the first exception kept and the run ended.
-    fn kept<T>(&self, outcome: PyResult<T>) -> Result<T> {
+    pub(crate) fn kept<T>(&self, outcome: PyResult<T>) -> Result<T> {
         outcome.map_err(|exception| {
             let mut kept = self.0.lock().unwrap_or_else(PoisonError::into_inner);
             let _ = kept.get_or_insert(exception);
             Error::Interrupted
         })
+    }
+    /// What was kept.
+    pub(crate) fn exception(self) -> Option<PyErr> {
+        self.0.into_inner().unwrap_or_else(PoisonError::into_inner)
     }
 }
 
@@ -252,8 +256,7 @@ pub(crate) fn solve_ivp<'py>(
         }
     };
     let (solution, _) = outcome.partial(py)?;
-    let exception = exception.0.into_inner().unwrap_or_else(PoisonError::into_inner);
-    let cause = match exception {
+    let cause = match exception.exception() {
         // Ctrl-C that came while a function of Python ran: what there is, is kept.
         Some(exception) if is_ctrl_c(py, &exception) => Some(exception),
         Some(exception) => return Err(exception),

@@ -2,7 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
-use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
+use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm, check_force, outside};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
@@ -16,7 +16,7 @@ use crate::potentials::kernels::Around;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
 use crate::potentials::{Potential, near_one};
 use crate::units::Units;
-use crate::words::numbers;
+use crate::words::{number, numbers};
 use std::sync::Arc;
 
 /// What it declares about itself.
@@ -88,6 +88,16 @@ impl ForceTerm for CentralField {
     }
 
     fn validate(&self, bodies: &Bodies<'_>) -> Result<()> {
+        check_force("CentralField", &*self.potential)?;
+        if let Some(domain) = self.domain() {
+            let from = |position: [f64; 3]| distance(position, self.center);
+            let beyond = |position: &[f64; 3]| !(domain.0..=domain.1).contains(&from(*position));
+            if let Some(index) = bodies.position.iter().position(beyond) {
+                let apart = number(from(bodies.position[index]));
+                let body = format!("{} is {apart} from the center", bodies.name("position", index));
+                return Err(outside("CentralField", &*self.potential, domain, &body));
+            }
+        }
         if !self.potential.singular() {
             return Ok(());
         }
@@ -114,6 +124,9 @@ impl ForceTerm for CentralField {
     }
     fn keeps_plane(&self) -> bool {
         self.center[2] == 0.0
+    }
+    fn domain(&self) -> Option<(f64, f64)> {
+        self.potential.domain()
     }
     fn center(&self) -> Option<[f64; 3]> {
         Some(self.center)

@@ -10,10 +10,11 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context};
 use super::gravity::RING_MAX;
-use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
+use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm, check_force, outside};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;
+use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
@@ -21,7 +22,7 @@ use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::kernels::Pairs;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
 use crate::potentials::{Potential, near_one};
-use crate::words::numbers;
+use crate::words::{number, numbers};
 use std::sync::Arc;
 
 /// Rows per shard at least, and the most shards.
@@ -106,6 +107,8 @@ impl ForceTerm for PairPotential {
         Ok((energy, work))
     }
     fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        check_force("PairPotential", &*self.potential)?;
+        self.within(view)?;
         match view.coincident(|_, _| self.potential.singular()) {
             None => Ok(()),
             Some((i, j)) => Err(Error::invalid(
@@ -131,12 +134,16 @@ impl ForceTerm for PairPotential {
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING
     }
+    fn domain(&self) -> Option<(f64, f64)> {
+        self.potential.domain()
+    }
     fn keeps_plane(&self) -> bool {
         true
     }
     /// In which the force at that distance moves the mass over it.
     fn unit_of_time(&self, length: i32, mass: i32) -> Option<i32> {
-        let [_, force, _] = self.potential.evaluate(&[power_of_two(length)]);
+        let (first, last) = self.domain().unwrap_or((0.0, f64::INFINITY));
+        let [_, force, _] = self.potential.evaluate(&[power_of_two(length).clamp(first, last)]);
         let fine = |force: &&f64| force.is_finite() && **force != 0.0;
         force.first().filter(fine).map(|&force| (length + mass - exponent(force)).div_euclid(2))
     }
@@ -151,14 +158,33 @@ impl ForceTerm for PairPotential {
         for (at, &(_, mass, position)) in bodies.iter().enumerate() {
             // The nearest in the list is enough for an estimate.
             let others = bodies.iter().enumerate().filter(|(other, _)| *other != at);
-            let nearest = others
-                .map(|(_, other)| crate::numerics::points::distance(position, other.2))
-                .fold(f64::MAX, f64::min);
+            let nearest = others.map(|(_, other)| distance(position, other.2)).fold(f64::MAX, f64::min);
             let [_, force, _] = potential.evaluate(&[nearest]);
             strongest = force.iter().fold(strongest, |m, force| m.max(force.abs() / mass));
             ticker.tick()?;
         }
         Ok(strongest)
+    }
+}
+
+impl PairPotential {
+    /// Refuses pairs at distances at which the potential is not.
+    fn within(&self, view: &Bodies<'_>) -> Result<()> {
+        let Some(domain) = self.domain() else { return Ok(()) };
+        for copy in 0..view.copies {
+            let (_, position) = view.copy(copy);
+            for i in 0..position.len() {
+                for j in i + 1..position.len() {
+                    let apart = distance(position[i], position[j]);
+                    if !(domain.0..=domain.1).contains(&apart) {
+                        let name = |at: usize| view.name("position", copy * view.particles + at);
+                        let bodies = format!("{} and {} are {} apart", name(i), name(j), number(apart));
+                        return Err(outside("PairPotential", &*self.potential, domain, &bodies));
+                    }
+                }
+            }
+        }
+        Ok(())
     }
 }
 

@@ -13,6 +13,13 @@ pub(super) const INVERSE_ROOT_LINE: i64 = 0x5fe6_eb50_c7b5_37a9;
 /// Keeps the sign, the exponent and the 17 leading bits of the significand, the hidden one included.
 pub(super) const LEADING_BITS: i64 = !((1 << 36) - 1);
 
+/// The bits of a number after its exponent, …
+pub(super) const SIGNIFICAND_BITS: i64 = (1 << 52) - 1;
+/// … those of the exponent of 1, …
+pub(super) const EXPONENT_OF_ONE: i64 = 1023 << 52;
+/// … and those of 2^52, the last bits of which count.
+pub(super) const COUNTING: i64 = 1075 << 52;
+
 /// Scalars whose bits are those of binary64.
 pub trait Binary: Real {
     /// 2ⁿ for integers n from -1022 to 1023; anything else is a broken promise of the caller.
@@ -21,6 +28,10 @@ pub trait Binary: Real {
     fn inverse_root_guess(self) -> Self;
     /// Cut off after 17 bits, so that its square and its cube are exact.
     fn leading_bits(self) -> Self;
+    /// The m of m·2ᵏ, 1 ≤ m < 2, for positive normal numbers.
+    fn significand(self) -> Self;
+    /// The k of m·2ᵏ, for positive normal numbers.
+    fn binary_exponent(self) -> Self;
 }
 
 impl Binary for f64 {
@@ -36,6 +47,14 @@ impl Binary for f64 {
     fn leading_bits(self) -> Self {
         f64::from_bits(self.to_bits() & LEADING_BITS as u64)
     }
+    #[inline(always)]
+    fn significand(self) -> Self {
+        f64::from_bits(self.to_bits() & SIGNIFICAND_BITS as u64 | EXPONENT_OF_ONE as u64)
+    }
+    #[inline(always)]
+    fn binary_exponent(self) -> Self {
+        f64::from_bits(self.to_bits() >> 52 | COUNTING as u64) - BIASED_SHIFT
+    }
 }
 
 impl Binary for Lanes {
@@ -50,5 +69,13 @@ impl Binary for Lanes {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         self.map(f64::leading_bits)
+    }
+    #[inline(always)]
+    fn significand(self) -> Self {
+        self.map(f64::significand)
+    }
+    #[inline(always)]
+    fn binary_exponent(self) -> Self {
+        self.map(f64::binary_exponent)
     }
 }

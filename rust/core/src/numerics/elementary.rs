@@ -20,7 +20,7 @@ pub(super) const INTEGER_SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 
 /// Σ cᵢ xⁱ, even and odd powers in two chains (half the latency of Horner's rule).
 #[inline(always)]
-fn polynomial<S: Real, const N: usize>(x: S, coefficients: &[f64; N]) -> S {
+pub(super) fn polynomial<S: Real, const N: usize>(x: S, coefficients: &[f64; N]) -> S {
     let square = x * x;
     // No closures, which may be compiled without the tier's instructions.
     let mut chains = [S::zero(); 2];
@@ -34,7 +34,7 @@ fn polynomial<S: Real, const N: usize>(x: S, coefficients: &[f64; N]) -> S {
 
 /// The nearest integer, for |x| < 2^51.
 #[inline(always)]
-fn nearest_integer<S: Real>(x: S) -> S {
+pub(super) fn nearest_integer<S: Real>(x: S) -> S {
     (x + S::splat(INTEGER_SHIFT)) - S::splat(INTEGER_SHIFT)
 }
 
@@ -45,7 +45,7 @@ const LN2_LOW: f64 = 5.497_923_018_708_371e-14;
 
 /// 1/(k+2)!: the Taylor series of (eʳ - 1 - r)/r². The first term left out, r¹⁴/14!, is below
 /// 5e-18 for |r| ≤ ln 2 / 2.
-const EXPONENTIAL: [f64; 12] = [
+pub(super) const EXPONENTIAL: [f64; 12] = [
     1.0 / 2.0,
     1.0 / 6.0,
     1.0 / 24.0,

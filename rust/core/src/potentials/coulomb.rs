@@ -1,8 +1,7 @@
 //! V = k/r: charges, and gravity with k = −G·m·M.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Formula, PotentialDeclaration, held};
-use crate::numerics::elementary::Exponential;
+use super::{Analytic, Formula, PotentialDeclaration, held};
 
 /// V = k/r.
 #[derive(Clone, Copy, Debug)]
@@ -38,15 +37,15 @@ impl Formula for Coulomb {
     }
 
     #[inline(always)]
-    fn value<S: Exponential>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, r: S) -> S {
         S::splat(self.k) / r
     }
     #[inline(always)]
-    fn force<S: Exponential>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, r: S) -> S {
         S::splat(self.k) / (r * r)
     }
     #[inline(always)]
-    fn curvature<S: Exponential>(&self, r: S) -> S {
+    fn curvature<S: Analytic>(&self, r: S) -> S {
         S::splat(2.0 * self.k) / (r * r * r)
     }
     fn inverse_distance_strength(&self) -> Option<f64> {

@@ -3,9 +3,8 @@
 //! They know places and distances and nothing of forces, which call them by way of [`Potential`](super::Potential):
 //! one indirect call for rows of bodies, everything hot inside it.
 
-use super::Formula;
+use super::{Analytic, Formula};
 use crate::numerics::element::Shape;
-use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::tiered;
 
@@ -21,7 +20,7 @@ pub struct Around {
 }
 
 #[inline(always)]
-fn around<V: Vector8 + Exponential, P: Formula>(
+fn around<V: Vector8 + Analytic, P: Formula>(
     potential: &P,
     field: &Around,
     q: &[Lanes],
@@ -38,8 +37,13 @@ fn around<V: Vector8 + Exponential, P: Formula>(
             d[c] = q[c * rows + row] - V::splat(field.center[c]);
             r2 += d[c] * d[c];
         }
-        let r = r2.sqrt();
-        let pull = potential.force(r) / r * inverse_mass[row];
+        let pull = if P::SINGULAR {
+            let r = r2.sqrt();
+            potential.force(r) / r
+        } else {
+            potential.over_distance(r2)
+        };
+        let pull = pull * inverse_mass[row];
         for c in 0..components {
             let a = &mut a[c * rows + row];
             let term = pull * d[c];
@@ -68,13 +72,13 @@ const GROUP: usize = 4;
 
 /// How much of `d` is the force along it, for distances squared.
 #[inline(always)]
-fn pull<V: Vector8 + Exponential, P: Formula>(potential: &P, d: [V; 3]) -> V {
+fn pull<V: Vector8 + Analytic, P: Formula>(potential: &P, d: [V; 3]) -> V {
     let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
     potential.over_distance(r2)
 }
 
 #[inline(always)]
-fn between_systems<V: Vector8 + Exponential, P: Formula>(
+fn between_systems<V: Vector8 + Analytic, P: Formula>(
     potential: &P,
     pairs: &Pairs,
     q: &[Lanes],
@@ -102,7 +106,7 @@ fn between_systems<V: Vector8 + Exponential, P: Formula>(
 }
 
 #[inline(always)]
-fn between_few<V: Vector8 + Exponential, P: Formula>(
+fn between_few<V: Vector8 + Analytic, P: Formula>(
     potential: &P,
     pairs: &Pairs,
     q: &[Lanes],
@@ -126,7 +130,7 @@ fn between_few<V: Vector8 + Exponential, P: Formula>(
 
 /// The bodies of a row against the blocks of eight from it on; `force` begins at the row `from`.
 #[inline(always)]
-fn between_rows<V: Vector8 + Exponential, P: Formula>(
+fn between_rows<V: Vector8 + Analytic, P: Formula>(
     potential: &P,
     pairs: &Pairs,
     q: &[Lanes],

@@ -1,8 +1,7 @@
 //! V = 4ε[(σ/r)¹² − (σ/r)⁶]: neutral atoms.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Formula, PotentialDeclaration, held};
-use crate::numerics::elementary::Exponential;
+use super::{Analytic, Formula, PotentialDeclaration, held};
 
 /// V = 4ε[(σ/r)¹² − (σ/r)⁶].
 #[derive(Clone, Copy, Debug)]
@@ -32,7 +31,7 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 impl LennardJones {
     /// (σ/r)⁶.
     #[inline(always)]
-    fn sixth_power<S: Exponential>(&self, r: S) -> S {
+    fn sixth_power<S: Analytic>(&self, r: S) -> S {
         let ratio = S::splat(self.sigma) / r;
         let square = ratio * ratio;
         square * square * square
@@ -48,24 +47,24 @@ impl Formula for LennardJones {
     }
 
     #[inline(always)]
-    fn value<S: Exponential>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, r: S) -> S {
         let sixth = self.sixth_power(r);
         S::splat(4.0 * self.epsilon) * (sixth * (sixth - S::one()))
     }
     #[inline(always)]
-    fn force<S: Exponential>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, r: S) -> S {
         let sixth = self.sixth_power(r);
         S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) / r
     }
     #[inline(always)]
-    fn over_distance<S: Exponential>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, r2: S) -> S {
         let inverse = S::one() / r2;
         let ratio = S::splat(self.sigma * self.sigma) * inverse;
         let sixth = ratio * ratio * ratio;
         S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) * inverse
     }
     #[inline(always)]
-    fn curvature<S: Exponential>(&self, r: S) -> S {
+    fn curvature<S: Analytic>(&self, r: S) -> S {
         let sixth = self.sixth_power(r);
         let bracket = sixth * (S::splat(26.0) * sixth - S::splat(7.0));
         S::splat(24.0 * self.epsilon) * bracket / (r * r)

@@ -4,17 +4,36 @@
 //! [`registry::POTENTIALS`](crate::registry::POTENTIALS). Its Python class, parameter checks,
 //! documentation and property tests follow from what [`Formula::DECLARATION`] says.
 
+pub mod buckingham;
 pub mod coulomb;
+pub mod fit;
+pub mod hard_sphere;
+mod hermite;
 pub mod kernels;
 pub mod lennard_jones;
+pub mod mie;
+pub mod morse;
 pub mod parameters;
+mod piecewise;
+pub mod piecewise_polynomial;
+pub mod plummer;
+pub mod power_law;
+pub mod screened_coulomb;
+pub mod screening;
+pub mod soft_sphere;
+pub mod square_well;
+pub mod tabulated;
+mod thomas_fermi;
+mod thomas_fermi_table;
 pub mod yukawa;
 
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
+use crate::numerics::power::Powers;
 use crate::numerics::power_of_two::exponent;
+use crate::numerics::rows::Lookup;
 use crate::units::Units;
 use core::fmt::Debug;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
@@ -28,24 +47,35 @@ const FAR: i32 = 300;
 /// What a potential declares about itself.
 pub type PotentialDeclaration = Declaration<dyn Potential>;
 
+/// The scalars of formulas: those with an exponential and powers, that can be looked up in a table.
+pub trait Analytic: Exponential + Powers + Lookup {}
+
+impl<S: Exponential + Powers + Lookup> Analytic for S {}
+
 /// A potential energy as written by its author: formulas generic over the scalar.
 pub trait Formula: Debug + Send + Sync + Sized + 'static {
     /// What it declares about itself.
     const DECLARATION: &'static PotentialDeclaration;
     /// Whether it diverges at r = 0.
     const SINGULAR: bool;
+    /// Whether it jumps, so that there is no finite force.
+    const JUMPS: bool = false;
 
     /// From the values of its parameters, which are what the declaration says.
     fn new(values: &[Value]) -> Self;
+    /// The same in other units, in which the values of its parameters are those.
+    fn scaled(&self, values: &[Value], _: Units) -> Self {
+        Self::new(values)
+    }
     /// V(r).
-    fn value<S: Exponential>(&self, r: S) -> S;
+    fn value<S: Analytic>(&self, r: S) -> S;
     /// −dV/dr.
-    fn force<S: Exponential>(&self, r: S) -> S;
+    fn force<S: Analytic>(&self, r: S) -> S;
     /// d²V/dr².
-    fn curvature<S: Exponential>(&self, r: S) -> S;
+    fn curvature<S: Analytic>(&self, r: S) -> S;
     /// −dV/dr / r as a function of r²: what a pair needs, which may be less than a root and two divisions.
     #[inline(always)]
-    fn over_distance<S: Exponential>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, r2: S) -> S {
         let r = r2.sqrt();
         if Self::SINGULAR {
             return self.force(r) / r;
@@ -57,6 +87,10 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn inverse_distance_strength(&self) -> Option<f64> {
         None
     }
+    /// The distances between which it is, if not at all.
+    fn domain(&self) -> Option<(f64, f64)> {
+        None
+    }
 }
 
 /// A potential energy as the rest of the core holds it.
@@ -65,6 +99,8 @@ pub trait Potential: Debug + Send + Sync {
     fn declaration(&self) -> &'static PotentialDeclaration;
     /// Whether it diverges at r = 0.
     fn singular(&self) -> bool;
+    /// Whether it jumps, so that there is no finite force.
+    fn jumps(&self) -> bool;
     /// V(r), −dV/dr and d²V/dr² at each distance.
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3];
     /// V(r) and −dV/dr to about thirty digits.
@@ -76,6 +112,8 @@ pub trait Potential: Debug + Send + Sync {
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)>;
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64>;
+    /// The distances between which it is, if not at all. Beyond them it is NaN.
+    fn domain(&self) -> Option<(f64, f64)>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
     /// Adds the forces between the bodies of each lane's system, partners in order of index.
@@ -113,6 +151,9 @@ impl<P: Formula> Potential for Held<P> {
     fn singular(&self) -> bool {
         P::SINGULAR
     }
+    fn jumps(&self) -> bool {
+        P::JUMPS
+    }
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3] {
         [
             r.iter().map(|&r| self.formula.value(r)).collect(),
@@ -125,12 +166,12 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn scaled(&self, units: Units) -> Arc<dyn Potential> {
         let values = P::DECLARATION.scaled(&self.values, units);
-        Arc::new(Self { formula: P::new(&values), values })
+        Arc::new(Self { formula: self.formula.scaled(&values, units), values })
     }
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)> {
         let dimensions = P::DECLARATION.exponents(&self.values);
         // The exponent of the unit of mass in which a strength is near one, while that of time stays.
-        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.number() {
+        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.size() {
             strength if m != 0.0 && strength != 0.0 && strength.is_finite() => {
                 Some(((f64::from(exponent(strength)) - l * f64::from(length)) / m).round() as i32)
             }
@@ -144,6 +185,9 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         self.formula.inverse_distance_strength()
+    }
+    fn domain(&self) -> Option<(f64, f64)> {
+        self.formula.domain()
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);

@@ -45,7 +45,12 @@ pub enum Kind {
     Potential,
     /// One of some words.
     Choice(&'static [&'static str]),
+    /// Several numbers that are one thing, as the places or the values of a table.
+    Table(Sign),
 }
+
+/// The most numbers of a table.
+const TABLE_MAX: usize = 1 << 20;
 
 /// The dimension of a parameter.
 #[derive(Clone, Copy, Debug)]
@@ -67,7 +72,7 @@ pub struct Parameter {
     pub kind: Kind,
     /// Its dimension.
     pub dimensions: Dimensions,
-    /// Its value, or each of its components, if it is not given.
+    /// Its value, or each of its components, or the place of the word, if it is not given.
     pub default: Option<f64>,
 }
 
@@ -109,6 +114,17 @@ impl Parameter {
             (Kind::Numbers(sign), Value::Numbers(values)) => {
                 match values.iter().find(|x| !sign.allows(**x)) {
                     Some(&wrong) => refuse(sign.expected(), number(wrong)),
+                    None => Ok(()),
+                }
+            }
+            (Kind::Table(_), Value::Table(values)) if values.len() > TABLE_MAX => {
+                refuse(&format!("at most {TABLE_MAX} numbers"), values.len().to_string())
+            }
+            (Kind::Table(sign), Value::Table(values)) => {
+                match values.iter().enumerate().find(|(_, x)| !sign.allows(**x)) {
+                    Some((at, &wrong)) => {
+                        refuse(sign.expected(), format!("{}[{at}] = {}", self.name, number(wrong)))
+                    }
                     None => Ok(()),
                 }
             }
@@ -166,6 +182,8 @@ pub enum Value {
     Potential(Arc<dyn Potential>),
     /// Of a choice.
     Word(String),
+    /// Of a table.
+    Table(Arc<[f64]>),
 }
 
 impl Value {
@@ -174,6 +192,13 @@ impl Value {
         match self {
             Self::Number(value) => *value,
             _ => f64::NAN,
+        }
+    }
+    /// As [`number`](Self::number), or the largest of a table.
+    pub fn size(&self) -> f64 {
+        match self {
+            Self::Table(values) => values.iter().fold(0.0, |most: f64, x| most.max(x.abs())),
+            other => other.number(),
         }
     }
     /// As [`number`](Self::number), of a vector.
@@ -197,6 +222,20 @@ impl Value {
             _ => Vec::new(),
         }
     }
+    /// As [`numbers`](Self::numbers), of a table.
+    pub fn table(&self) -> &[f64] {
+        match self {
+            Self::Table(values) => values,
+            _ => &[],
+        }
+    }
+    /// The word that it is; none of another kind.
+    pub fn word(&self) -> &str {
+        match self {
+            Self::Word(word) => word,
+            _ => "",
+        }
+    }
     /// The potential that it is.
     ///
     /// # Errors
@@ -216,6 +255,7 @@ impl Value {
             Self::Numbers(values) => Self::Numbers(values.iter().copied().map(divide).collect()),
             Self::Vector(values) => Self::Vector(values.map(divide)),
             Self::Potential(potential) => Self::Potential(potential.scaled(units)),
+            Self::Table(values) => Self::Table(values.iter().copied().map(divide).collect()),
             other => other.clone(),
         }
     }

@@ -1,8 +1,7 @@
 //! V = k·exp(−r/length)/r: a charge screened over a length.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Formula, PotentialDeclaration, held};
-use crate::numerics::elementary::Exponential;
+use super::{Analytic, Formula, PotentialDeclaration, held};
 
 /// V = k·exp(−r/length)/r.
 #[derive(Clone, Copy, Debug)]
@@ -33,6 +32,17 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     make: held::<Yukawa>,
 };
 
+/// The exponential of minus this is nothing, and the square of this is a number.
+const FAR: f64 = 1e100;
+
+impl Yukawa {
+    /// r/length, cut off where there is nothing left.
+    #[inline(always)]
+    fn lengths<S: Analytic>(&self, r: S) -> S {
+        (r / S::splat(self.length)).min(S::splat(FAR))
+    }
+}
+
 impl Formula for Yukawa {
     const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = true;
@@ -42,18 +52,18 @@ impl Formula for Yukawa {
     }
 
     #[inline(always)]
-    fn value<S: Exponential>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, r: S) -> S {
         S::splat(self.k) * (-r / S::splat(self.length)).exp() / r
     }
     #[inline(always)]
-    fn force<S: Exponential>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, r: S) -> S {
         // −dV/dr = V (1/r + 1/length)
-        let s = r / S::splat(self.length);
+        let s = self.lengths(r);
         S::splat(self.k) * (-s).exp() * (S::one() + s) / (r * r)
     }
     #[inline(always)]
-    fn curvature<S: Exponential>(&self, r: S) -> S {
-        let s = r / S::splat(self.length);
+    fn curvature<S: Analytic>(&self, r: S) -> S {
+        let s = self.lengths(r);
         let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
         S::splat(self.k) * (-s).exp() * polynomial / (r * r * r)
     }

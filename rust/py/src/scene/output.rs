@@ -170,6 +170,7 @@ fn status(ending: &Ending) -> i8 {
         Ending::Interrupted => 3,
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
+        Ending::OutsideDomain => 6,
     }
 }
 
@@ -191,6 +192,12 @@ fn failure(outcome: &Outcome) -> Option<Error> {
         Ending::NotFinite => Some(Error::Convergence {
             message: "the state became infinite or undefined; a smaller step, a softening or an adaptive \
                       method may pass"
+                .to_owned(),
+            time,
+        }),
+        Ending::OutsideDomain => Some(Error::Convergence {
+            message: "bodies came to a distance at which a potential of the scene is not known: it is a table that \
+                      ends there (give it more points, or end the run before it)"
                 .to_owned(),
             time,
         }),

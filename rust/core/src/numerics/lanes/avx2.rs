@@ -4,7 +4,9 @@
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
 use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
-use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
+use crate::numerics::binary::{
+    BIASED_SHIFT, Binary, COUNTING, EXPONENT_OF_ONE, INVERSE_ROOT_LINE, LEADING_BITS, SIGNIFICAND_BITS,
+};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::Real;
 use core::arch::x86_64::*;
@@ -101,6 +103,21 @@ impl Binary for Avx2Half {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         Self(unsafe { _mm256_and_pd(self.0, _mm256_castsi256_pd(_mm256_set1_epi64x(LEADING_BITS))) })
+    }
+    #[inline(always)]
+    fn significand(self) -> Self {
+        unsafe {
+            let bits = _mm256_and_si256(_mm256_castpd_si256(self.0), _mm256_set1_epi64x(SIGNIFICAND_BITS));
+            Self(_mm256_castsi256_pd(_mm256_or_si256(bits, _mm256_set1_epi64x(EXPONENT_OF_ONE))))
+        }
+    }
+    #[inline(always)]
+    fn binary_exponent(self) -> Self {
+        unsafe {
+            let bits = _mm256_srli_epi64::<52>(_mm256_castpd_si256(self.0));
+            let counted = _mm256_or_si256(bits, _mm256_set1_epi64x(COUNTING));
+            Self(_mm256_castsi256_pd(counted)) - Self::splat(BIASED_SHIFT)
+        }
     }
 }
 
@@ -255,5 +272,13 @@ impl Binary for Avx2 {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         Self(self.0.leading_bits(), self.1.leading_bits())
+    }
+    #[inline(always)]
+    fn significand(self) -> Self {
+        Self(self.0.significand(), self.1.significand())
+    }
+    #[inline(always)]
+    fn binary_exponent(self) -> Self {
+        Self(self.0.binary_exponent(), self.1.binary_exponent())
     }
 }

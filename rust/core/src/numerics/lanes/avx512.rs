@@ -4,7 +4,9 @@
 //! compiled with the instructions in question; that is the safety argument of the `unsafe` blocks.
 
 use super::{Bits, Lanes, Vector8, WIDTH, scaled_by};
-use crate::numerics::binary::{BIASED_SHIFT, Binary, INVERSE_ROOT_LINE, LEADING_BITS};
+use crate::numerics::binary::{
+    BIASED_SHIFT, Binary, COUNTING, EXPONENT_OF_ONE, INVERSE_ROOT_LINE, LEADING_BITS, SIGNIFICAND_BITS,
+};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::Real;
 use core::arch::x86_64::*;
@@ -133,5 +135,20 @@ impl Binary for Avx512 {
     #[inline(always)]
     fn leading_bits(self) -> Self {
         Self(unsafe { _mm512_and_pd(self.0, _mm512_castsi512_pd(_mm512_set1_epi64(LEADING_BITS))) })
+    }
+    #[inline(always)]
+    fn significand(self) -> Self {
+        unsafe {
+            let bits = _mm512_and_si512(_mm512_castpd_si512(self.0), _mm512_set1_epi64(SIGNIFICAND_BITS));
+            Self(_mm512_castsi512_pd(_mm512_or_si512(bits, _mm512_set1_epi64(EXPONENT_OF_ONE))))
+        }
+    }
+    #[inline(always)]
+    fn binary_exponent(self) -> Self {
+        unsafe {
+            let bits = _mm512_srli_epi64::<52>(_mm512_castpd_si512(self.0));
+            let counted = _mm512_or_si512(bits, _mm512_set1_epi64(COUNTING));
+            Self(_mm512_castsi512_pd(counted)) - Self::splat(BIASED_SHIFT)
+        }
     }
 }

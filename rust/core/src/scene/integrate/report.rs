@@ -23,6 +23,8 @@ pub enum Ending {
     NoStep,
     /// The state became infinite or undefined.
     NotFinite,
+    /// Bodies came to a distance at which a potential between or about them is not known.
+    OutsideDomain,
     /// The most steps allowed were taken.
     TooManySteps,
     /// The caller asked to stop.

@@ -12,6 +12,7 @@ use super::super::unit::Unit;
 use super::{Outcome, Part, Reached};
 use crate::error::Result;
 use crate::parallel::Ticker;
+use crate::scene::Scene;
 use crate::scene::columns::Wanted;
 
 /// Puts the reports together, copy by copy.
@@ -41,7 +42,8 @@ pub(super) fn gather(
             _ => false,
         };
         if replaces {
-            outcome.ending = report.ending.clone();
+            outcome.ending =
+                if left_a_domain(part.scene, report) { Ending::OutsideDomain } else { report.ending.clone() };
         }
         outcome.rows = outcome.rows.min(report.rows);
         outcome.counts += report.counts;
@@ -66,6 +68,14 @@ pub(super) fn gather(
         bring_together(part, request, of_copy, columns, outcomes, reached, ticker)?;
     }
     Ok(())
+}
+
+/// Whether what became undefined did so by leaving the distances at which a potential is known: it is no number there.
+fn left_a_domain(scene: &Scene, report: &Report) -> bool {
+    let undefined = || report.states.iter().flatten().flatten().any(|x| x.is_nan());
+    report.ending == Ending::NotFinite
+        && scene.forces.iter().any(|force| force.domain().is_some())
+        && undefined()
 }
 
 /// The time of a report's state, or of the last output before it ceased to be one.

@@ -13,6 +13,30 @@ const CLOSE: f64 = 1e-6;
 /// … or so close that an orbit there is over in so many of the shortest steps that the time can tell.
 const STEPS: f64 = 1e6;
 
+/// Steps that fall to zero at an end of what is known of a potential stop nearer to it than this share of its distance.
+const AT_THE_END: f64 = 1e-6;
+
+/// Whether bodies at those places are at a distance where a potential ends.
+fn at_an_end(job: &Job<'_>, places: &[[f64; 3]]) -> bool {
+    let units = job.plan.units;
+    job.plan.forces.iter().any(|force| {
+        let Some((first, last)) = force.domain() else { return false };
+        let ends = [first, last].map(|end| scale(end, -units.length));
+        let ending = |distance: f64| {
+            !(ends[0]..=ends[1]).contains(&distance)
+                || ends.iter().any(|end| *end > 0.0 && (distance - end).abs() <= AT_THE_END * end)
+        };
+        match force.center() {
+            Some(center) => {
+                let center = units.take_vector(center, [1, 0, 0]);
+                places.iter().any(|place| ending(distance(*place, center)))
+            }
+            None => (0..places.len())
+                .any(|i| (i + 1..places.len()).any(|j| ending(distance(places[i], places[j])))),
+        }
+    })
+}
+
 /// The ending of a unit whose step fell to zero, in its lane at that time; `massive` are the places of those that it follows.
 pub(super) fn why(
     job: &Job<'_>,
@@ -50,6 +74,9 @@ pub(super) fn why(
                 closest = (distance, (body, body));
             }
         }
+    }
+    if at_an_end(job, &places) {
+        return Ending::OutsideDomain;
     }
     let (length, speed) = unit.size;
     let share = closest.0 / length;

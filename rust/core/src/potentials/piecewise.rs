@@ -1,0 +1,49 @@
+//! Polynomials in pieces over a range of distances, as V(r) with its exact derivatives; beyond the range, nothing.
+
+use super::Analytic;
+use crate::numerics::rows::Rows;
+
+/// Of each piece its origin, what makes its variable of a distance, and up to this many coefficients.
+const COLUMNS: usize = 2;
+
+/// V(r) = Σ cₖ tᵏ with t = (r − origin)·inverse, `N` = 2 + number of coefficients.
+#[derive(Clone, Debug)]
+pub(super) struct Piecewise<const N: usize> {
+    rows: Rows<N>,
+    first: f64,
+    last: f64,
+}
+
+impl<const N: usize> Piecewise<N> {
+    /// From the places where pieces begin, which ascend, the end of the last, and the pieces:
+    /// origin, inverse of the unit of t, coefficients.
+    pub(super) fn new(starts: Vec<f64>, last: f64, rows: Vec<[f64; N]>) -> Self {
+        let first = starts.first().copied().unwrap_or(last);
+        Self { rows: Rows::new(starts, rows), first, last }
+    }
+    /// The range.
+    pub(super) fn domain(&self) -> (f64, f64) {
+        (self.first, self.last)
+    }
+    /// The derivative of that order with respect to r; NaN beyond the range.
+    #[inline(always)]
+    pub(super) fn derivative<S: Analytic>(&self, r: S, order: usize) -> S {
+        let row = r.columns(&self.rows);
+        let t = (r - row[0]) * row[1];
+        let mut sum = S::zero();
+        let mut k = N - COLUMNS;
+        while k > order {
+            k -= 1;
+            let mut factor = 1.0;
+            for below in 0..order {
+                factor *= (k - below) as f64;
+            }
+            sum = sum.multiply_add(t, row[COLUMNS + k] * S::splat(factor));
+        }
+        for _ in 0..order {
+            sum = sum * row[1];
+        }
+        let (after, before) = (S::splat(self.first).less_equal(r), r.less_equal(S::splat(self.last)));
+        S::select(after, S::select(before, sum, S::splat(f64::NAN)), S::splat(f64::NAN))
+    }
+}
