@@ -4,8 +4,8 @@
 
 Runs of few and of more steps take turns, and the least of many is taken of each: their difference is that of the steps,
 without what a run costs, and short enough to fall between what else the machine does. Steps are fixed, so runs with and
-without a term take as many. Methods that take velocities serve the terms that look at them. The bar is 1.3; REBOUND with
-a force in Python: 41.
+without a term take as many. Methods that take velocities serve the terms that look at them. The bar is 1.3; REBOUND
+with a force in Python: 41.
 """
 
 from __future__ import annotations
