@@ -63,20 +63,8 @@ def elements_of(
         _check_chosen(chosen, parent, names)
     if mass.ndim > 1:
         mass = mass[:, None, :]
-    if parent == JACOBI:
-        parts = _jacobi(position, velocity, mass, chosen)
-    elif parent == CENTER_OF_MASS:
-        parts = [_others(position, velocity, mass, body) for body in chosen]
-    else:
-        assert isinstance(parent, int)
-        parts = [
-            (
-                position[..., body, :] - position[..., parent, :],
-                velocity[..., body, :] - velocity[..., parent, :],
-                mass[..., parent],
-            )
-            for body in chosen
-        ]
+    with np.errstate(over="ignore", invalid="ignore"):  # _check says it by name
+        parts = _relative(position, velocity, mass, chosen, parent)
     axes = (*position.shape[:-2], len(chosen))
     r, v = np.empty((*axes, 3)), np.empty((*axes, 3))
     mu = np.empty(axes)
@@ -128,6 +116,22 @@ def _check(
     if there.any():
         row = tuple(np.argwhere(there)[0].tolist())
         raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
+
+
+def _relative(
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    chosen: list[int],
+    parent: str | int,
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
+    """Place and velocity from what each body is about, and the mass there."""
+    if parent == JACOBI:
+        return _jacobi(position, velocity, mass, chosen)
+    if isinstance(parent, str):
+        return [_others(position, velocity, mass, body) for body in chosen]
+    place, rate = position[..., parent, :], velocity[..., parent, :]
+    return [(position[..., body, :] - place, velocity[..., body, :] - rate, mass[..., parent]) for body in chosen]
 
 
 def _jacobi(
