@@ -266,6 +266,18 @@ def test_elements_over_time_are_constant_for_two_bodies_and_of_an_ensemble() -> 
         assert np.array_equal(many.body(1).elements().eccentricity[copy], many[copy].body(1).elements().eccentricity)
 
 
+def test_copies_with_a_constant_of_their_own() -> None:
+    scene = vv.problems.kepler(e=0.5).scene
+    out = scene.ensemble(parameters={"Gravity": {"G": [1.0, 1.5, 0.8]}}).run(t=[0.0, 1.0, 2.0])
+    found = out.elements(1, about=0)
+    for copy in range(3):
+        alone = out[copy].elements(1, about=0)
+        assert np.array_equal(found.eccentricity[copy], alone.eccentricity)
+        assert np.array_equal(found.mu[copy], alone.mu)
+        assert np.allclose(alone.eccentricity, alone.eccentricity[0], rtol=1e-12)
+    assert len({float(e) for e in found.eccentricity[:, 0]}) == 3
+
+
 def test_rows_that_a_copy_does_not_have_are_nan() -> None:
     scene = vv.problems.kepler(e=0.5).scene
     still = np.stack([scene.particles.velocity, np.zeros((2, 3))])
