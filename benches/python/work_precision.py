@@ -57,8 +57,8 @@ class Peer:
         self.size = float(np.abs(problem.references[-1].position).max())
         self.energy = self.scene.invariants().energy
 
-    def point(self, series: str, setting: float, prepare: Callable[[], Once]) -> vv.Point | None:
-        """The least time of several, and what it is off."""
+    def point(self, series: str, setting: float, prepare: Callable[[], Once]) -> tuple[vv.Point | None, float]:
+        """What it is off, if it is anywhere near, and the least time of several."""
         least = float("inf")
         for _ in range(self.repeats):
             once = prepare()
@@ -67,28 +67,27 @@ class Peer:
                 position, velocity = once()
             except Exception as error:  # a peer says in its own way that it cannot
                 print(f"  {series} at {setting:g}: {error}")
-                return None
+                return None, perf_counter() - begun
             least = min(least, perf_counter() - begun)
             if least > self.seconds / self.patience:
                 break
         if not (np.isfinite(position).all() and np.isfinite(velocity).all()):
-            return None
+            return None, least
         final = self.scene.with_state(position, velocity, self.end)
         error = self.problem.error(final)
         drift = abs(final.invariants().energy - self.energy) / (abs(self.energy) or 1.0)
-        return None if error > self.size else vv.Point(series, setting, least, error, drift)
+        return (None if error > self.size else vv.Point(series, setting, least, error, drift)), least
 
     def sweep(self, series: str, settings: Iterator[float], prepare: Callable[[float], Once]) -> Iterator[vv.Point]:
         """Settings from rough to fine, until a run takes too long or nothing is gained any more."""
         best, no_better = float("inf"), 0
         for setting in settings:
-            point = self.point(series, setting, partial(prepare, setting))
-            if point is None:
-                continue
-            yield point
-            no_better = 0 if point.position_error < 0.9 * best else no_better + 1
-            best = min(best, point.position_error)
-            if point.seconds > self.seconds or (no_better >= 4 and best < 1e-6):
+            point, took = self.point(series, setting, partial(prepare, setting))
+            if point is not None:
+                yield point
+                no_better = 0 if point.position_error < 0.9 * best else no_better + 1
+                best = min(best, point.position_error)
+            if took > self.seconds or (no_better >= 4 and best < 1e-6):
                 return
 
     def steps(self) -> Iterator[float]:

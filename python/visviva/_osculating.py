@@ -23,33 +23,43 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from visviva.scene import Scene
+    from visviva.forces import Force
+    from visviva.runnable import Runnable
 
 __all__ = ["elements_of", "gravitational_constant"]
 
 
-def gravitational_constant(scene: Scene, given: float | None) -> float:
+def gravitational_constant(forces: tuple[Force, ...], given: float | None) -> float:
     """The G that is given, or that of the scene's gravity."""
     if given is not None:
         return number("G", given)
-    found = [force.G for force in scene.forces if force.kind == "gravity"]  # type: ignore[attr-defined]
+    found = [force.G for force in forces if force.kind == "gravity"]  # type: ignore[attr-defined]
     if not found:
         raise InvalidInput("G", "expected the gravitational constant, since the scene has no Gravity; give G=…")
     return fsum(found)
 
 
 def elements_of(
-    scene: Scene,
+    start: Runnable[Any],
     position: NDArray[np.float64],
     velocity: NDArray[np.float64],
-    mass: NDArray[np.float64],
     bodies: str | int | Sequence[str | int] | None,
     about: str | int,
     G: float | None,
 ) -> Elements:
-    """The elements of states (…, N, 3), with masses (N,) or, of an ensemble's (B, T, N, 3), (B, N)."""
-    names, count = scene.particles.names, position.shape[-2]
-    constant = gravitational_constant(scene, G)
+    """The elements of states (…, N, 3) that began with `start`: of an ensemble (B, T, N, 3)."""
+    from visviva.ensemble import EnsembleScene
+    from visviva.scene import Scene
+
+    names, count, mass = start._names, position.shape[-2], start._keywords["mass"]
+    constant: Any
+    if isinstance(start, EnsembleScene):
+        # Copies may have a G of their own.
+        mass = mass[:, None, :]
+        constant = np.array([gravitational_constant(forces, G) for forces in start.forces])[:, None]
+    else:
+        assert isinstance(start, Scene)
+        mass, constant = mass[0], gravitational_constant(start.forces, G)
     parent = (
         about
         if isinstance(about, str) and about in (CENTER_OF_MASS, JACOBI)
@@ -61,22 +71,8 @@ def elements_of(
     else:
         chosen = body_indices("bodies", bodies, names, count)
         _check_chosen(chosen, parent, names)
-    if mass.ndim > 1:
-        mass = mass[:, None, :]
-    if parent == JACOBI:
-        parts = _jacobi(position, velocity, mass, chosen)
-    elif parent == CENTER_OF_MASS:
-        parts = [_others(position, velocity, mass, body) for body in chosen]
-    else:
-        assert isinstance(parent, int)
-        parts = [
-            (
-                position[..., body, :] - position[..., parent, :],
-                velocity[..., body, :] - velocity[..., parent, :],
-                mass[..., parent],
-            )
-            for body in chosen
-        ]
+    with np.errstate(over="ignore", invalid="ignore"):  # _check says it by name
+        parts = _relative(position, velocity, mass, chosen, parent)
     axes = (*position.shape[:-2], len(chosen))
     r, v = np.empty((*axes, 3)), np.empty((*axes, 3))
     mu = np.empty(axes)
@@ -128,6 +124,22 @@ def _check(
     if there.any():
         row = tuple(np.argwhere(there)[0].tolist())
         raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
+
+
+def _relative(
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    chosen: list[int],
+    parent: str | int,
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
+    """Place and velocity from what each body is about, and the mass there."""
+    if parent == JACOBI:
+        return _jacobi(position, velocity, mass, chosen)
+    if isinstance(parent, str):
+        return [_others(position, velocity, mass, body) for body in chosen]
+    place, rate = position[..., parent, :], velocity[..., parent, :]
+    return [(position[..., body, :] - place, velocity[..., body, :] - rate, mass[..., parent]) for body in chosen]
 
 
 def _jacobi(

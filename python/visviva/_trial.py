@@ -36,11 +36,13 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     numbers = sum(3 * bodies if name in ("position", "velocity") else _NUMBERS.get(name, 3) for name in asked["record"])
     memory = 8 * copies * rows * numbers
     few = tuple(asked[name][:_COPIES] for name in ("mass", "position", "velocity"))
+    own = asked["own_forces"]
     tried = cast(
         "_core._Request",
         dict(asked)
         | dict(zip(("mass", "position", "velocity"), few, strict=True))
-        | {"events": [], "record": [], "end_only": True, "max_steps": None, "continuation": None},
+        | {"events": [], "record": [], "end_only": True, "max_steps": None, "continuation": None}
+        | {"own_forces": None if own is None else (own[0], own[1][:_COPIES])},
     )
     scale = copies / max(1, len(few[0]))
     if plan.closed_form:

@@ -282,7 +282,8 @@ class _Runner:
 
     def closed(self) -> Iterator[Point]:
         """The scene as it is run without a method."""
-        if (point := self.point("auto", nan, {})) is not None:
+        point, _ = self.point("auto", nan, {})
+        if point is not None:
             yield point
 
     def sweep(self, method: Method) -> Iterator[Point]:
@@ -290,13 +291,12 @@ class _Runner:
         least, no_better, slow = inf, 0, 0
         for setting in self.settings(method):
             how = {"rtol": setting} if method.adaptive else {"dt": setting}
-            point = self.point(method.name, setting, {"method": method.name, **how})
-            if point is None:
-                continue
-            yield point
-            no_better = 0 if point.position_error < 0.9 * least else no_better + 1
-            least = min(least, point.position_error)
-            slow = slow + 1 if point.seconds > self.limit else 0
+            point, took = self.point(method.name, setting, {"method": method.name, **how})
+            slow = slow + 1 if took > self.limit else 0
+            if point is not None:
+                yield point
+                no_better = 0 if point.position_error < 0.9 * least else no_better + 1
+                least = min(least, point.position_error)
             # One slow run may have been held up.
             if slow == 2 or (no_better >= _NO_BETTER and least < 1e-6):
                 return
@@ -308,8 +308,8 @@ class _Runner:
             span = self.problem.t_end - self.problem.scene.t0
             yield from (span / round(16.0 * 2.0 ** (0.5 * k)) for k in range(60))
 
-    def point(self, name: str, setting: float, how: dict[str, Any]) -> Point | None:
-        """A run and its errors; None if it did not come to its end, or nowhere near."""
+    def point(self, name: str, setting: float, how: dict[str, Any]) -> tuple[Point | None, float]:
+        """A run and its errors, None if it did not come to its end or nowhere near; and the seconds it took."""
         scene, end = self.problem.scene, self.problem.t_end
         took, out = inf, None
         with warnings.catch_warnings():
@@ -321,7 +321,7 @@ class _Runner:
                 except InvalidInput:
                     raise
                 except Error:
-                    return None
+                    return None, perf_counter() - begun
                 took = min(took, perf_counter() - begun)
                 if took > self.limit:
                     break
@@ -329,8 +329,8 @@ class _Runner:
         error = self.problem.error(out)
         size = float(np.abs(self.problem.references[0].position).max())
         if not isfinite(error) or error > size:
-            return None
-        return Point(name, setting, took, error, self.energy_error(out))
+            return None, took
+        return Point(name, setting, took, error, self.energy_error(out)), took
 
     def energy_error(self, out: Trajectory) -> float:
         scene = self.problem.scene

@@ -235,10 +235,7 @@ class Recorded(ABC):
         """
         from visviva._osculating import elements_of
 
-        mass = self._start._keywords["mass"]
-        return elements_of(
-            self._scene, self.position, self.velocity, mass if self._start._is_ensemble else mass[0], bodies, about, G
-        )
+        return elements_of(self._start, self.position, self.velocity, bodies, about, G)
 
     @property
     def recorded(self) -> tuple[str, ...]:

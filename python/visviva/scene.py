@@ -295,7 +295,7 @@ class Scene(Runnable[Trajectory]):
         from visviva._osculating import elements_of
 
         p = self.particles
-        return elements_of(self, p.position, p.velocity, p.mass, bodies, about, G)
+        return elements_of(self, p.position, p.velocity, bodies, about, G)
 
     def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
         """The scene displaced by `position` and boosted by `velocity`, the fields with it.

@@ -266,6 +266,18 @@ def test_elements_over_time_are_constant_for_two_bodies_and_of_an_ensemble() -> 
         assert np.array_equal(many.body(1).elements().eccentricity[copy], many[copy].body(1).elements().eccentricity)
 
 
+def test_copies_with_a_constant_of_their_own() -> None:
+    scene = vv.problems.kepler(e=0.5).scene
+    out = scene.ensemble(parameters={"Gravity": {"G": [1.0, 1.5, 0.8]}}).run(t=[0.0, 1.0, 2.0])
+    found = out.elements(1, about=0)
+    for copy in range(3):
+        alone = out[copy].elements(1, about=0)
+        assert np.array_equal(found.eccentricity[copy], alone.eccentricity)
+        assert np.array_equal(found.mu[copy], alone.mu)
+        assert np.allclose(alone.eccentricity, alone.eccentricity[0], rtol=1e-12)
+    assert len({float(e) for e in found.eccentricity[:, 0]}) == 3
+
+
 def test_rows_that_a_copy_does_not_have_are_nan() -> None:
     scene = vv.problems.kepler(e=0.5).scene
     still = np.stack([scene.particles.velocity, np.zeros((2, 3))])
@@ -387,3 +399,27 @@ def test_elements_need_masses_and_a_constant() -> None:
     with pytest.raises(vv.InvalidInput, match="bodies with mass"):
         scene.elements(2, about="center_of_mass", G=1.0)
     assert scene.elements(1, about=2, G=2.0).mu == 2.0
+
+
+def test_two_gravities_are_one_of_their_sum() -> None:
+    bodies = vv.Particles.from_elements(1.0, 0.5, G=3.0, semi_major_axis=2.0, eccentricity=0.1)
+    found = vv.Scene(bodies, vv.Gravity(1.0), vv.Gravity(2.0)).elements(1)
+    assert np.isclose(found.semi_major_axis, 2.0, rtol=1e-14)
+    assert found.mu == 4.5
+
+
+def test_what_is_beyond_float64_is_refused_by_name() -> None:
+    far = vv.Scene(vv.Particles([1.0, 1.0], [[-1e308, 0, 0], [1e308, 0, 0]]), vv.Gravity(1.0))
+    with pytest.raises(vv.InvalidInput, match="distance of body 1 from body 0") as caught:
+        far.elements()
+    assert caught.value.argument == "about"
+    heavy = vv.Scene(vv.Particles([1e200, 1.0], np.eye(3)[:2]), vv.Gravity(1e200))
+    with pytest.raises(vv.InvalidInput, match="G times the masses"):
+        heavy.elements()
+    with pytest.raises(vv.InvalidInput, match="G times the masses"):
+        vv.Particles.from_elements(1e200, 1.0, G=1e200, semi_major_axis=1.0)
+    with pytest.raises(vv.InvalidInput, match="a time at which") as caught:
+        vv.Particles.from_elements(
+            1e10, 0.0, G=1e10, pericenter=1.0, eccentricity=3.0, time_of_pericenter=-1e307, t0=1e307
+        )
+    assert caught.value.argument == "time_of_pericenter"

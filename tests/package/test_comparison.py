@@ -1,5 +1,7 @@
 """Work against precision: every point is a run that says what it says, and the best is the best."""
 
+from time import perf_counter
+
 import numpy as np
 import pytest
 
@@ -55,6 +57,14 @@ def test_the_envelope_is_beaten_by_none() -> None:
         own = found.best(mark, "rk4")
         assert own is None or (own.series == "rk4" and best is not None and own.seconds >= best.seconds)
     assert found.best(1e-30) is None
+
+
+def test_a_method_that_gets_nowhere_is_given_up_in_time() -> None:
+    """Euler's spirals out of an eccentric ellipse, whatever its steps: it is taken no further than the time allows."""
+    begun = perf_counter()
+    found = vv.work_precision(vv.problems.kepler(e=0.9, periods=10), ["euler"], seconds=0.01, repeats=1)
+    assert found.best(1e-2) is None
+    assert perf_counter() - begun < 5.0
 
 
 def test_it_prints_and_plots_with_a_peer() -> None:

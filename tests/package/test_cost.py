@@ -51,6 +51,14 @@ def test_the_steps_of_an_ensemble_are_those_of_all_copies() -> None:
     assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.1
 
 
+def test_copies_with_forces_of_their_own_are_tried_with_them() -> None:
+    scene = vv.problems.figure_eight().scene
+    copies = scene.ensemble(parameters={"Gravity": {"G": np.linspace(0.9, 1.1, 50)}})
+    cost = copies.plan(5.0).cost()
+    assert cost is not None
+    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.2
+
+
 def test_a_closed_form_takes_no_steps() -> None:
     cost = vv.problems.kepler().scene.plan(100.0).cost()
     assert cost is not None
