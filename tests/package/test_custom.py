@@ -45,8 +45,8 @@ def test_the_tolerance_is_met_where_it_was_not_checked(
     size = np.abs(function(r)) + np.clip(change, 0.01 * largest, 100.0 * largest)
     # Nothing is met relative to itself where it comes to zero: there is a floor of 1e-16 of what is within an octave.
     size += 1e-16 * np.abs(function(np.maximum(r / 2.0, r_min)))
-    # Between its places a polynomial errs by little more than in them, but for what rounding of the function (of sin 20 r
-    # by 1e-14) makes of second derivatives that are made to agree.
+    # Between its places a polynomial errs by little more than in them, but for what rounding of the function (of
+    # sin 20 r by 1e-14) makes of second derivatives that are made to agree.
     assert np.all(np.abs(made.value(r) - function(r)) <= (1.5 * tolerance + 3e-12) * size)
 
 
