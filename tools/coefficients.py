@@ -12,16 +12,20 @@ from __future__ import annotations
 import argparse
 import re
 import sys
-from itertools import pairwise
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-from mpmath import cbrt, mp, mpf
+from mpmath import mp, mpf
 
-import published_coefficients as published
+import splittings
 from dop853 import dop853
-from embedded_pairs import bogacki_shampine32, dormand_prince54
+from embedded_pairs import bogacki_shampine32, dormand_prince54, fractions, tsitouras54, verner98
 from multistep import stormer
-from polish import Row, composition_residuals, polish
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from polish import Row
 
 mp.dps = 80
 INTEGRATORS = Path(__file__).resolve().parents[1] / "rust/core/src/ode/methods"
@@ -30,60 +34,23 @@ BLOCK = re.compile(r"(// <coefficients>[^\n]*\n).*?(// </coefficients>)", re.DOT
 Table = dict[str, "Row | list[Row]"]
 
 
-def rk4() -> Table:
-    half = mpf(1) / 2
-    third, sixth = mpf(1) / 3, mpf(1) / 6
-    return {
-        "A": [[], [half], [mpf(0), half], [mpf(0), mpf(0), mpf(1)]],
-        "B": [sixth, third, third, sixth],
-        "C": [mpf(0), half, half, mpf(1)],
-    }
+def explicit(a: list[list[str]], b: list[str]) -> Table:
+    """A tableau of fractions."""
+    rows = [fractions(*row) for row in a]
+    return {"A": rows, "B": fractions(*b), "C": [sum(row, mpf(0)) for row in rows]}
 
 
-def composition(weights: Row) -> Table:
-    """Kick-drift-kick leapfrogs of these lengths, neighbouring half kicks merged."""
-    padded = [mpf(0), *weights, mpf(0)]
-    return {
-        "KICKS": [(left + right) / 2 for left, right in pairwise(padded)],
-        "DRIFTS": weights,
-    }
-
-
-def leapfrog() -> Table:
-    return composition([mpf(1)])
-
-
-def boris() -> Table:
-    """Drift-kick-drift."""
-    half = mpf(1) / 2
-    return {"KICKS": [mpf(0), mpf(1), mpf(0)], "DRIFTS": [half, half]}
-
-
-def yoshida4() -> Table:
-    outer = 1 / (2 - cbrt(mpf(2)))
-    return composition([outer, 1 - 2 * outer, outer])
-
-
-def kahan_li8() -> Table:
-    """The printed 26 digits, polished as a palindrome."""
-
-    def palindrome(half: Row) -> Row:
-        return half + half[-2::-1]
-
-    printed = [mpf(digits) for digits in published.KAHAN_LI8]
-    half = polish(lambda half: composition_residuals(palindrome(half), 8), printed)
-    return composition(palindrome(half))
-
-
-METHODS = {
-    "rk4": rk4,
+METHODS: dict[str, Callable[[], Table]] = {
+    "euler": lambda: explicit([[]], ["1"]),
+    "midpoint": lambda: explicit([[], ["1/2"]], ["0", "1"]),
+    "heun": lambda: explicit([[], ["1"]], ["1/2", "1/2"]),
+    "rk4": lambda: explicit([[], ["1/2"], ["0", "1/2"], ["0", "0", "1"]], ["1/6", "1/3", "1/3", "1/6"]),
     "bogacki_shampine32": bogacki_shampine32,
     "dormand_prince54": dormand_prince54,
+    "tsitouras54": tsitouras54,
     "dop853": dop853,
-    "leapfrog": leapfrog,
-    "boris": boris,
-    "yoshida4": yoshida4,
-    "kahan_li8": kahan_li8,
+    "verner98": verner98,
+    **splittings.METHODS,
     "stormer13": lambda: stormer(13),
 }
 

@@ -32,10 +32,10 @@ def nodes() -> Row:
 
 
 def in_nested_basis(power: int) -> Row:
-    """θ^power in the basis θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …)))), for 1 ≤ power ≤ 7."""
-    left = [mpf(k == power - 1) for k in range(7)]  # coefficients of θ^0, θ^1, …
+    """θ^power in the basis θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …)))), for 1 ≤ power ≤ 8."""
+    left = [mpf(k == power - 1) for k in range(8)]  # coefficients of θ^0, θ^1, …
     basis = []
-    for k in range(7):
+    for k in range(8):
         if k % 2:  # the next factor is θ: take the value at 0
             basis.append(left[0])
             left = [*left[1:], mpf(0)]

@@ -10,12 +10,28 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from fractions import Fraction
 from itertools import combinations_with_replacement
+from typing import NamedTuple
 
 from mpmath import factorial, lu_solve, matrix, mp, mpf
 
 Row = list[mpf]
 Tree = tuple["Tree", ...]
 Residual = Callable[[Row], Row]
+
+
+class Printed(NamedTuple):
+    """What so many digits allow."""
+
+    independent: mpf
+    """Pivots of independent conditions are larger."""
+    redundant: mpf
+    """Those of redundant ones are smaller: at digits that are wrong they are not zero."""
+    farthest: mpf
+    """By how much digits may change: more means that they are not those of such a method."""
+
+
+TWENTY_DIGITS = Printed(mpf("1e-12"), mpf("1e-20"), mpf("1e-19"))
+FIFTEEN_DIGITS = Printed(mpf("1e-6"), mpf("1e-9"), mpf("1e-12"))
 
 
 def trees_to_order(order: int) -> list[list[Tree]]:
@@ -101,11 +117,12 @@ def rational(value: mpf) -> mpf | None:
     return exact if abs(exact - value) <= mpf("1e-28") * abs(value) else None
 
 
-def polish(residual: Residual, start: Row) -> Row:
+def polish(residual: Residual, start: Row, printed: Printed = TWENTY_DIGITS) -> Row:
     """The zero of ``residual`` nearest to ``start``, by Newton's method with least-norm steps.
 
     Redundant conditions are allowed: the rank of the Jacobian must show as a gap between pivots.
-    Raises ArithmeticError if it does not, or if the residual does not fall to the working precision.
+    Raises ArithmeticError if it does not, if the residual does not fall to the working precision, or if the zero is
+    farther away than the digits allow.
     """
     x = list(start)
     step = mpf(10) ** (-mp.dps // 3)
@@ -113,33 +130,36 @@ def polish(residual: Residual, start: Row) -> Row:
     for _ in range(6):
         value = residual(x)
         if max(map(abs, value)) < goal:
+            moved = max(abs(new - old) for new, old in zip(x, start, strict=True))
+            if moved > printed.farthest:
+                raise ArithmeticError(f"the nearest method is {mp.nstr(moved, 3)} away")
             return x
         columns = []
         for k in range(len(x)):
             moved = residual([*x[:k], x[k] + step, *x[k + 1 :]])
             columns.append([(new - old) / step for new, old in zip(moved, value, strict=True)])
         rows = [list(row) for row in zip(*columns, strict=True)]
-        x = [old - change for old, change in zip(x, _least_norm(rows, value), strict=True)]
+        x = [old - change for old, change in zip(x, _least_norm(rows, value, printed), strict=True)]
     raise ArithmeticError(f"residual stays at {mp.nstr(max(map(abs, value)), 3)}")
 
 
-def _least_norm(rows: list[Row], right: Row) -> Row:
+def _least_norm(rows: list[Row], right: Row, printed: Printed) -> Row:
     """The shortest solution of a consistent system with redundant rows."""
-    chosen = _independent(rows)
+    chosen = _independent(rows, printed)
     kept = [rows[i] for i in chosen]
     gram = matrix([[mp.fdot(p, q) for q in kept] for p in kept])
     multipliers = lu_solve(gram, matrix([right[i] for i in chosen]))
     return [mp.fdot((row[k] for row in kept), multipliers) for k in range(len(rows[0]))]
 
 
-def _independent(rows: list[Row]) -> list[int]:
+def _independent(rows: list[Row], printed: Printed) -> list[int]:
     """Indices of a largest set of independent rows, by elimination with the largest pivot."""
     left = dict(enumerate(map(list, rows)))
     chosen: list[int] = []
     while left:
         size, index, column = max((abs(entry), i, j) for i, row in left.items() for j, entry in enumerate(row))
-        if size < mpf("1e-12"):
-            if size > mpf("1e-20"):
+        if size < printed.independent:
+            if size > printed.redundant:
                 raise ArithmeticError(f"the rank is not clear: pivot {mp.nstr(size, 3)}")
             break
         pivot = left.pop(index)

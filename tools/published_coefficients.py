@@ -2,9 +2,6 @@
 
 DOP853: E. Hairer, S. P. Nørsett & G. Wanner, Solving Ordinary Differential Equations I, 2nd ed.
 (Springer 1993), section II.5, II.6 and II.10, and the authors' program, which prints 30 digits.
-Kahan and Li: W. Kahan & R.-C. Li, Composition constants for raising the orders of unconventional
-schemes for ordinary differential equations, Math. Comp. 66 (1997) 1089, order 8 in 17 stages, as
-reprinted in Hairer, Lubich & Wanner, Geometric Numerical Integration, V.3.2.
 
 Stages are counted from 0. Absent entries are zero.
 """
@@ -201,16 +198,3 @@ DOP853_D = {
         15: "-0.14972683625798562581422125276e+3",
     },
 }
-
-# The first half and the middle of a palindrome of 17 leapfrog steps.
-KAHAN_LI8 = (
-    "0.13020248308889008087881763",
-    "0.56116298177510838456196441",
-    "-0.38947496264484728640807860",
-    "0.15884190655515560089621075",
-    "-0.39590389413323757733623154",
-    "0.18453964097831570709183254",
-    "0.25837438768632204729397911",
-    "0.29501172360931029887096624",
-    "-0.60550853383003451169892108",
-)

@@ -18,15 +18,18 @@ WRITTEN = "# Written by tools/write_stubs.py from the core's registry.\n"
 FIELD = {
     "number": "float",
     "numbers": "float | NDArray[np.float64]",
-    "indices": "int | NDArray[np.int64]",
+    "indices": "int | str | tuple[int | str, ...] | NDArray[np.int64]",
     "vector": "tuple[float, float, float]",
     "axial_vector": "tuple[float, float, float]",
+    "direction": "tuple[float, float, float]",
     "point": "tuple[float, float, float]",
     "potential": "Potential",
     "choice": "str",
     "table": "NDArray[np.float64]",
 }
-ARGUMENT = FIELD | dict.fromkeys(("numbers", "indices", "vector", "axial_vector", "point", "table"), "ArrayLike")
+ARGUMENT = FIELD | dict.fromkeys(
+    ("numbers", "indices", "vector", "axial_vector", "direction", "point", "table"), "ArrayLike"
+)
 
 # What a class has beside what is declared.
 FURTHER = {
@@ -57,6 +60,7 @@ class Force(Declared):
     kind: ClassVar[str]
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
+    def _resolved(self, names: tuple[str, ...], count: int) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
     def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...

@@ -24,6 +24,7 @@ SCRIPTS = (
     "same_bits",
     "solve_ivp",
     "overhead",
+    "work_precision",
 )
 
 

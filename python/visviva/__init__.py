@@ -20,10 +20,15 @@ __version__ = "0.1.0"
 # Where each public name lives. `__all__` below repeats the names because type checkers read it.
 _HOME = {
     "AccuracyWarning": "errors",
+    "Advice": "advice",
+    "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
+    "Cost": "plan",
+    "Coulomb": "forces",
+    "Damper": "forces",
     "Drift": "conservation",
     "DrivenForce": "forces",
     "EnsembleScene": "ensemble",
@@ -31,31 +36,42 @@ _HOME = {
     "Error": "errors",
     "FrozenAttribute": "errors",
     "Gravity": "forces",
+    "Harmonic": "forces",
     "InternalError": "errors",
     "Interrupted": "errors",
     "InvalidInput": "errors",
     "Invariants": "invariants",
     "LinearDrag": "forces",
     "Method": "integrators",
+    "Oblate": "forces",
     "OdeResult": "initial_value",
     "OdeSolution": "initial_value",
+    "Option": "advice",
     "PairPotential": "forces",
     "Particles": "particles",
     "Plan": "plan",
+    "Point": "comparison",
+    "PostNewtonian": "forces",
+    "QuadraticDrag": "forces",
+    "RotatingFrame": "forces",
     "Scene": "scene",
     "Spring": "forces",
     "Stats": "recorded",
     "Status": "status",
     "Trajectory": "trajectory",
+    "UniformElectricField": "forces",
     "UniformField": "forces",
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
+    "WorkPrecision": "comparison",
     "load": "io",
     "methods": "integrators",
     "solve_ivp": "initial_value",
+    "work_precision": "comparison",
 }
 _ROOMS = (
     "datasets",
+    "drag",
     "errors",
     "events",
     "forces",
@@ -65,14 +81,20 @@ _ROOMS = (
     "scattering",
     "stress",
     "typing",
+    "units",
 )
 
 __all__ = [
     "AccuracyWarning",
+    "Advice",
+    "BodyMotion",
     "CentralField",
     "CloseEncounter",
     "Conservation",
     "ConvergenceError",
+    "Cost",
+    "Coulomb",
+    "Damper",
     "Drift",
     "DrivenForce",
     "EnsembleScene",
@@ -80,26 +102,36 @@ __all__ = [
     "Error",
     "FrozenAttribute",
     "Gravity",
+    "Harmonic",
     "InternalError",
     "Interrupted",
     "InvalidInput",
     "Invariants",
     "LinearDrag",
     "Method",
+    "Oblate",
     "OdeResult",
     "OdeSolution",
+    "Option",
     "PairPotential",
     "Particles",
     "Plan",
+    "Point",
+    "PostNewtonian",
+    "QuadraticDrag",
+    "RotatingFrame",
     "Scene",
     "Spring",
     "Stats",
     "Status",
     "Trajectory",
+    "UniformElectricField",
     "UniformField",
     "UniformMagneticField",
     "UnknownKeyword",
+    "WorkPrecision",
     "datasets",
+    "drag",
     "errors",
     "events",
     "forces",
@@ -112,10 +144,28 @@ __all__ = [
     "solve_ivp",
     "stress",
     "typing",
+    "units",
+    "work_precision",
 ]
 
 if TYPE_CHECKING:
-    from visviva import datasets, errors, events, forces, orbits, potentials, problems, scattering, stress, typing
+    from visviva import (
+        datasets,
+        drag,
+        errors,
+        events,
+        forces,
+        orbits,
+        potentials,
+        problems,
+        scattering,
+        stress,
+        typing,
+        units,
+    )
+    from visviva.advice import Advice, Option
+    from visviva.body import BodyMotion
+    from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory
     from visviva.errors import (
@@ -131,11 +181,19 @@ if TYPE_CHECKING:
     )
     from visviva.forces import (
         CentralField,
+        Coulomb,
+        Damper,
         DrivenForce,
         Gravity,
+        Harmonic,
         LinearDrag,
+        Oblate,
         PairPotential,
+        PostNewtonian,
+        QuadraticDrag,
+        RotatingFrame,
         Spring,
+        UniformElectricField,
         UniformField,
         UniformMagneticField,
     )
@@ -144,7 +202,7 @@ if TYPE_CHECKING:
     from visviva.invariants import Invariants
     from visviva.io import load
     from visviva.particles import Particles
-    from visviva.plan import Plan
+    from visviva.plan import Cost, Plan
     from visviva.recorded import Stats
     from visviva.scene import Scene
     from visviva.status import Status

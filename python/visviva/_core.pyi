@@ -1,10 +1,13 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
 from collections.abc import Callable
-from typing import Any, TypedDict
+from typing import Any, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
+
+# Sets of forces, and which of them each copy has.
+_OwnForces: TypeAlias = tuple[list[list[dict[str, Any]]], list[int]]
 
 class _Scene(TypedDict):
     """One or more copies of a scene: an axis over the copies leads every array."""
@@ -13,6 +16,7 @@ class _Scene(TypedDict):
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     forces: list[dict[str, Any]]
+    own_forces: _OwnForces | None
     t0: float
     continuation: _Continuation | None
 
@@ -161,6 +165,7 @@ def orbit_anomaly(
     name: str, anomaly: NDArray[np.float64], eccentricity: NDArray[np.float64], repulsive: bool
 ) -> NDArray[np.float64]: ...
 def orbit_period(mu: NDArray[np.float64], semi_major_axis: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def orbit_semi_major_axis(mu: NDArray[np.float64], period: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def orbit_free_fall_time(
     mu: NDArray[np.float64], start: NDArray[np.float64], end: NDArray[np.float64]
 ) -> NDArray[np.float64]: ...
@@ -176,3 +181,8 @@ def conic_from_constants(
     angular_momentum: NDArray[np.float64],
     energy: NDArray[np.float64],
 ) -> dict[str, NDArray[np.float64]]: ...
+def drag_throw(speed: float, g: float, tau: float | None, terminal_speed: float) -> list[float]: ...
+def drag_reynolds_number(density: float, radius: float, speed: float, viscosity: float) -> float: ...
+def drag_quadratic(density: float, radius: float, drag_coefficient: float, viscosity: float, speed: float) -> float: ...
+def drag_stokes(mass: float, radius: float, viscosity: float, density: float, speed: float) -> float: ...
+def drag_crossover_speed(density: float, radius: float, viscosity: float, drag_coefficient: float) -> float: ...

@@ -14,6 +14,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, in_range, number, positive, whole_number
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -23,13 +24,14 @@ if TYPE_CHECKING:
 
 __all__ = ["Declared", "Parameter", "make"]
 
-_VECTORS = ("vector", "axial_vector", "point")
+_VECTORS = ("vector", "axial_vector", "direction", "point")
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
-    "indices": "int or array_like of int",
+    "indices": "int or str, or array_like of them",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
+    "direction": "array_like, shape (3,)",
     "point": "array_like, shape (3,)",
     "potential": "visviva.potentials.Potential",
     "choice": "str",
@@ -63,7 +65,10 @@ class Parameter:
     def check(self, value: Any) -> Any:
         """The value as it is kept: frozen, comparable, of one type for each kind."""
         if self.kind in _VECTORS:
-            return tuple(float_array(self.name, value, (3,)).tolist())
+            vector = float_array(self.name, value, (3,))
+            if self.kind == "direction" and not vector.any():
+                raise InvalidInput(self.name, "expected a direction, got 0.0 in every component")
+            return tuple(vector.tolist())
         if self.kind == "number":
             return self._signed(number(self.name, value))
         if self.kind == "numbers":
@@ -98,9 +103,14 @@ class Parameter:
         kept: NDArray[np.float64] = _frozen(array, value)
         return kept
 
-    def _indices(self, value: Any) -> int | NDArray[np.int64]:
+    def _indices(self, value: Any) -> int | str | tuple[int | str, ...] | NDArray[np.int64]:
+        if isinstance(value, str):
+            return value
         if not isinstance(value, np.ndarray | list | tuple):
             return whole_number(self.name, value, low=0)
+        if any(isinstance(each, str) for each in value):
+            # Names wait for the scene to say which bodies they are.
+            return tuple(each if isinstance(each, str) else whole_number(self.name, each, low=0) for each in value)
         array = np.asarray(value)
         if array.ndim != 1 or array.dtype.kind not in "iu" or array.size == 0:
             raise InvalidInput(
@@ -118,8 +128,16 @@ class Parameter:
         if self.kind in ("numbers", "table", *_VECTORS):
             return np.atleast_1d(np.array(value, dtype=float))
         if self.kind == "indices":
+            if isinstance(value, str | tuple):
+                raise InvalidInput(self.name, f"expected indices of bodies outside a scene, got {value!r}")
             return np.atleast_1d(np.array(value, dtype=np.int64))
         return value._to_core() if self.kind == "potential" else value
+
+    def resolved(self, value: Any, names: tuple[str, ...], count: int) -> Any:
+        """The value with the indices of the bodies that are given by name."""
+        if isinstance(value, str):
+            return body_index(self.name, value, names, count)
+        return self.check([body_index(self.name, each, names, count) for each in value])
 
     def from_core(self, value: Any) -> Any:
         """The value that `to_core` described, from a file."""

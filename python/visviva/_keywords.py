@@ -29,6 +29,10 @@ _ELSEWHERE = {
     ("run", "y0"): "the initial state is the scene's: see Scene.with_state",
     ("run", "integrator"): "give it as method",
     ("state", "semi_major_axis"): "give pericenter = a|1 − e| (of repulsion a(e + 1))",
+    ("state", "longitude_of_ascending_node"): "give it as node",
+    ("from_elements", "node"): "give it as longitude_of_ascending_node",
+    ("from_elements", "apocenter"): "give semi_major_axis and eccentricity",
+    ("from_elements", "mu"): "it follows from G and the masses",
 }
 
 _P = ParamSpec("_P")
@@ -70,6 +74,9 @@ mean 'distance'?
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
             called = target.__name__ if attribute == "__init__" else attribute
             setattr(target, attribute, _checked(value, called, _names(value)[1:]))
+        elif isinstance(value, classmethod) and not attribute.startswith("_"):
+            made = _checked(value.__func__, attribute, _names(value.__func__)[1:])
+            setattr(target, attribute, classmethod(made))
     settings = vars(target).get("__dataclass_params__")
     return target if settings is None or not settings.frozen else frozen(target)
 

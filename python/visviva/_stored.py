@@ -179,6 +179,8 @@ def _check_header(header: dict[str, Any]) -> None:
         _check_keys("header", header, {"events": list})
         if not all(isinstance(event, dict) and isinstance(event.get("kind"), str) for event in header["events"]):
             raise Damaged("the header of the file has an event without a kind")
+    if "names" in header:
+        _check_keys("header", header, {"names": list})
     _check_keys("account of what the run cost", header["stats"], _STATS)
     _check_keys("plan", header["plan"], _PLAN)
     for name, own in (("continuation", {"goes_on": bool}), ("start_continuation", {"node": int})):

@@ -37,8 +37,8 @@ def article(noun: str) -> str:
     return f"{'an' if noun[0] in 'aeiouAEIO' else 'a'} {noun}"  # a UniformField
 
 
-def table(record: DataclassInstance) -> str:
-    """A line for each field, with the digits that a reader compares; ``repr`` has them all.
+def table(record: DataclassInstance, leave_out: tuple[str, ...] = ()) -> str:
+    """A line for each field but those left out, with the digits that a reader compares; ``repr`` has them all.
 
     Examples
     --------
@@ -48,7 +48,7 @@ def table(record: DataclassInstance) -> str:
     center_of_mass                 [0 0 0]
     ...
     """
-    rows = [(field.name, getattr(record, field.name)) for field in fields(record)]
+    rows = [(field.name, getattr(record, field.name)) for field in fields(record) if field.name not in leave_out]
     width = max(len(name) for name, _ in rows) + 2
     return "\n".join(f"{name:<{width}}{_value(value, width)}" for name, value in rows)
 

@@ -35,7 +35,7 @@ def outer_solar_system(output: Path, days: float, threads: int | None) -> list[P
         t=np.linspace(0.0, days, 2001), method="kahan_li8", dt=step, threads=threads, progress=_progress()
     )
     print(f"\n{'':<9}{'x':>20}{'y':>20}{'z':>20}   [AU, from the centre of mass]")
-    for name, row in zip(data.names, out.position[-1], strict=True):
+    for name, row in zip(out.scene.particles.names, out.position[-1], strict=True):
         print(f"{name:<9}" + "".join(f"{value:>20.12f}" for value in row))
     print(f"\n{out.conservation()}\n")
     check = problem.scene.run(t=problem.t_end, method="kahan_li8", dt=step, threads=threads)
@@ -50,7 +50,7 @@ def outer_solar_system(output: Path, days: float, threads: int | None) -> list[P
     if find_spec("matplotlib") is None:
         return []
     path = output / "outer_solar_system.png"
-    plot_trajectory(out, data.names).savefig(path, dpi=150)
+    plot_trajectory(out).savefig(path, dpi=150)
     return [path]
 
 

@@ -14,6 +14,7 @@ import numpy as np
 from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, left_behind, of_copies
 from visviva._keywords import frozen, known_keywords
+from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import Particles, read_only
@@ -23,11 +24,13 @@ from visviva.status import Status
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva.body import BodyMotion
+    from visviva.forces import Force
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
@@ -44,6 +47,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         The forces, the time, and whatever the copies share.
     mass : ndarray, shape (B, N)
     position, velocity : ndarray, shape (B, N, 3)
+    forces : tuple of tuple of Force
+        Those of each copy.
 
     Indexing with a number gives the `Scene` of one copy, with a slice a smaller ensemble.
 
@@ -56,7 +61,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     (2, (2, 2, 3), False)
     """
 
-    __slots__ = ("_keywords", "mass", "position", "scene", "velocity")
+    __slots__ = ("_keywords", "forces", "mass", "position", "scene", "velocity")
 
     _is_ensemble = True
 
@@ -64,6 +69,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     mass: NDArray[np.float64]
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    forces: tuple[tuple[Force, ...], ...]
 
     def __init__(
         self,
@@ -72,6 +78,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
+        parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
     ) -> None:
         own = {"mass": scene.particles.mass, "position": scene.particles.position, "velocity": scene.particles.velocity}
         given = {
@@ -81,9 +88,14 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         }
         if mass is not None:
             given["mass"] = read_only(mass_array(mass, ("B", *own["mass"].shape)), mass)
-        if not given:
-            raise InvalidInput("position", "give position, velocity or mass with a leading axis over the copies")
+        own_forces = None if parameters is None else forces_of_copies(scene, parameters)
+        if not given and own_forces is None:
+            raise InvalidInput(
+                "position", "give position, velocity, mass or parameters with a leading axis over the copies"
+            )
         lengths = {name: array.shape[0] for name, array in given.items()}
+        if own_forces is not None:
+            lengths["parameters"] = len(own_forces)
         first, count = next(iter(lengths.items()))
         for name, length in lengths.items():
             if length != count:
@@ -99,11 +111,22 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             "position": full["position"],
             "velocity": full["velocity"],
             "forces": scene._keywords["forces"],
+            "own_forces": None,
             "t0": scene.t0,
             "continuation": None,
         }
-        for name, value in {"scene": scene, **full, "_keywords": prepared}.items():
+        for name, value in {"scene": scene, **full, "_keywords": prepared, "forces": (scene.forces,) * count}.items():
             object.__setattr__(self, name, value)
+        if own_forces is not None:
+            self._own(own_forces)
+
+    def _own(self, forces: tuple[tuple[Force, ...], ...]) -> EnsembleScene:
+        """Itself, which was just made, with these forces of the copies."""
+        own = described(forces)
+        object.__setattr__(self, "forces", forces)
+        self._keywords["forces"] = own[0][own[1][0]]
+        self._keywords["own_forces"] = own if len(own[0]) > 1 else None
+        return self
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -117,11 +140,12 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
         continuation = of_copies(self._keywords["continuation"], _rows(chosen))
         if isinstance(chosen, slice):
-            return attached(EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity), continuation)
+            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity)
+            return attached(some._own(self.forces[chosen]), continuation)
         from visviva.scene import Scene
 
-        scene = Scene(Particles(mass, position, velocity), *self.scene.forces, t0=self.scene.t0)
-        return attached(scene, continuation)
+        bodies = Particles(mass, position, velocity, self.scene.particles.names)
+        return attached(Scene(bodies, *self.forces[chosen], t0=self.scene.t0), continuation)
 
     if not TYPE_CHECKING:
 
@@ -140,7 +164,12 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self.scene, self.position, self.velocity, self.mass, self._keywords["continuation"])
+        state = (self.position, self.velocity, self.mass)
+        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces)
+
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self.scene.particles.names
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)
@@ -163,7 +192,7 @@ class EnsembleTrajectory(Recorded):
         Totals over the copies; `per_trajectory` has them one by one.
 
     Every array is read-only; ``out.position.copy()`` is yours. Indexing with a number gives the `Trajectory` of one
-    copy, with a slice those of a smaller ensemble.
+    copy, with a slice those of a smaller ensemble, with the name of a body its motion in all copies.
 
     Examples
     --------
@@ -189,7 +218,11 @@ class EnsembleTrajectory(Recorded):
     def __getitem__(self, index: int) -> Trajectory: ...
     @overload
     def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
-    def __getitem__(self, index: int | slice) -> Trajectory | EnsembleTrajectory:
+    @overload
+    def __getitem__(self, index: str) -> BodyMotion: ...
+    def __getitem__(self, index: int | slice | str) -> Trajectory | EnsembleTrajectory | BodyMotion:
+        if isinstance(index, str):
+            return self.body(index)
         chosen = _chosen(index, len(self))
         rows = _rows(chosen)
         result = dict(self._result)
@@ -218,6 +251,10 @@ class EnsembleTrajectory(Recorded):
     @property
     def _start(self) -> EnsembleScene:
         return self.ensemble
+
+    @property
+    def _scene(self) -> Scene:
+        return self.ensemble.scene
 
     def _found(self, name: str) -> NDArray[np.float64]:
         recorded: NDArray[np.float64] | None = self._result["columns"].get(name)
@@ -256,7 +293,7 @@ class EnsembleTrajectory(Recorded):
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         copies = EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
-        return attached(copies, left_behind(self.ensemble._keywords, self._result))
+        return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
 
 
 def _chosen(index: Any, count: int) -> int | slice:
@@ -291,5 +328,7 @@ def _rebuild(
     velocity: NDArray[np.float64],
     mass: NDArray[np.float64],
     continuation: _core._Continuation | None = None,
+    forces: tuple[tuple[Force, ...], ...] | None = None,
 ) -> EnsembleScene:
-    return attached(EnsembleScene(scene, position=position, velocity=velocity, mass=mass), continuation)
+    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass)
+    return attached(copies if forces is None else copies._own(forces), continuation)

@@ -144,11 +144,9 @@ class CloseEncounter(Error, RuntimeError):
 
     def __str__(self) -> str:
         i, j = self.bodies
-        who = (
-            f"body {i} is {self.distance:g} from a fixed centre"
-            if i == j
-            else f"bodies {i} and {j} are {self.distance:g} apart"
-        )
+        names = getattr(getattr(self.trajectory, "_start", None), "_names", ())
+        one, both = (names[i], f"{names[i]} and {names[j]}") if names else (f"body {i}", f"bodies {i} and {j}")
+        who = f"{one} is {self.distance:g} from a fixed centre" if i == j else f"{both} are {self.distance:g} apart"
         return f"the step size fell to zero at t = {self.time}: {who}; soften the force, or end the run before it"
 
 

@@ -18,6 +18,7 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._keywords import known_keywords
+from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -70,8 +71,14 @@ def _made(kind: str, direction: object, terminal: object, **parameters: Any) -> 
     return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)
 
 
-def _body(name: str, value: object) -> int:
-    return whole_number(name, value, low=0)
+def _body(name: str, value: object) -> int | str:
+    # A name waits for the scene to say which body it is.
+    return value if isinstance(value, str) else whole_number(name, value, low=0)
+
+
+def _check_two(name: str, first: int | str, second: int | str) -> None:
+    if first == second:
+        raise InvalidInput(name, f"expected two bodies, got {first} twice")
 
 
 def _point(name: str, value: object) -> tuple[float, float, float]:
@@ -80,13 +87,15 @@ def _point(name: str, value: object) -> tuple[float, float, float]:
 
 
 @known_keywords
-def distance(first: int, second: int, *, below: float, direction: int = -1, terminal: bool | int = False) -> Event:
+def distance(
+    first: int | str, second: int | str, *, below: float, direction: int = -1, terminal: bool | int = False
+) -> Event:
     """Two bodies come nearer to each other than a distance.
 
     Parameters
     ----------
-    first, second : int
-        Indices of the bodies.
+    first, second : int or str
+        Indices of the bodies, or their names.
     below : float
         The distance, above 0.
     direction : int, optional
@@ -108,14 +117,13 @@ def distance(first: int, second: int, *, below: float, direction: int = -1, term
     """
     length = positive("below", below)
     i, j = _body("first", first), _body("second", second)
-    if i == j:
-        raise InvalidInput("second", f"expected two bodies, got {i} twice")
+    _check_two("second", i, j)
     return _made("distance", direction, terminal, first=i, second=j, distance=length)
 
 
 @known_keywords
 def plane(
-    point: ArrayLike, normal: ArrayLike, *, body: int = 0, direction: int = 0, terminal: bool | int = False
+    point: ArrayLike, normal: ArrayLike, *, body: int | str = 0, direction: int = 0, terminal: bool | int = False
 ) -> Event:
     """A body passes a plane.
 
@@ -123,8 +131,8 @@ def plane(
     ----------
     point, normal : array_like, shape (3,)
         A point of the plane, and its normal, of any length.
-    body : int, optional
-        Index of the body.
+    body : int or str, optional
+        Index of the body, or its name.
     direction : int, optional
         1 where the body passes the way of the normal in time, -1 against it, 0 for both.
     terminal : bool or int, optional
@@ -150,15 +158,15 @@ def plane(
 
 
 @known_keywords
-def apsis(body: int, about: int | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
     """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
 
     Parameters
     ----------
-    body : int
-        Index of the body.
-    about : int or array_like, shape (3,)
-        Index of the other body, or the point.
+    body : int or str
+        Index of the body, or its name.
+    about : int, str or array_like, shape (3,)
+        Index or name of the other body, or the point.
     direction : int, optional
         1 for pericenters, -1 for apocenters, 0 for both, in runs forwards and backwards.
     terminal : bool or int, optional
@@ -179,8 +187,7 @@ def apsis(body: int, about: int | ArrayLike, *, direction: int = 0, terminal: bo
     whose = _body("body", body)
     if np.ndim(about) == 0:
         focus: Any = _body("about", about)
-        if focus == whose:
-            raise InvalidInput("about", f"expected another body, got {focus} twice")
+        _check_two("about", whose, focus)
     else:
         focus = _point("about", about)
     return _made("apsis", direction, terminal, body=whose, about=focus)
@@ -268,6 +275,23 @@ def to_core(given: Any) -> list[dict[str, Any]]:
                 f"got events[{index}] = {event!r}",
             )
     return told
+
+
+# Where an event names bodies.
+_BODIES = ("first", "second", "body", "about")
+
+
+def resolved(told: list[dict[str, Any]], names: tuple[str, ...]) -> list[dict[str, Any]]:
+    """The same with the indices of the bodies that were given by name."""
+    found = []
+    for event in told:
+        own = {name: body_index(name, event[name], names) for name in _BODIES if isinstance(event.get(name), str)}
+        whole = {**event, **own}
+        for first, second in (("first", "second"), ("body", "about")):
+            if own and isinstance(whole.get(second), int):
+                _check_two(second, whole[first], whole[second])
+        found.append(whole)
+    return found
 
 
 def described(told: list[dict[str, Any]]) -> list[dict[str, Any]]:

@@ -53,12 +53,18 @@ class Force(Declared):
         moved = {name: np.add(getattr(self, name), position) for name in points}
         return type(self)(**(self._values() | moved)) if moved else self
 
+    def _resolved(self, names: tuple[str, ...], count: int) -> Self:
+        """The force with indices in place of the names of bodies, as a scene of them keeps it."""
+        named = [p for p in self._parameters if p.kind == "indices" and isinstance(getattr(self, p.name), str | tuple)]
+        found = {p.name: p.resolved(getattr(self, p.name), names, count) for p in named}
+        return type(self)(**(self._values() | found)) if found else self
+
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3)."""
         turned = {
             p.name: rotation @ np.array(getattr(self, p.name))
             for p in self._parameters
-            if p.kind in ("vector", "point")
+            if p.kind in ("vector", "direction", "point")
         }
         axial = np.sign(np.linalg.det(rotation)) * rotation
         turned |= {

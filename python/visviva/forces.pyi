@@ -10,12 +10,20 @@ from visviva.potentials import Potential
 
 __all__ = [
     "CentralField",
+    "Coulomb",
+    "Damper",
     "DrivenForce",
     "Force",
     "Gravity",
+    "Harmonic",
     "LinearDrag",
+    "Oblate",
     "PairPotential",
+    "PostNewtonian",
+    "QuadraticDrag",
+    "RotatingFrame",
     "Spring",
+    "UniformElectricField",
     "UniformField",
     "UniformMagneticField",
 ]
@@ -24,6 +32,7 @@ class Force(Declared):
     kind: ClassVar[str]
     def __init_subclass__(cls, **arguments: Any) -> None: ...
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self: ...
+    def _resolved(self, names: tuple[str, ...], count: int) -> Self: ...
     def rotated(self, rotation: NDArray[np.float64]) -> Self: ...
     def reversed(self) -> Self: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
@@ -33,6 +42,32 @@ class Gravity(Force):
     G: float
     softening: float
     def __init__(self, G: float, softening: float = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Coulomb(Force):
+    charge: float | NDArray[np.float64]
+    k: float
+    softening: float
+    def __init__(self, charge: ArrayLike, k: float, softening: float = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Oblate(Force):
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    G: float
+    J2: float | NDArray[np.float64]
+    radius: float | NDArray[np.float64]
+    axis: tuple[float, float, float]
+    J4: float | NDArray[np.float64]
+    def __init__(
+        self, body: ArrayLike, G: float, J2: ArrayLike, radius: ArrayLike, axis: ArrayLike, J4: ArrayLike = 0.0
+    ) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class PostNewtonian(Force):
+    body: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    G: float
+    c: float
+    def __init__(self, body: ArrayLike, G: float, c: float) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class UniformField(Force):
@@ -46,9 +81,26 @@ class CentralField(Force):
     def __init__(self, potential: Potential, center: ArrayLike = (0.0, 0.0, 0.0)) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Harmonic(Force):
+    k: float
+    center: tuple[float, float, float]
+    def __init__(self, k: float, center: ArrayLike = (0.0, 0.0, 0.0)) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class LinearDrag(Force):
     tau: float
     def __init__(self, tau: float) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class QuadraticDrag(Force):
+    coefficient: float | NDArray[np.float64]
+    def __init__(self, coefficient: ArrayLike) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class UniformElectricField(Force):
+    E: tuple[float, float, float]
+    charge: float | NDArray[np.float64]
+    def __init__(self, E: ArrayLike, charge: ArrayLike = 1.0) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class UniformMagneticField(Force):
@@ -64,12 +116,25 @@ class DrivenForce(Force):
     def __init__(self, amplitude: ArrayLike, frequency: float, phase: float = 0.0) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class RotatingFrame(Force):
+    omega: tuple[float, float, float]
+    center: tuple[float, float, float]
+    def __init__(self, omega: ArrayLike, center: ArrayLike = (0.0, 0.0, 0.0)) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Spring(Force):
-    i: int | NDArray[np.int64]
-    j: int | NDArray[np.int64]
+    i: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    j: int | str | tuple[int | str, ...] | NDArray[np.int64]
     k: float | NDArray[np.float64]
     length: float | NDArray[np.float64]
     def __init__(self, i: ArrayLike, j: ArrayLike, k: ArrayLike, length: ArrayLike = 0.0) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Damper(Force):
+    i: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    j: int | str | tuple[int | str, ...] | NDArray[np.int64]
+    c: float | NDArray[np.float64]
+    def __init__(self, i: ArrayLike, j: ArrayLike, c: ArrayLike) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class PairPotential(Force):

@@ -2,9 +2,9 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header. What a run
-left behind for another to go on with is in ``final/held`` and ``final/node``; what the run itself went on with in
-``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
+``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header, as are the
+names of bodies. What a run left behind for another to go on with is in ``final/held`` and ``final/node``; what the run
+itself went on with in ``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
@@ -68,6 +68,10 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         "stats": result["stats"],
         "plan": result["plan"],
     }
+    if start["own_forces"] is not None:
+        header["own_forces"] = start["own_forces"]
+    if run._start._names:
+        header["names"] = run._start._names
     if "looked_for" in result:
         header["events"] = result["looked_for"]
     if "continuation" in result:
@@ -158,11 +162,16 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
         if member:
             result[group][member] = array
     forces = [force_from_core(description) for description in header["forces"]]
-    first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0])
+    names = header.get("names")
+    first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0], names)
     scene = Scene(first, *forces, t0=header["t0"])
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
         copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
+        if header.get("own_forces") is not None:
+            sets, of_copy = header["own_forces"]
+            own = [tuple(force_from_core(description) for description in forces) for forces in sets]
+            copies = copies._own(tuple(own[which] for which in of_copy))
         run = EnsembleTrajectory(attached(copies, before), result)
     else:
         run = Trajectory(attached(scene, before), result)

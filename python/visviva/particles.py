@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._keywords import known_keywords
+from visviva._names import body_index, body_indices, checked_names
 from visviva._text import count
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva._arrays import Sizes
@@ -33,41 +36,65 @@ class Particles:
         Positions.
     velocity : array_like, shape (N, 3), optional
         Velocities; at rest if not given.
+    names : sequence of str, optional
+        A name for each body, all different. Runs, files, pictures and whatever is made from the particles keep them;
+        forces, events and results take them in place of indices: ``out["Jupiter"]``.
 
-    All three are copied and the copies are read-only float64. Units are the caller's own, one
-    consistent system for the whole scene.
+    The arrays are copied and the copies are read-only float64. Units are the caller's own, one consistent system for
+    the whole scene. Indexing with names, indices, a slice or a mask gives the particles of some of the bodies.
 
     Raises
     ------
     visviva.InvalidInput
-        For a wrong shape, complex or object arrays, NaN or infinity, or a negative mass.
+        For a wrong shape, complex or object arrays, NaN or infinity, a negative mass, or names that are not one for
+        each body.
 
     Examples
     --------
     >>> import visviva as vv
     >>> vv.Particles(mass=[1.0, 0.0], position=[[0, 0, 0], [1, 0, 0]])
     Particles(2 bodies, 1 of them massless)
+    >>> particles = vv.Particles([1.0, 0.0], [[0, 0, 0], [1, 0, 0]], names=["star", "comet"])
+    >>> particles["comet"].position
+    array([[1., 0., 0.]])
     """
 
     mass: NDArray[np.float64]
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    names: tuple[str, ...]
 
-    def __init__(self, mass: ArrayLike, position: ArrayLike, velocity: ArrayLike | None = None) -> None:
+    def __init__(
+        self,
+        mass: ArrayLike,
+        position: ArrayLike,
+        velocity: ArrayLike | None = None,
+        names: Sequence[str] | None = None,
+    ) -> None:
         sizes: Sizes = {}
         object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
         object.__setattr__(self, "position", read_only(float_array("position", position, ("N", 3), sizes), position))
         if velocity is None:
             velocity = np.zeros(self.position.shape)
         object.__setattr__(self, "velocity", read_only(float_array("velocity", velocity, ("N", 3), sizes), velocity))
+        object.__setattr__(self, "names", checked_names(names, len(self.mass)))
 
     def __len__(self) -> int:
         return len(self.mass)
 
+    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> Particles:
+        chosen = body_indices("bodies", bodies, self.names, len(self))
+        names = [self.names[body] for body in chosen] if self.names else None
+        return Particles(self.mass[chosen], self.position[chosen], self.velocity[chosen], names)
+
+    def __iter__(self) -> Iterator[Particles]:
+        return (self[body] for body in range(len(self)))
+
     def __repr__(self) -> str:
         massless = int(np.count_nonzero(self.mass == 0.0))
         note = f", {massless} of them massless" if massless else ""
-        return f"Particles({count(len(self), 'body', 'bodies')}{note})"
+        named = f": {', '.join(self.names[:12])}{', …' if len(self.names) > 12 else ''}" if self.names else ""
+        return f"Particles({count(len(self), 'body', 'bodies')}{note}{named})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Particles):
@@ -76,14 +103,141 @@ class Particles:
             np.array_equal(self.mass, other.mass)
             and np.array_equal(self.position, other.position)
             and np.array_equal(self.velocity, other.velocity)
+            and self.names == other.names
         )
 
     def __hash__(self) -> int:
         # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
-        return hash(tuple((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity)))
+        return hash((self.names, *((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity))))
 
-    def __reduce__(self) -> tuple[type[Particles], tuple[NDArray[np.float64], ...]]:
-        return Particles, (self.mass, self.position, self.velocity)
+    def __reduce__(self) -> tuple[type[Particles], tuple[Any, ...]]:
+        return Particles, (self.mass, self.position, self.velocity, self.names)
+
+    def _changed(self, **changes: ArrayLike) -> Particles:
+        """The same bodies with other numbers."""
+        own = {"mass": self.mass, "position": self.position, "velocity": self.velocity}
+        return Particles(**(own | changes), names=self.names)
+
+    @classmethod
+    def from_elements(
+        cls,
+        central: Particles | float,
+        mass: ArrayLike,
+        *,
+        G: float,
+        about: int | str | Sequence[int | str] = 0,
+        semi_major_axis: ArrayLike | None = None,
+        pericenter: ArrayLike | None = None,
+        semi_latus_rectum: ArrayLike | None = None,
+        period: ArrayLike | None = None,
+        eccentricity: ArrayLike = 0.0,
+        inclination: ArrayLike = 0.0,
+        longitude_of_ascending_node: ArrayLike = 0.0,
+        argument_of_pericenter: ArrayLike | None = None,
+        longitude_of_pericenter: ArrayLike | None = None,
+        true_anomaly: ArrayLike | None = None,
+        eccentric_anomaly: ArrayLike | None = None,
+        mean_anomaly: ArrayLike | None = None,
+        mean_longitude: ArrayLike | None = None,
+        time_of_pericenter: ArrayLike | None = None,
+        t0: float = 0.0,
+        names: Sequence[str] | None = None,
+    ) -> Particles:
+        """Bodies on given orbits about others: ellipses, parabolas and hyperbolas.
+
+        Numbers and arrays of one axis, over the new bodies, broadcast against each other. Angles are in radians; x is
+        the reference direction, z the pole. The way back is `Scene.elements`.
+
+        Parameters
+        ----------
+        central : float or Particles
+            The mass of a central body at rest at the origin; or bodies that are there already, to which the new ones
+            are added.
+        mass : array_like
+            Masses of the new bodies, 0 of test particles.
+        G : float
+            The gravitational constant: μ = G (mass of what a body is about + its own mass).
+        about : int or str, or sequence of them, optional
+            What the new bodies orbit, all the same or one for each: a body that is there before them, by index (0 the
+            central one) or name; ``"jacobi"``, the centre of mass of all bodies before each; ``"center_of_mass"``,
+            that of the bodies of `central`.
+        semi_major_axis, pericenter, semi_latus_rectum, period : array_like, optional
+            The size, by one of the four, positive: a (also of a hyperbola; a parabola has none), the least distance, p,
+            or the period of an ellipse.
+        eccentricity : array_like, optional
+            e ≥ 0.
+        inclination : array_like, optional
+            From 0 to π.
+        longitude_of_ascending_node : array_like, optional
+            Ω, from x to the ascending node.
+        argument_of_pericenter, longitude_of_pericenter : array_like, optional
+            ω, from the node to the pericenter along the motion, or ϖ = Ω + ω; ω = 0 if neither is given.
+        true_anomaly, eccentric_anomaly, mean_anomaly, mean_longitude, time_of_pericenter : array_like, optional
+            Where the bodies are, by one of the five: the angle from the pericenter, inside the asymptotes of a
+            hyperbola; E, H or tan(ν/2) of an ellipse, hyperbola or parabola; E − e sin E, e sinh H − H or
+            D + D³/3; ϖ + the mean anomaly; or the time of a passage. At the pericenter if none is given.
+        t0 : float, optional
+            The time of the state, from which `time_of_pericenter` is counted: the scene's `t0`.
+        names : sequence of str, optional
+            Of the new bodies; if `central` is a mass, its name first.
+
+        Returns
+        -------
+        Particles
+            The bodies of `central`, then the new ones.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            By the name of the argument: for a number out of its range, a size, direction or place given twice or, the
+            size, not at all, a parabola's semi-major axis, a body about one that comes after it, masses none of which
+            attracts.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> earth = vv.Particles.from_elements(1.0, 3e-6, G=1.0, semi_major_axis=1.0, names=["Sun", "Earth"])
+        >>> both = vv.Particles.from_elements(
+        ...     earth, 3.7e-8, G=1.0, about="Earth", semi_major_axis=0.0026, eccentricity=0.05, names=["Moon"])
+        >>> both.names, both["Moon"].position.round(5).tolist()
+        (('Sun', 'Earth', 'Moon'), [[1.00247, 0.0, 0.0]])
+        """
+        from visviva._from_elements import from_elements
+
+        given = {
+            "mass": mass,
+            "semi_major_axis": semi_major_axis,
+            "pericenter": pericenter,
+            "semi_latus_rectum": semi_latus_rectum,
+            "period": period,
+            "eccentricity": eccentricity,
+            "inclination": inclination,
+            "longitude_of_ascending_node": longitude_of_ascending_node,
+            "argument_of_pericenter": argument_of_pericenter,
+            "longitude_of_pericenter": longitude_of_pericenter,
+            "true_anomaly": true_anomaly,
+            "eccentric_anomaly": eccentric_anomaly,
+            "mean_anomaly": mean_anomaly,
+            "mean_longitude": mean_longitude,
+            "time_of_pericenter": time_of_pericenter,
+        }
+        return from_elements(cls, central, G, about, t0, names, given)
+
+    def index(self, name: str | int) -> int:
+        """The index of a body by its name.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is none of that name; the message has the nearest.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.datasets.outer_solar_system().particles.index("Saturn")
+        2
+        """
+        return body_index("name", name, self.names, len(self))
 
     def center_of_mass(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position and velocity of the centre of mass.
@@ -133,7 +287,7 @@ class Particles:
                 "position": self.position * length,
                 "velocity": self.velocity * (length / time),
             }
-        return Particles(**{name: in_range(name, getattr(self, name), values) for name, values in new.items()})
+        return self._changed(**{name: in_range(name, getattr(self, name), values) for name, values in new.items()})
 
 
 def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -3,11 +3,38 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import known_keywords
 
-__all__ = ["Plan"]
+if TYPE_CHECKING:
+    from visviva import _core
+
+__all__ = ["Cost", "Plan"]
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Cost:
+    """What a run would cost: the answer of `Plan.cost`.
+
+    Attributes
+    ----------
+    steps, evaluations : int
+        Steps and force evaluations, of all copies together.
+    memory : int
+        Bytes of the results.
+    seconds : float
+        Time, as the trial went.
+    exact : bool
+        Whether the number of steps is; else it is scaled from the trial.
+    """
+
+    steps: int
+    evaluations: int
+    memory: int
+    seconds: float
+    exact: bool
 
 
 @known_keywords
@@ -15,7 +42,7 @@ __all__ = ["Plan"]
 class Plan:
     """What will run, what is skipped and why, and the cost of a step.
 
-    Printing it shows the whole of it, the way a database explains a query.
+    Printing it shows the whole of it, the way a database explains a query, and what the run would cost: `cost`.
 
     Attributes
     ----------
@@ -59,9 +86,47 @@ class Plan:
     lanes: str
     threads: int
     text: str = field(repr=False)
+    # What `cost` tries; not there in the plan of what has run.
+    _asked: _core._Request | None = field(default=None, repr=False, compare=False)
 
     def __str__(self) -> str:
-        return self.text
+        found = self.cost()
+        if found is None:
+            return self.text
+        about = "" if found.exact else "about "
+        lines = [
+            f"steps: {about}{found.steps:_}".replace("_", " "),
+            f"force evaluations: {'about ' if found.steps else ''}{found.evaluations:_}".replace("_", " "),
+            f"memory of the results: {_size(found.memory)}",
+            f"time: about {_duration(found.seconds)}",
+        ]
+        return "\n".join([self.text, "expected", *(f"  {line}" for line in lines)])
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # Without what was asked, which may hold functions.
+        return type(self), tuple(getattr(self, name) for name in self.__slots__[:-1])
+
+    def cost(self) -> Cost | None:
+        """What the run would cost, by a trial of a few milliseconds: steps, force evaluations, memory and time.
+
+        Returns
+        -------
+        Cost or None
+            Steps and force evaluations are scaled from the trial where they are not known before. Seconds are those of
+            this machine, as busy as it is. Events are not looked for in the trial. None where the trial fails or would
+            be long (10⁸ pairs in a step), and of what has run: see ``out.stats``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.outer_solar_system().scene
+        >>> cost = scene.plan(t=1e5, method="leapfrog", dt=10.0).cost()
+        >>> cost.steps, cost.memory
+        (10000, 576)
+        """
+        from visviva._trial import cost
+
+        return None if self._asked is None else cost(self._asked, self)
 
     @property
     def closed_form(self) -> bool:
@@ -69,9 +134,27 @@ class Plan:
         return self.solution.startswith("closed form")
 
     @classmethod
-    def _from_core(cls, plan: dict[str, Any]) -> Plan:
+    def _from_core(cls, plan: dict[str, Any], asked: _core._Request | None = None) -> Plan:
         """The plan of a dictionary of the core's, or of a file, which an older version may have written."""
         known = {name: plan[name] for name in cls.__slots__ if name in plan}
         for name in ("rows", "skipped"):
             known[name] = tuple(tuple(row) for row in known.get(name, ()))
-        return cls(**known)
+        return cls(**known, _asked=asked)
+
+
+def _size(size: float) -> str:
+    for unit in ("bytes", "kB", "MB", "GB"):
+        if size < 1000.0:
+            return f"{size:.3g} {unit}"
+        size /= 1000.0
+    return f"{size:.3g} TB"
+
+
+def _duration(seconds: float) -> str:
+    for size, unit in ((1e-6, "ns"), (1e-3, "µs"), (1.0, "ms")):
+        if seconds < size:
+            return f"{seconds / size * 1000.0:.2g} {unit}"
+    if seconds < 100.0:
+        return f"{seconds:.2g} s"
+    minutes = seconds / 60.0
+    return f"{minutes:.3g} minutes" if minutes < 100.0 else f"{minutes / 60.0:.3g} hours"

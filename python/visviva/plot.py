@@ -10,8 +10,6 @@ from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -21,6 +19,8 @@ __all__ = ["new_figure", "plot_trajectory"]
 
 # More points than this cannot be told apart in a figure and make the file large.
 _POINTS = 4000
+# A legend of more bodies would hide the picture.
+_LEGEND = 24
 
 
 def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
@@ -39,7 +39,7 @@ def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axe
     return figure, [figure.add_subplot(1, panels, panel + 1) for panel in range(panels)]
 
 
-def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) -> Figure:
+def plot_trajectory(trajectory: Trajectory) -> Figure:
     """Orbits in the plane of their largest extent and, if it is known, the relative change of the energy."""
     if not trajectory.scene.particles or not len(trajectory):
         raise InvalidInput(
@@ -49,13 +49,14 @@ def plot_trajectory(trajectory: Trajectory, names: Sequence[str] | None = None) 
         )
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0))
-    _orbits(axes[0], trajectory, names)
+    _orbits(axes[0], trajectory)
     if with_energy:
         _energy(axes[1], trajectory)
     return figure
 
 
-def _orbits(axes: Axes, trajectory: Trajectory, names: Sequence[str] | None) -> None:
+def _orbits(axes: Axes, trajectory: Trajectory) -> None:
+    names = trajectory.scene.particles.names
     stride = max(1, len(trajectory) // _POINTS)
     position = trajectory.position[::stride]
     # The two largest extents; of equal ones the earlier axis.
@@ -67,7 +68,7 @@ def _orbits(axes: Axes, trajectory: Trajectory, names: Sequence[str] | None) -> 
         axes.plot(*trajectory.position[-1, body, [across, up]], "o", markersize=4, color=line.get_color())
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="xyz"[across], ylabel="xyz"[up], title="orbits")
-    if names:
+    if 0 < len(names) <= _LEGEND:
         axes.legend(fontsize="small", loc="upper right")
 
 

@@ -7,14 +7,15 @@ amplifies a rounding of its input, so that nobody claims digits that float64 can
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from math import cos, pi, sin, sqrt
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._field_problems import arenstorf, crossed_fields, driven_oscillator, projectile
 from visviva._keywords import known_keywords
+from visviva._problem import Problem, Reference, reference, rows
 from visviva._reference_states import (
     OUTER_SOLAR_SYSTEM,
     OUTER_SOLAR_SYSTEM_CONDITIONING,
@@ -27,99 +28,25 @@ from visviva.errors import InvalidInput
 from visviva.forces import Gravity
 from visviva.particles import Particles
 from visviva.scene import Scene
-from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-
-    from numpy.typing import ArrayLike, NDArray
 
 
 __all__ = [
     "Problem",
     "Reference",
+    "arenstorf",
+    "crossed_fields",
+    "driven_oscillator",
     "figure_eight",
     "kepler",
     "lagrange_triangle",
     "outer_solar_system",
     "pleiades",
+    "projectile",
     "pythagorean",
 ]
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Reference:
-    """Where bodies are at a time.
-
-    Attributes
-    ----------
-    t : float
-    bodies : tuple of int
-        Which bodies the rows are.
-    position : ndarray, shape (len(bodies), 3)
-    """
-
-    t: float
-    bodies: tuple[int, ...]
-    position: NDArray[np.float64]
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Problem:
-    """A scene, how far to run it, and what must come out.
-
-    Attributes
-    ----------
-    name, summary : str
-    scene : Scene
-    t_end : float
-        The usual end; a reference is given there.
-    references : tuple of Reference
-    conditioning : tuple of (float, float)
-        (t, factor): a relative change of the input by ε moves a body by about factor · ε at time t
-        (largest of a dozen random changes, unless the problem says how it is known).
-    source : str
-    """
-
-    name: str
-    summary: str
-    scene: Scene
-    t_end: float
-    references: tuple[Reference, ...]
-    conditioning: tuple[tuple[float, float], ...]
-    source: str
-
-    def error(self, final: Scene | Trajectory) -> float:
-        """Largest distance of a body from its reference position at the time of `final`.
-
-        Parameters
-        ----------
-        final : Scene or Trajectory
-            A state at the time of one of the references; of a trajectory, the last.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            If there is no reference at that time.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> problem = vv.problems.kepler(e=0.9)
-        >>> problem.error(problem.scene.run(t=problem.t_end)) < 1e-13
-        True
-        """
-        if not isinstance(final, Scene | Trajectory):
-            raise InvalidInput("final", f"expected a Scene or a Trajectory, got {type(final).__name__}")
-        state = final if isinstance(final, Scene) else final.final
-        for reference in self.references:
-            if reference.t == state.t0:
-                distances = state.particles.position[list(reference.bodies)] - reference.position
-                return float(np.linalg.norm(distances, axis=1).max())
-        times = ", ".join(repr(reference.t) for reference in self.references)
-        raise InvalidInput("final", f"{self.name} has references at t = {times}, got a state at t = {state.t0!r}")
 
 
 @known_keywords
@@ -138,7 +65,7 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     200000.0
     """
     data = outer_solar_system_data(variant)
-    scene = Scene(Particles(data.mass, data.position, data.velocity), Gravity(data.G))
+    scene = data.scene
     if variant == "applegate":
         scene = scene.center_of_mass_frame()
     t_end, positions = OUTER_SOLAR_SYSTEM[variant]
@@ -147,7 +74,7 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
         "Sun, Jupiter, Saturn, Uranus, Neptune, Pluto; AU, day, solar mass",
         scene,
         t_end,
-        (_reference(t_end, positions),),
+        (reference(t_end, positions),),
         OUTER_SOLAR_SYSTEM_CONDITIONING[variant],
         data.source,
     )
@@ -183,7 +110,7 @@ def figure_eight(periods: int = 1) -> Problem:
         "three equal bodies on one closed curve",
         Scene(Particles([1.0, 1.0, 1.0], position, velocity), Gravity(1.0)),
         t_end,
-        (_reference(t_end, position),),
+        (reference(t_end, position),),
         # Linear in time: 11 for one period, 1.07e4 for 1000.
         ((t_end, 11.0 * periods),),
         "Chenciner & Montgomery, Ann. Math. 152 (2000) 881",
@@ -212,7 +139,7 @@ def pythagorean() -> Problem:
         "masses 3, 4, 5 released at the corners of a 3-4-5 triangle",
         Scene(Particles([3.0, 4.0, 5.0], [[1, 3, 0], [-2, -1, 0], [1, -1, 0]]), Gravity(1.0)),
         30.0,
-        tuple(Reference(t, (0,), _rows([[x, y, 0.0]])) for t, x, y in PYTHAGOREAN),
+        tuple(Reference(t, (0,), rows([[x, y, 0.0]])) for t, x, y in PYTHAGOREAN),
         ((30.0, 5.0), (40.0, 5e2), (46.0, 5e4), (59.0, 2e6), (63.0, 3e7), (70.0, 1.5e8)),
         "Szebehely & Peters, Astron. J. 72 (1967) 876",
     )
@@ -241,7 +168,7 @@ def pleiades() -> Problem:
         "seven stars in a plane",
         scene,
         3.0,
-        (_reference(3.0, np.array([*PLEIADES, zero]).T),),
+        (reference(3.0, np.array([*PLEIADES, zero]).T),),
         PLEIADES_CONDITIONING,
         "Hairer, Norsett & Wanner, Solving ODE I (1993), II.10",
     )
@@ -285,7 +212,7 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
         f"two bodies, e = {e:g}",
         Scene(Particles([first, second], position, velocity), Gravity(1.0)),
         t_end,
-        (_reference(t_end, position),),
+        (reference(t_end, position),),
         # The period depends on the energy: dT/T = 3/2 da/a = 3 (1 + e)/(1 - e) dv/v, and a wrong time is
         # multiplied by the speed at pericenter.
         ((t_end, 6.0 * pi * periods * (1.0 + e) / (1.0 - e) * speed),),
@@ -337,21 +264,10 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
         "three bodies turning as a rigid equilateral triangle",
         Scene(Particles(masses, position, velocity), Gravity(1.0)),
         t_end,
-        (_reference(t_end, turned),),
+        (reference(t_end, turned),),
         ((t_end, float(max(1.0, np.exp(2.0 * pi * turn * growth)))),),
         "Lagrange, Essai sur le probleme des trois corps (1772)",
     )
-
-
-def _reference(t: float, position: ArrayLike) -> Reference:
-    rows = _rows(position)
-    return Reference(t, tuple(range(len(rows))), rows)
-
-
-def _rows(position: ArrayLike) -> NDArray[np.float64]:
-    rows = np.array(position, dtype=float)
-    rows.flags.writeable = False
-    return rows
 
 
 def __dir__() -> list[str]:

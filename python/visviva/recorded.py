@@ -13,16 +13,21 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import frozen, known_keywords
+from visviva._names import body_index
 from visviva.errors import InvalidInput
 from visviva.plan import Plan
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
 
+    from visviva.body import BodyMotion
     from visviva.events import EventTable
+    from visviva.orbits import Elements
     from visviva.runnable import Runnable
+    from visviva.scene import Scene
 
 
 __all__ = ["Recorded", "Stats"]
@@ -102,6 +107,11 @@ class Recorded(ABC):
     def _found(self, name: str) -> NDArray[np.float64]:
         """The column, recorded or computed; InvalidInput says what to record if it is neither."""
 
+    @property
+    @abstractmethod
+    def _scene(self) -> Scene:
+        """What the copies share: forces, and names of bodies."""
+
     def _column(self, name: str) -> NDArray[np.float64]:
         if name not in self._columns:
             found = self._found(name)
@@ -154,6 +164,81 @@ class Recorded(ABC):
     def center_of_mass(self) -> NDArray[np.float64]:
         """Centre of mass, shape (T, 3), or (B, T, 3)."""
         return self._column("center_of_mass")
+
+    def body(self, body: str | int) -> BodyMotion:
+        """The motion of one body: views of its rows of the columns; ``out["Jupiter"]`` is ``out.body("Jupiter")``.
+
+        Parameters
+        ----------
+        body : str or int
+            Its name, if the particles have names, or its index.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is no such body.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.datasets.outer_solar_system().scene.run(t=[0.0, 1000.0], method="dop853")
+        >>> out.body(5).name, out["Pluto"].position.shape
+        ('Pluto', (2, 3))
+        """
+        from visviva.body import BodyMotion
+
+        return BodyMotion(self, body_index("body", body, self._start._names, self._start._keywords["mass"].shape[-1]))
+
+    def elements(
+        self,
+        bodies: str | int | Sequence[str | int] | None = None,
+        *,
+        about: str | int = 0,
+        G: float | None = None,
+    ) -> Elements:
+        """The osculating elements of bodies at the output times.
+
+        The conic on which a body would go on if at that instant all but what it orbits were gone: of the relative
+        position and velocity, with μ = G times the masses of both.
+
+        Parameters
+        ----------
+        bodies : str or int, or sequence of them, optional
+            Names or indices; by default all that orbit something, in their order: all but the body `about`; all but
+            the first about "jacobi".
+        about : str or int, optional
+            The body that they orbit, by name or index. ``"jacobi"``: each orbits the centre of mass of all bodies
+            before it; ``"center_of_mass"``: that of all the other bodies.
+        G : float, optional
+            The gravitational constant; by default that of the scene's `Gravity`.
+
+        Returns
+        -------
+        Elements
+            Arrays of shape (T, K) for K bodies, (T,) for one that was given alone, with a leading axis B of an
+            ensemble; vectors with a last axis of 3. Angles are in radians, x the reference direction, z the pole. What
+            they are for circular, planar, parabolic and radial orbits is said in `visviva.orbits.Elements`. Rows that a
+            failed copy of an ensemble does not have are NaN, as its states are.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is no such body; if a body is at the very place of what it orbits, or neither has mass; if the
+            scene has no gravity and no `G` is given; if positions or velocities were not recorded.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.datasets.outer_solar_system().scene.run(t=[0.0, 1e4], method="dop853")
+        >>> out.elements(["Jupiter", "Saturn"], about="Sun").semi_major_axis.round(2).tolist()
+        [[5.2, 9.54], [5.2, 9.58]]
+        """
+        from visviva._osculating import elements_of
+
+        mass = self._start._keywords["mass"]
+        return elements_of(
+            self._scene, self.position, self.velocity, mass if self._start._is_ensemble else mass[0], bodies, about, G
+        )
 
     @property
     def recorded(self) -> tuple[str, ...]:

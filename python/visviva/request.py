@@ -97,8 +97,8 @@ class PlanRequest:
     record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
     events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
 
-    def to_core(self, prepared: _core._Scene) -> _core._Request:
-        """What ``_core.run`` and ``_core.plan`` both take."""
+    def to_core(self, prepared: _core._Scene, names: tuple[str, ...]) -> _core._Request:
+        """What ``_core.run`` and ``_core.plan`` both take, of a scene of bodies with these names."""
         t = self.t
         # An array or a sequence is output times; anything else must be one number, and `number` says so.
         end_only = getattr(t, "ndim", int(hasattr(t, "__len__"))) == 0
@@ -110,6 +110,10 @@ class PlanRequest:
         for name, default, ready, check in _OPTIONS:
             value = getattr(self, name)
             asked[name] = ready if value is default else check(name, value)
+        if asked["events"]:
+            from visviva.events import resolved
+
+            asked["events"] = resolved(asked["events"], names)
         return cast("_core._Request", asked)
 
 
@@ -167,10 +171,15 @@ def asked_by(
 
 
 def execute(
-    prepared: _core._Scene, request: RunRequest, *, ensemble: bool, make: Callable[[dict[str, Any]], _Result]
+    prepared: _core._Scene,
+    request: RunRequest,
+    *,
+    names: tuple[str, ...],
+    ensemble: bool,
+    make: Callable[[dict[str, Any]], _Result],
 ) -> _Result:
     """Run the request and make its result, or raise the core's error with the result attached."""
-    asked = request.to_core(prepared)
+    asked = request.to_core(prepared, names)
     threads = None if request.threads is None else whole_number("threads", request.threads)
     if request.progress is False:
         result = _core.run(asked, threads=threads, progress=None, ensemble=ensemble)

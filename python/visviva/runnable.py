@@ -27,6 +27,11 @@ class Runnable(ABC, Generic[_Result]):
     _is_ensemble: ClassVar[bool] = False
     _keywords: _core._Scene  # what the core is told of what there is
 
+    @property
+    @abstractmethod
+    def _names(self) -> tuple[str, ...]:
+        """Names of the bodies, if they have some."""
+
     @abstractmethod
     def _finished(self, result: dict[str, Any]) -> _Result:
         """What the user gets for the core's answer."""
@@ -101,7 +106,7 @@ class Runnable(ABC, Generic[_Result]):
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (2, 2, 3, 3)
         """
-        return execute(self._keywords, request, ensemble=self._is_ensemble, make=self._finished)
+        return execute(self._keywords, request, names=self._names, ensemble=self._is_ensemble, make=self._finished)
 
     @asked_by(PlanRequest)
     def plan(self, request: PlanRequest) -> Plan:
@@ -124,4 +129,5 @@ class Runnable(ABC, Generic[_Result]):
         >>> plan.method, plan.evaluations_per_step, plan.pairs_per_evaluation
         ('leapfrog', 1, 15)
         """
-        return Plan._from_core(_core.plan(request.to_core(self._keywords)))
+        asked = request.to_core(self._keywords, self._names)
+        return Plan._from_core(_core.plan(asked), asked)

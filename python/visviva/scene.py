@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from itertools import chain
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -25,12 +25,14 @@ from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.advice import Advice
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
+    from visviva.orbits import Elements
 
 __all__ = ["Scene"]
 
@@ -87,7 +89,9 @@ class Scene(Runnable[Trajectory]):
         if len(found) != 1:
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        self._set(found[0], tuple(part for part in all_parts if isinstance(part, Force)), number("t0", t0))
+        bodies = found[0]
+        acting = (part._resolved(bodies.names, len(bodies)) for part in all_parts if isinstance(part, Force))
+        self._set(bodies, tuple(acting), number("t0", t0))
 
     def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
         object.__setattr__(self, "particles", particles)
@@ -98,6 +102,7 @@ class Scene(Runnable[Trajectory]):
             "position": particles.position[None],
             "velocity": particles.velocity[None],
             "forces": [force._to_core() for force in forces],
+            "own_forces": None,
             "t0": t0,
             "continuation": None,
         }
@@ -118,13 +123,22 @@ class Scene(Runnable[Trajectory]):
     def __reduce__(self) -> tuple[Any, ...]:
         return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"])
 
+    @property
+    def _names(self) -> tuple[str, ...]:
+        return self.particles.names
+
     def _finished(self, result: dict[str, Any]) -> Trajectory:
         return Trajectory(self, result)
 
     def ensemble(
-        self, *, position: ArrayLike | None = None, velocity: ArrayLike | None = None, mass: ArrayLike | None = None
+        self,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        mass: ArrayLike | None = None,
+        parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
     ) -> EnsembleScene:
-        """Many copies of the scene that differ in their states.
+        """Many copies of the scene that differ in their states, or in the parameters of their forces.
 
         Parameters
         ----------
@@ -132,6 +146,10 @@ class Scene(Runnable[Trajectory]):
             One state per copy; what is not given is the scene's own in every copy.
         mass : array_like, shape (B, N), optional
             Masses per copy.
+        parameters : dict of dict, optional
+            For some forces of the scene (each given itself, by its place among them or by the name of its class),
+            values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
+            with one set of parameters run together, others apart from them.
 
         Returns
         -------
@@ -140,7 +158,8 @@ class Scene(Runnable[Trajectory]):
         Raises
         ------
         visviva.InvalidInput
-            If nothing is given or the numbers of copies disagree.
+            If nothing is given or the numbers of copies disagree; a force or a parameter that is not there, or a value
+            that the force refuses.
 
         Examples
         --------
@@ -149,10 +168,62 @@ class Scene(Runnable[Trajectory]):
         >>> starts = scene.particles.position + 1e-3 * np.random.default_rng(1).normal(size=(8, 3, 3))
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (8, 2, 3, 3)
+        >>> pull = vv.CentralField(vv.potentials.Coulomb(k=-1.0))
+        >>> drag = vv.LinearDrag(tau=1.0)
+        >>> probe = vv.Scene(vv.Particles([1.0], [[1.0, 0, 0]], [[0, 1.0, 0]]), pull, drag)
+        >>> out = probe.ensemble(parameters={drag: {"tau": [1.0, 2.0, 4.0]}}).run(t=1.0)
+        >>> out.velocity[:, -1, 0, 1].round(3).tolist()
+        [0.052, 0.219, 0.355]
         """
         from visviva.ensemble import EnsembleScene
 
-        return EnsembleScene(self, position=position, velocity=velocity, mass=mass)
+        return EnsembleScene(self, position=position, velocity=velocity, mass=mass, parameters=parameters)
+
+    def advise(self, t: ArrayLike, *, accuracy: float, of: Literal["energy", "position"] = "energy") -> Advice:
+        """Which method and which step would hold an error, by a trial of the first stretch of the run.
+
+        Every method of the registry is tried on as much of the run as a reference does in a moment, with ever smaller
+        steps until it holds what the stretch may be off, if over the whole span its error grows as theory says: the
+        energy of a symplectic method not at all and its phase linearly, any other's linearly and quadratically. That
+        is a guess where the motion is chaotic or has its hardest part later; steps are equal in such a run, or follow
+        the tolerance. It takes some seconds.
+
+        Parameters
+        ----------
+        t : float or array_like
+            The end of the run, or its output times, as of ``run``.
+        accuracy : float
+            The error that may be made, from 5e-13: of the energy, relative to it; of positions, relative to the size of
+            the system.
+        of : {"energy", "position"}, optional
+            Of what.
+
+        Returns
+        -------
+        Advice
+            Print it; ``scene.run(t, **advice.how)`` runs the fastest.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            By name.
+        visviva.ConvergenceError
+            If no method holds it, or a trial ends early.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.outer_solar_system().scene
+        >>> advice = scene.advise(1e5, accuracy=1e-8)
+        >>> out = scene.run(1e5, **advice.how)
+        >>> out.conservation().energy.max < 1e-8
+        True
+        """
+        from visviva.advice import advise
+        from visviva.request import PlanRequest
+
+        asked = PlanRequest(t).to_core(self._keywords, self._names)
+        return advise(self._keywords, asked, accuracy, of, closed=self.plan(t).closed_form)
 
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state, shape (N, 3).
@@ -190,6 +261,42 @@ class Scene(Runnable[Trajectory]):
 
         return of_scene(self, about)
 
+    def elements(
+        self,
+        bodies: str | int | Sequence[str | int] | None = None,
+        *,
+        about: str | int = 0,
+        G: float | None = None,
+    ) -> Elements:
+        """The osculating elements of bodies at the scene's state: the way back from `Particles.from_elements`.
+
+        Parameters
+        ----------
+        bodies, about, G : optional
+            As of `Trajectory.elements`.
+
+        Returns
+        -------
+        Elements
+            Arrays of shape (K,) for K bodies, numbers for one that was given alone.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As of `Trajectory.elements`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> planets = vv.datasets.outer_solar_system().scene
+        >>> planets.elements(about="Sun").eccentricity.round(3).tolist()
+        [0.048, 0.053, 0.046, 0.007, 0.255]
+        """
+        from visviva._osculating import elements_of
+
+        p = self.particles
+        return elements_of(self, p.position, p.velocity, p.mass, bodies, about, G)
+
     def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
         """The scene displaced by `position` and boosted by `velocity`, the fields with it.
 
@@ -207,7 +314,7 @@ class Scene(Runnable[Trajectory]):
         """
         displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
         p = self.particles
-        moved = Particles(p.mass, p.position + displacement, p.velocity + boost)
+        moved = p._changed(position=p.position + displacement, velocity=p.velocity + boost)
         return Scene(moved, *(force.shifted(displacement, boost) for force in self.forces), t0=self.t0)
 
     def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Scene:
@@ -263,7 +370,7 @@ class Scene(Runnable[Trajectory]):
         if defect > 1e-12:
             raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
         p = self.particles
-        turned = Particles(p.mass, p.position @ matrix.T, p.velocity @ matrix.T)
+        turned = p._changed(position=p.position @ matrix.T, velocity=p.velocity @ matrix.T)
         return Scene(turned, *(force.rotated(matrix) for force in self.forces), t0=self.t0)
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Scene:
@@ -300,9 +407,7 @@ class Scene(Runnable[Trajectory]):
         array([[-1., -2., -3.]])
         """
         p = self.particles
-        return Scene(
-            Particles(p.mass, p.position, -p.velocity), *(force.reversed() for force in self.forces), t0=self.t0
-        )
+        return Scene(p._changed(velocity=-p.velocity), *(force.reversed() for force in self.forces), t0=self.t0)
 
     def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Scene:
         """The scene with other positions and velocities, and another time if given.
@@ -314,7 +419,8 @@ class Scene(Runnable[Trajectory]):
         >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
         array([2., 6., 0.])
         """
-        return Scene(Particles(self.particles.mass, position, velocity), *self.forces, t0=self.t0 if t0 is None else t0)
+        moved = self.particles._changed(position=position, velocity=velocity)
+        return Scene(moved, *self.forces, t0=self.t0 if t0 is None else t0)
 
 
 def _flat(part: object) -> Iterable[object]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.body import BodyMotion
     from visviva.conservation import Conservation
     from visviva.scene import Scene
 
@@ -48,7 +49,8 @@ class Trajectory(Recorded):
     final : Scene
         The scene at the last state that was reached, ready to run on.
 
-    Every array is read-only; ``out.position.copy()`` is yours.
+    Every array is read-only; ``out.position.copy()`` is yours. ``out["Jupiter"]`` is the motion of a body that has this
+    name.
 
     Examples
     --------
@@ -74,8 +76,22 @@ class Trajectory(Recorded):
     def __len__(self) -> int:
         return len(self.t)
 
+    def __getitem__(self, body: str) -> BodyMotion:
+        if not isinstance(body, str):
+            raise InvalidInput(
+                "body", f"expected the name of a body, got {body!r}; times are rows of the columns: out.position[i]"
+            )
+        return self.body(body)
+
+    def __iter__(self) -> NoReturn:
+        raise TypeError("a Trajectory is read by its columns: t, position, velocity, …; out['name'] is a body")
+
     @property
     def _start(self) -> Scene:
+        return self.scene
+
+    @property
+    def _scene(self) -> Scene:
         return self.scene
 
     def _found(self, name: str) -> NDArray[np.float64]:

@@ -28,7 +28,8 @@ def public(module: ModuleType) -> Iterator[tuple[str, Callable[..., Any], bool]]
             if found is not vv.typing:  # nothing there is called
                 yield from public(found)
         elif not isinstance(found, type):
-            yield label, found, False
+            if callable(found):  # units are numbers
+                yield label, found, False
         # Exceptions are made by the package; the values of an enumeration or a tuple are given by position.
         elif not issubclass(found, BaseException | enum.Enum | tuple) and found is not vv.forces.Force:
             for attribute, value in inspect.getmembers(found, inspect.isfunction):

@@ -91,6 +91,10 @@ class Draw:
         x, y, z = (self.random.choice([0.0, self.number(), self.number()]) for _ in range(3))
         return x, y, z
 
+    def direction(self) -> tuple[float, float, float]:
+        x, y, z = self.vector()
+        return (x, y, z) if x or y or z else (0.0, 0.0, 1.0)
+
     def point(self) -> tuple[float, float, float]:
         """A fixed point: of a tame scene far outside the bodies, else anywhere."""
         if self.tame:
@@ -144,6 +148,7 @@ class Draw:
             "numbers": lambda: [self.number(sign) for _ in range(count)],
             "vector": self.vector,
             "axial_vector": self.vector,
+            "direction": self.direction,
             "point": self.point,
             "potential": self.potential,
             "indices": self.indices,

@@ -133,7 +133,11 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
         if cut.status != vv.Status.STOPPED:
             assert cut.status == full.status
             assert cut.status or count < recipe.terminal, "the run went on"
-            assert not differences(events(cut, case.how), events(full, case.how)), "another table without an end"
+            # Bodies apart from those of the event may have failed before it, which ends the whole; the looks end there.
+            if count < recipe.terminal:
+                assert not differences(events(cut, case.how), events(full, case.how)), "another table without an end"
+            else:
+                assert np.array_equal(table.t, full.events.t[: len(table)]), "another table before the end"
             continue
         assert count == recipe.terminal, f"{count} zeros, the end was to be that of number {recipe.terminal}"
         assert (table.t[-1], table.which[-1]) == (cut.final.t0, 0)

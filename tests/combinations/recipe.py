@@ -14,7 +14,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import EVENTS, FORCES, METHODS, event, force
+from drawing import EVENTS, FORCES, METHODS, declared, event, force
 from hypothesis import strategies as st
 
 import visviva as vv
@@ -177,7 +177,10 @@ def _ensemble(recipe: Recipe, scene: vv.Scene) -> vv.EnsembleScene:
     rng = np.random.default_rng(recipe.seed + 2)
     count, bodies = recipe.members, len(scene.particles)
     given: dict[str, NDArray[np.float64]] = {}
+    parameters = _parameters(scene, count) if "parameters" in recipe.own else None
     for name in recipe.own or ("position",):
+        if name == "parameters":
+            continue
         value = getattr(scene.particles, name)
         noise = rng.uniform(-1.0, 1.0, (count, *value.shape)) / 64.0
         if name == "position" and recipe.offset:
@@ -188,7 +191,25 @@ def _ensemble(recipe: Recipe, scene: vv.Scene) -> vv.EnsembleScene:
         given["mass"] = np.where(rng.random((count, bodies)) < 0.3, 0.0, given["mass"])
     if "position" in given and recipe.wild_member and not recipe.tame:
         given["position"][count // 2] *= 2.0 ** int(rng.integers(5, 300))
-    return scene.ensemble(**given)
+    if not given and not parameters:
+        given["position"] = np.repeat(scene.particles.position[None], count, axis=0)
+    return scene.ensemble(**given, **({"parameters": parameters} if parameters else {}))
+
+
+def _parameters(scene: vv.Scene, count: int) -> dict[int, dict[str, list[Any]]]:
+    """Numbers and vectors of the forces, of three kinds among the members."""
+    factors = 1.0 + (np.arange(count) % 3) / 64.0
+    return {
+        place: {
+            parameter["name"]: (np.multiply.outer(factors, np.array(getattr(force, parameter["name"])))).tolist()
+            for parameter in declared(type(force))
+            if parameter["kind"] in ("number", "vector", "axial_vector", "point")
+        }
+        for place, force in enumerate(scene.forces)
+        if any(
+            parameter["kind"] in ("number", "vector", "axial_vector", "point") for parameter in declared(type(force))
+        )
+    }
 
 
 def _some(*weighted: tuple[int, st.SearchStrategy[Any]]) -> st.SearchStrategy[Any]:
@@ -227,7 +248,9 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         offset=draw(_some((3, st.just(0)), (1, st.integers(1, 9)))),
         units=draw(_some((3, st.just((0, 0, 0))), (1, st.tuples(powers, powers, powers)))),
         members=members,
-        own=tuple(draw(st.lists(st.sampled_from(["position", "velocity", "mass"]), unique=True, min_size=1))),
+        own=tuple(
+            draw(st.lists(st.sampled_from(["position", "velocity", "mass", "parameters"]), unique=True, min_size=1))
+        ),
         own_massless=draw(_some((3, st.just(False)), (1, st.just(True)))),
         wild_member=draw(_some((5, st.just(False)), (1, st.just(True)))),
         steps=draw(st.integers(1, 40)),

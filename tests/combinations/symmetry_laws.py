@@ -30,7 +30,7 @@ def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: fl
     start: Any = scenes[0]
     if not case.alone:
         stacked = {n: np.stack([getattr(s.particles, n) for s in scenes]) for n in ("mass", "position", "velocity")}
-        start = scenes[0].ensemble(**stacked)
+        start = scenes[0].ensemble(**stacked)._own(tuple(scene.forces for scene in scenes))
     how = case.how | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
     return Case(start, tuple(t * time for t in case.t), how)
 

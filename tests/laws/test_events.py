@@ -20,7 +20,10 @@ METHODS = list(BY_NAME)
 
 
 def options(method: str) -> dict[str, Any]:
-    return {"rtol": 1e-11} if BY_NAME[method].adaptive else FIXED
+    if BY_NAME[method].adaptive:
+        return {"rtol": 1e-11}
+    # Order 1 leaves a hundredth of the energy with so many steps.
+    return FIXED if BY_NAME[method].order > 1 else {"dt": FIXED["dt"] / 64}
 
 
 def kepler(e: float = 0.3) -> vv.Scene:
@@ -38,7 +41,8 @@ PERIOD = 2.0 * np.pi / np.sqrt(1.5)
 
 @pytest.mark.parametrize("method", METHODS)
 def test_apsides_are_half_periods_apart(method: str) -> None:
-    step = {} if BY_NAME[method].adaptive else {"dt": PERIOD / 2000}
+    order, symplectic = BY_NAME[method].order, BY_NAME[method].symplectic
+    step = {} if BY_NAME[method].adaptive else {"dt": PERIOD / (2000 if order > 1 else 128_000)}
     if BY_NAME[method].adaptive:
         step = {"rtol": 1e-13 if BY_NAME[method].order >= 5 else 1e-9}
     out = kepler().run(t=5.2 * PERIOD, method=method, events=[events.apsis(1, 0)], **step)
@@ -46,17 +50,17 @@ def test_apsides_are_half_periods_apart(method: str) -> None:
     expected = 0.5 * PERIOD * np.arange(1, 11)
     assert len(table) == 10
     # What the method itself is off after so many periods: of second order the phase, (ωh)²/24 of the time for steps of
-    # a 2000th of the period, times what the eccentricity makes of it.
-    order = BY_NAME[method].order
-    bar = {1: 1.0, 2: 2e-4, 3: 1e-4}.get(order, 1e-8 if order == 4 else 1e-10)
+    # a 2000th of the period, times what the eccentricity makes of it; where energy drifts (midpoint, Heun) 6e-4. Euler
+    # is off by 0.08.
+    bar = {1: 0.2, 2: 2e-4 if symplectic else 1e-3, 3: 1e-4}.get(order, 1e-8 if order == 4 else 1e-10)
     np.testing.assert_allclose(table.t, expected, rtol=0.0, atol=bar)
     relative = table.position[:, 1] - table.position[:, 0]
     velocity = table.velocity[:, 1] - table.velocity[:, 0]
     # Located to round-off: r·v changes by about 1 in a unit of time, and t has the spacing 4e-15.
     assert np.abs((relative * velocity).sum(axis=1)).max() < 3e-14
     distances = np.linalg.norm(relative, axis=1)
-    np.testing.assert_allclose(distances[1::2], 0.7, rtol=1e-4)
-    np.testing.assert_allclose(distances[::2], 1.3, rtol=1e-4)
+    np.testing.assert_allclose(distances[1::2], 0.7, rtol=1e-4 if order > 1 else 1e-2)
+    np.testing.assert_allclose(distances[::2], 1.3, rtol=1e-4 if order > 1 else 1e-2)
 
 
 def test_apsides_of_an_accurate_run_are_at_their_times_to_round_off() -> None:
@@ -75,7 +79,8 @@ def test_directions_are_those_of_time(direction: int, end: float) -> None:
     np.testing.assert_allclose(distances, 0.7 if direction == 1 else 1.3, rtol=1e-10)
 
 
-@pytest.mark.parametrize("method", METHODS)
+# Between its nodes a method of order 1 leaves a polygon, whose least distance is not where r·v = 0.
+@pytest.mark.parametrize("method", [name for name in METHODS if BY_NAME[name].dense_order > 1])
 @pytest.mark.parametrize("depth", [1e-2, 1e-5, 1e-8])
 def test_two_zeros_in_one_step_are_found(method: str, depth: float) -> None:
     """The distance goes below its bound for a time far shorter than a step."""

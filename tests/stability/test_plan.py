@@ -44,6 +44,14 @@ CLOSED = {
     "linear drag": vv.Scene(some(4, masses=1.0), vv.LinearDrag(2.0)),
     "linear drag and a uniform field": vv.Scene(some(4), vv.LinearDrag(2.0), vv.UniformField([0.0, 0.0, -9.81])),
     "magnetic field": vv.Scene(some(4, masses=1.0), vv.UniformMagneticField([0.0, 1.0, 2.0])),
+    "damped, driven oscillator": vv.Scene(
+        some(4, masses=1.0), vv.Harmonic(3.0), vv.LinearDrag(2.0), vv.DrivenForce([1.0, 0.0, 0.0], 3.0**0.5)
+    ),
+    "rotating frame": vv.Scene(some(4), vv.RotatingFrame([0.5, 0.0, -1.0])),
+    "quadratic drag": vv.Scene(some(4, masses=1.0), vv.QuadraticDrag(1.5), vv.LinearDrag(2.0)),
+    "electric and magnetic field": vv.Scene(
+        some(4, masses=1.0), vv.UniformElectricField([3.0, 0.0, -1.0]), vv.UniformMagneticField([0.0, 1.0, 2.0])
+    ),
     "crossed fields": vv.Scene(
         some(4, masses=1.0), vv.UniformField([3.0, 0.0, -1.0]), vv.UniformMagneticField([0.0, 1.0, 2.0])
     ),

@@ -2,13 +2,16 @@
 
 from visviva.datasets.geiger_marsden import GeigerMarsden, RutherfordComparison, geiger_marsden_1913
 from visviva.datasets.outer_solar_system import OuterSolarSystem, outer_solar_system
+from visviva.datasets.solar_system import SolarSystem, solar_system
 
 __all__ = [
     "GeigerMarsden",
     "OuterSolarSystem",
     "RutherfordComparison",
+    "SolarSystem",
     "geiger_marsden_1913",
     "outer_solar_system",
+    "solar_system",
 ]
 
 

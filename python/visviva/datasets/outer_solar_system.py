@@ -8,15 +8,11 @@ system for 200 million years*, Astron. J. 92 (1986) 176. Both count the inner pl
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Literal
-
-import numpy as np
+from typing import Literal
 
 from visviva._keywords import known_keywords
+from visviva.datasets._bodies import Bodies, columns
 from visviva.errors import InvalidInput
-
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
 
 __all__ = ["OuterSolarSystem", "outer_solar_system"]
 
@@ -66,8 +62,8 @@ _APPLEGATE = (
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OuterSolarSystem:
+@dataclass(frozen=True, eq=False)
+class OuterSolarSystem(Bodies):
     """Bodies of the outer Solar System; lengths in astronomical units, times in days, masses of the Sun.
 
     Attributes
@@ -80,15 +76,11 @@ class OuterSolarSystem:
         When the bodies were there.
     source : str
         Where the numbers were published.
+    particles : Particles
+        The bodies, with their names.
+    scene : Scene
+        The bodies under their gravity, as the arrays have them.
     """
-
-    names: tuple[str, ...]
-    mass: NDArray[np.float64]
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    G: float
-    epoch: str
-    source: str
 
 
 @known_keywords
@@ -139,7 +131,9 @@ def outer_solar_system(
 def _make(
     rows: tuple[tuple[float, tuple[float, ...], tuple[float, ...]], ...], G: float, epoch: str, source: str
 ) -> OuterSolarSystem:
-    mass, position, velocity = (np.array(column, dtype=float) for column in zip(*rows, strict=True))
-    for array in (mass, position, velocity):
-        array.flags.writeable = False
+    mass, position, velocity = columns(*zip(*rows, strict=True))
     return OuterSolarSystem(_NAMES, mass, position, velocity, G, epoch, source)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -9,7 +9,7 @@ reference direction and z the pole. Source: Goldstein, Poole & Safko, *Classical
 Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
 """
 
-from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period
+from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period, semi_major_axis
 from visviva.orbits._elements import Elements, elements, propagate, state
 from visviva.orbits._ellipse import eccentric_from_mean, eccentric_from_true, mean_from_eccentric, true_from_eccentric
 from visviva.orbits._hyperbola import (
@@ -38,6 +38,7 @@ __all__ = [
     "parabolic_from_true",
     "period",
     "propagate",
+    "semi_major_axis",
     "state",
     "true_from_eccentric",
     "true_from_hyperbolic",

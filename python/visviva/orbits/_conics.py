@@ -171,6 +171,37 @@ def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
 
 
 @known_keywords
+def semi_major_axis(mu: ArrayLike, period: ArrayLike) -> NDArray[np.float64]:
+    """Find the semi-major axis ∛(μ(T/2π)²) of ellipses of given periods.
+
+    Parameters
+    ----------
+    mu : array_like
+        G(m₁ + m₂) > 0.
+    period : array_like
+        T > 0.
+
+    Returns
+    -------
+    ndarray
+        Semi-major axes, of the shape of the arguments, broadcast.
+
+    Raises
+    ------
+    InvalidInput
+        For an argument that is not positive and finite, or shapes that do not broadcast.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> round(float(vv.orbits.semi_major_axis(1.0, 16 * np.pi)), 12)
+    4.0
+    """
+    shape, flat, _ = broadcast({"mu": mu, "period": period}, {})
+    return shaped(_core.orbit_semi_major_axis(*flat), shape)
+
+
+@known_keywords
 def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDArray[np.float64]:
     """Find the time to fall from rest at one distance from the centre to another.
 

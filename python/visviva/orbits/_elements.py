@@ -24,6 +24,10 @@ class Elements:
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
 
+    A circle, e = 0 to 27 digits, has its pericenter where the body is: its anomalies are 0. An orbit in the xy plane
+    has its node at x: the argument of its pericenter is counted from there. A parabola has an infinite semi-major axis
+    and period; its pericenter is its size. Radial motion has no plane, so its three angles are NaN.
+
     Attributes
     ----------
     mu : ndarray
@@ -65,6 +69,10 @@ class Elements:
         L/2, the area swept per time.
     turning_angle : ndarray
         The angle 2 arcsin(1/e) by which a hyperbola turns the velocity; π for a parabola, NaN if bound.
+    longitude_of_ascending_node : ndarray
+        `node`.
+    longitude_of_pericenter, mean_longitude : ndarray
+        ϖ = node + argument of pericenter, and ϖ + mean anomaly; both may be beyond π.
     """
 
     mu: NDArray[np.float64]
@@ -92,6 +100,21 @@ class Elements:
 
     def __str__(self) -> str:
         return table(self)
+
+    @property
+    def longitude_of_ascending_node(self) -> NDArray[np.float64]:
+        """`node`."""
+        return self.node
+
+    @property
+    def longitude_of_pericenter(self) -> NDArray[np.float64]:
+        """Node + argument of pericenter."""
+        return self.node + self.argument_of_pericenter
+
+    @property
+    def mean_longitude(self) -> NDArray[np.float64]:
+        """Longitude of pericenter + mean anomaly."""
+        return self.longitude_of_pericenter + self.mean_anomaly
 
     def state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the position and velocity that these elements describe.

@@ -1,6 +1,6 @@
 """What a method makes of a case: an answer with its errors, a named refusal or ending, or a failure.
 
-The one idea: a wrong number is a failure only if it is told as a right one. Whoever chooses a step chooses its error, so
+The one idea: a wrong number is a failure only if it is told as a right one. Whoever chooses a step chooses its error:
 of methods with fixed steps a large error must come with a warning; one that chooses its steps must hold its tolerance
 in each, times what the motion amplifies, or end by name.
 """

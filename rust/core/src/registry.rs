@@ -4,12 +4,16 @@ use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
-    ForceDeclaration, central_field, driven_force, linear_drag, pair_potential, spring, uniform_field,
-    uniform_magnetic_field,
+    ForceDeclaration, central_field, coulomb as charges, damper, driven_force, harmonic, linear_drag, oblate,
+    pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring, uniform_electric_field,
+    uniform_field, uniform_magnetic_field,
 };
 use crate::ode::Method;
 use crate::ode::methods::{
-    bogacki_shampine32, boris, dop853, dormand_prince54, kahan_li8, leapfrog, rk4, stormer13, yoshida4,
+    blanes_moan_rkn4, blanes_moan_rkn6_11, blanes_moan_rkn6_14, blanes_moan_s6, blanes_moan_s10,
+    bogacki_shampine32, boris, boris4, dop853, dormand_prince54, euler, heun, kahan_li6, kahan_li8, leapfrog,
+    leapfrog_dkd, mclachlan4, midpoint, pefrl4, rk4, ruth3, sofroniou_spaletta6, sofroniou_spaletta8,
+    sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{
@@ -20,14 +24,36 @@ use crate::words::unknown;
 
 /// Every integration method, in the order of the documentation.
 pub static METHODS: &[&Method] = &[
+    &euler::METHOD,
+    &midpoint::METHOD,
+    &heun::METHOD,
     &rk4::METHOD,
     &bogacki_shampine32::METHOD,
     &dormand_prince54::METHOD,
+    &tsitouras54::METHOD,
     &dop853::METHOD,
+    &verner98::METHOD,
+    &symplectic_euler::METHOD,
     &leapfrog::METHOD,
+    &leapfrog_dkd::METHOD,
+    &ruth3::METHOD,
     &yoshida4::METHOD,
+    &mclachlan4::METHOD,
+    &pefrl4::METHOD,
+    &blanes_moan_s6::METHOD,
+    &blanes_moan_rkn4::METHOD,
+    &yoshida6::METHOD,
+    &kahan_li6::METHOD,
+    &sofroniou_spaletta6::METHOD,
+    &blanes_moan_s10::METHOD,
+    &blanes_moan_rkn6_11::METHOD,
+    &blanes_moan_rkn6_14::METHOD,
+    &yoshida8::METHOD,
     &kahan_li8::METHOD,
+    &sofroniou_spaletta8::METHOD,
+    &sofroniou_spaletta10::METHOD,
     &boris::METHOD,
+    &boris4::METHOD,
     &stormer13::METHOD,
 ];
 
@@ -95,12 +121,20 @@ pub fn potential(name: &str) -> Option<&'static PotentialDeclaration> {
 /// Every force, in the order of the documentation.
 pub static FORCES: &[&ForceDeclaration] = &[
     &newton::DECLARATION,
+    &charges::DECLARATION,
+    &oblate::DECLARATION,
+    &post_newtonian::DECLARATION,
     &uniform_field::DECLARATION,
     &central_field::DECLARATION,
+    &harmonic::DECLARATION,
     &linear_drag::DECLARATION,
+    &quadratic_drag::DECLARATION,
+    &uniform_electric_field::DECLARATION,
     &uniform_magnetic_field::DECLARATION,
     &driven_force::DECLARATION,
+    &rotating_frame::DECLARATION,
     &spring::DECLARATION,
+    &damper::DECLARATION,
     &pair_potential::DECLARATION,
 ];
 
@@ -118,4 +152,7 @@ pub static CLOSED_FORMS: &[&ClosedForm] = &[
     &closed_forms::fixed_center::FORM,
     &closed_forms::linear_drag::FORM,
     &closed_forms::crossed_fields::FORM,
+    &closed_forms::rotating_frame::FORM,
+    &closed_forms::oscillation::FORM,
+    &closed_forms::quadratic_drag::FORM,
 ];

@@ -4,7 +4,7 @@
 use core::f64::consts::PI;
 use nalgebra::Vector3;
 use visviva_core::nbody::anomalies::*;
-use visviva_core::nbody::constants::{ConicConstants, period};
+use visviva_core::nbody::constants::{ConicConstants, period, semi_major_axis};
 use visviva_core::nbody::elements::{Elements, free_fall_time};
 use visviva_core::nbody::kepler::KeplerOrbit;
 use visviva_core::nbody::state::{Anomaly, Shape, state_from_elements};
@@ -285,5 +285,22 @@ fn constants_of_any_angular_momentum() {
         assert!(
             ConicConstants::from_constants(1.0, 1.0, l, -0.5).unwrap_err().to_string().starts_with("energy")
         );
+    }
+}
+
+#[test]
+fn the_semi_major_axis_of_a_period_in_any_units() {
+    // The period of what comes back is the one given: of relative errors, those of a count 3/2 in the period.
+    for exponent in -280..280 {
+        for mu in [1.0, 3.7e-100, 8.1e77, 5.3e140] {
+            let time = 1.7 * 10.0_f64.powi(exponent / 2);
+            let a = semi_major_axis(mu, time).unwrap();
+            close(period(mu, a).unwrap(), time);
+        }
+    }
+    close(semi_major_axis(1.0, 16.0 * PI).unwrap(), 4.0);
+    close(semi_major_axis(1e250, 2.0 * PI * 1e-275).unwrap(), 1e-100);
+    for (mu, time) in [(0.0, 1.0), (-1.0, 1.0), (1.0, 0.0), (1.0, f64::INFINITY), (f64::NAN, 1.0)] {
+        assert!(semi_major_axis(mu, time).is_err());
     }
 }

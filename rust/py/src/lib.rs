@@ -8,6 +8,7 @@
 
 mod arrays;
 mod diagnostic;
+mod drag;
 mod errors;
 mod gate;
 mod info;
@@ -29,11 +30,13 @@ mod _core {
     #[pymodule_export]
     use crate::diagnostic::{_busy, _echo};
     #[pymodule_export]
+    use crate::drag::{drag_crossover_speed, drag_quadratic, drag_reynolds_number, drag_stokes, drag_throw};
+    #[pymodule_export]
     use crate::info::info;
     #[pymodule_export]
     use crate::orbits::{
         conic_from_constants, conic_from_state, orbit_anomaly, orbit_elements, orbit_free_fall_time,
-        orbit_period, orbit_propagate, orbit_state,
+        orbit_period, orbit_propagate, orbit_semi_major_axis, orbit_state,
     };
     #[pymodule_export]
     use crate::registry::{

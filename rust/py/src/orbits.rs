@@ -290,6 +290,21 @@ pub(crate) fn orbit_period<'py>(
     column(py, values)
 }
 
+/// The semi-major axis of an ellipse.
+#[pyfunction]
+pub(crate) fn orbit_semi_major_axis<'py>(
+    py: Python<'py>,
+    mu: Array<'py>,
+    period: Array<'py>,
+) -> PyResult<Column<'py>> {
+    let both = together([("mu", &mu), ("period", &period)])?;
+    let values = compute(py, 0, None, |ticker| {
+        each(("mu", both.count), ticker, both.orbits(), |[mu, t]| constants::semi_major_axis(mu, t))
+    })?
+    .whole(py)?;
+    column(py, values)
+}
+
 /// The time of a fall from rest.
 #[pyfunction]
 pub(crate) fn orbit_free_fall_time<'py>(

@@ -71,6 +71,7 @@ fn row<'py, T: ?Sized>(py: Python<'py>, declaration: &Declaration<T>) -> PyResul
             Kind::Indices => ("indices", Sign::Any),
             Kind::Vector => ("vector", Sign::Any),
             Kind::AxialVector => ("axial_vector", Sign::Any),
+            Kind::Direction => ("direction", Sign::Any),
             Kind::Point => ("point", Sign::Any),
             Kind::Potential => ("potential", Sign::Any),
             Kind::Choice(_) => ("choice", Sign::Any),
@@ -163,7 +164,7 @@ fn value(parameter: &Parameter, description: &Bound<'_, PyDict>) -> PyResult<Val
             let negative = |_| raised(py, Error::invalid(name, "expected indices of bodies, from 0 on"));
             Value::Indices(indices.map_err(negative)?)
         }
-        Kind::Vector | Kind::AxialVector | Kind::Point => {
+        Kind::Vector | Kind::AxialVector | Kind::Direction | Kind::Point => {
             let (values, _) = copied(name, &get::<Column<'_>>(description, name)?, [Some(3)])?;
             let vector = <[f64; 3]>::try_from(&values[..]);
             Value::Vector(vector.map_err(|_| raised(py, Error::invalid(name, "expected three numbers")))?)

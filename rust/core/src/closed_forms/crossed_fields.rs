@@ -6,7 +6,7 @@
 //! cancel at small angles: parabolas as b vanishes. The last term is the drift g×b/b².
 //! Source: Jackson, *Classical Electrodynamics*, 3rd ed., sections 12.2 and 12.3.
 
-use super::{ClosedForm, ExactState, Member, Path, Paths, uniform_part, unrounded};
+use super::{ClosedForm, ExactState, Member, Path, Paths, is_uniform, uniform_part, unrounded};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::real::Real;
@@ -18,24 +18,23 @@ pub static FORM: ClosedForm = ClosedForm {
     name: "gyration and drift",
     reason: "the only forces are uniform magnetic fields and uniform accelerations",
     applies: |member| {
-        member.forces.iter().all(|force| force.as_magnetic().is_some() || force.as_uniform().is_some())
+        member.forces.iter().all(|force| force.as_magnetic().is_some() || is_uniform(*force))
             && member.forces.iter().any(|force| force.as_magnetic().is_some())
     },
     motion: |member, ticker| {
-        let g = Vector::new(uniform_part(&member.forces));
-        Paths::motion(member, ticker, |i| Ok(Helix::new(member, i, g)))
+        Paths::motion(member, ticker, |i| Ok(Helix::new(member, i, Vector::new(uniform_part(member, i)))))
     },
 };
 
 /// A vector whose greatest component is about one, and a power of two.
 #[derive(Clone, Copy)]
-struct Vector {
-    value: [DoubleDouble; 3],
-    exponent: i32,
+pub(super) struct Vector {
+    pub(super) value: [DoubleDouble; 3],
+    pub(super) exponent: i32,
 }
 
 impl Vector {
-    fn new(components: [Scaled; 3]) -> Self {
+    pub(super) fn new(components: [Scaled; 3]) -> Self {
         let size = |x: &Scaled| match x.value().to_f64() {
             0.0 => i32::MIN,
             high => exponent(high) + x.exponent(),
@@ -46,12 +45,12 @@ impl Vector {
         Self { value, exponent: greatest }
     }
 
-    fn component(&self, c: usize) -> Scaled {
+    pub(super) fn component(&self, c: usize) -> Scaled {
         Scaled::new(self.value[c], self.exponent)
     }
 
     /// Along a direction, across it, and the cross product with it.
-    fn about(self, n: [DoubleDouble; 3]) -> [Self; 3] {
+    pub(super) fn about(self, n: [DoubleDouble; 3]) -> [Self; 3] {
         let v = self.value;
         let along = v[0] * n[0] + v[1] * n[1] + v[2] * n[2];
         let parallel: [_; 3] = core::array::from_fn(|c| along * n[c]);

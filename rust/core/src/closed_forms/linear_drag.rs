@@ -5,7 +5,7 @@
 //! what approaches it does so without cancellation: v = w + (v₀ − w) e⁻ᵘ, x = x₀ + w t + (v₀ − w) τ (1 − e⁻ᵘ).
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., section 1.5.
 
-use super::{ClosedForm, ExactState, Member, Motion, uniform_part, unrounded};
+use super::{ClosedForm, ExactState, Member, Motion, is_uniform, uniform_part, unrounded};
 use crate::error::Result;
 use crate::numerics::decay::Decay;
 use crate::numerics::double_double::DoubleDouble;
@@ -17,7 +17,7 @@ pub static FORM: ClosedForm = ClosedForm {
     name: "exponential decay",
     reason: "the only forces are linear drag and uniform fields",
     applies: |member| {
-        member.forces.iter().all(|force| force.as_linear_drag().is_some() || force.as_uniform().is_some())
+        member.forces.iter().all(|force| force.as_linear_drag().is_some() || is_uniform(*force))
             && member.forces.iter().any(|force| force.as_linear_drag().is_some())
     },
     motion: |member, _| Ok(Box::new(Drag::new(member))),
@@ -27,9 +27,8 @@ struct Drag {
     position: Vec<[f64; 3]>,
     velocity: Vec<[f64; 3]>,
     tau: Scaled,
-    g: [Scaled; 3],
-    /// g τ.
-    terminal: [Scaled; 3],
+    /// g and g τ, of each particle.
+    fields: Vec<[[Scaled; 3]; 2]>,
 }
 
 impl Drag {
@@ -42,13 +41,15 @@ impl Drag {
                 one.over(times.iter().fold(Scaled::ZERO, |rate, &tau| rate.plus(one.over(Scaled::from(tau)))))
             }
         };
-        let g = uniform_part(&member.forces);
+        let fields = (0..member.mass.len()).map(|particle| {
+            let g = uniform_part(member, particle);
+            [g, g.map(|g| g.by(tau))]
+        });
         Self {
             position: member.position.to_vec(),
             velocity: member.velocity.to_vec(),
             tau,
-            g,
-            terminal: g.map(|g| g.by(tau)),
+            fields: fields.collect(),
         }
     }
 }
@@ -67,12 +68,14 @@ impl Motion for Drag {
         let slow = u.to_f64().abs() <= 1.0;
         let (way, fall) = (t.by(first), t.by(t).by(second));
         states.clear();
-        for (position, velocity) in self.position.iter().zip(&self.velocity) {
+        for ((position, velocity), [g, terminal]) in
+            self.position.iter().zip(&self.velocity).zip(&self.fields)
+        {
             ticker.tick()?;
             let at = |c: usize| {
-                let (x, v, w) = (Scaled::from(position[c]), Scaled::from(velocity[c]), self.terminal[c]);
+                let (x, v, w) = (Scaled::from(position[c]), Scaled::from(velocity[c]), terminal[c]);
                 if slow {
-                    let g = self.g[c];
+                    let g = g[c];
                     return (x.plus(v.by(way).plus(g.by(fall))), v.by(factor).plus(g.by(way)));
                 }
                 let above = v.plus(w.times(-1.0));

@@ -88,6 +88,19 @@ impl PreciseBodies {
         }
     }
 
+    /// The same bodies with other numbers in the place of their masses, as charges are.
+    pub fn with_masses(&self, number: impl Fn(usize) -> f64) -> Self {
+        let mut other = self.clone();
+        let numbers: Vec<f64> = (0..self.len).map(number).collect();
+        let largest = numbers.iter().fold(0.0, |most: f64, x| most.max(x.abs()));
+        let unit = if (LEAST..MOST).contains(&largest) { 0 } else { exponent(largest) };
+        (other.massive, other.heaviest, other.units.mass) = (0, 0.0, unit);
+        for (body, number) in numbers.into_iter().enumerate() {
+            other.set_mass(body, scale(number, -unit));
+        }
+        other
+    }
+
     /// The array of a coordinate; the next one is what it leaves out.
     #[inline(always)]
     fn first(of: Of, c: usize) -> usize {

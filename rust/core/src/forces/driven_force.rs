@@ -2,7 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::Context;
-use super::term::{Bodies, ForceDeclaration, ForceTerm};
+use super::term::{Bodies, Drive, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::cosine::cosine;
@@ -103,6 +103,10 @@ impl ForceTerm for DrivenForce {
     }
     fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
         units.take(self.frequency, FREQUENCY).abs()
+    }
+    fn as_driven(&self) -> Option<Drive> {
+        let Self { amplitude, frequency, phase } = *self;
+        Some(Drive { amplitude, frequency, phase })
     }
 }
 

@@ -10,12 +10,23 @@
 pub mod bodies;
 pub mod central_field;
 pub mod context;
+pub mod coulomb;
+pub mod damper;
 pub mod driven_force;
 pub mod gravity;
+pub mod harmonic;
 pub mod linear_drag;
+pub mod links;
+pub mod oblate;
 pub mod pair_potential;
+pub mod post_newtonian;
+pub mod quadratic_drag;
+pub mod rotating_frame;
+mod sources;
+pub mod spheres;
 pub mod spring;
 pub mod term;
+pub mod uniform_electric_field;
 pub mod uniform_field;
 pub mod uniform_magnetic_field;
 

@@ -165,6 +165,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn coupling(&self) -> Coupling {
         Coupling::None
     }
+    /// Whether it tells bodies apart by their place in the scene, as listed pairs do and numbers for each.
+    fn names_bodies(&self) -> bool {
+        matches!(self.coupling(), Coupling::Listed(_))
+    }
     /// What it leaves constant.
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING
@@ -227,6 +231,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_newtonian(&self) -> Option<(f64, f64)> {
         None
     }
+    /// k times the charges of two bodies and the softening length, if it is Coulomb's law.
+    fn as_coulomb(&self, _pair: [usize; 2]) -> Option<(Scaled, f64)> {
+        None
+    }
     /// `k` and the center, if it is that of a potential energy k/r about a fixed point.
     fn as_inverse_distance_center(&self) -> Option<(f64, [f64; 3])> {
         None
@@ -235,10 +243,41 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn as_linear_drag(&self) -> Option<f64> {
         None
     }
+    /// The coefficient of a body, if it is the force −coefficient |v| v.
+    fn as_quadratic_drag(&self, _particle: usize) -> Option<f64> {
+        None
+    }
+    /// The stiffness and the center, if it is the force −k (r − center) on every body.
+    fn as_harmonic(&self) -> Option<(f64, [f64; 3])> {
+        None
+    }
+    /// What it is, if it is a cosine of time, the same force on every body.
+    fn as_driven(&self) -> Option<Drive> {
+        None
+    }
+    /// The field and the charge of a body, if it is that of a uniform electric field.
+    fn as_electric(&self, _particle: usize) -> Option<([f64; 3], f64)> {
+        None
+    }
+    /// The angular velocity and a point of the axis, if it is what a rotating frame makes.
+    fn as_rotating(&self) -> Option<([f64; 3], [f64; 3])> {
+        None
+    }
     /// The field and the charges, if it is that of a uniform magnetic field.
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         None
     }
+}
+
+/// The force amplitude·cos(frequency·t + phase), t being the scene's own time.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// The largest force.
+    pub amplitude: [f64; 3],
+    /// The angular frequency.
+    pub frequency: f64,
+    /// The phase at time 0.
+    pub phase: f64,
 }
 
 /// A uniform magnetic field, which acts by the force charge v × field.

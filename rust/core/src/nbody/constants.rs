@@ -8,6 +8,7 @@ use super::elements::Elements;
 use crate::error::{Error, Result};
 use crate::numerics::angles::atan2;
 use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elementary::cbrt;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::real::Real;
 use crate::words::number;
@@ -197,4 +198,22 @@ pub fn period(mu: f64, semi_major_axis: f64) -> Result<f64> {
         }
     }
     Ok(2.0 * PI * dynamical_time(mu, semi_major_axis))
+}
+
+/// The semi-major axis of an ellipse with the given period, ∛(μ (T/2π)²).
+///
+/// # Errors
+/// [`Error::InvalidInput`] unless both are positive and finite.
+pub fn semi_major_axis(mu: f64, period: f64) -> Result<f64> {
+    for (name, value) in [("mu", mu), ("period", period)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::invalid(name, format!("expected a positive number, got {}", number(value))));
+        }
+    }
+    // In powers of two of which the cube root is one, too.
+    let (strong, long) = (exponent(mu), exponent(period));
+    let rest = (strong + 2 * long).rem_euclid(3);
+    let time = DoubleDouble::from(scale(period, -long)) / DoubleDouble::PI.scale(2.0);
+    let cube = time * time * DoubleDouble::from(scale(mu, rest - strong));
+    Ok(scale(cbrt(cube.to_f64()), (strong + 2 * long - rest) / 3))
 }

@@ -22,7 +22,7 @@ pub struct Decay {
 }
 
 /// Beyond this, e^±u is beyond the range whatever is multiplied by it (2^±1.4e6, against 2^±6000).
-const FAR: f64 = 1e6;
+pub const FAR: f64 = 1e6;
 const LN2: DoubleDouble = DoubleDouble::new(core::f64::consts::LN_2, 2.319_046_813_846_299_6e-17);
 
 impl Decay {
@@ -50,7 +50,7 @@ impl Decay {
 }
 
 /// eˣ, for every x.
-fn exponential(x: Scaled) -> Scaled {
+pub fn exponential(x: Scaled) -> Scaled {
     let high = x.to_f64().clamp(-FAR, FAR);
     let n = (high * core::f64::consts::LOG2_E).round();
     if high.abs() == FAR {

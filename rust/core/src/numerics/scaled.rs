@@ -2,6 +2,7 @@
 
 use super::double_double::DoubleDouble;
 use super::power_of_two::{exponent, power_of_two, scale};
+use super::real::Real;
 
 /// `value · 2^exponent`.
 #[derive(Clone, Copy, Debug, Default)]
@@ -100,6 +101,13 @@ impl Scaled {
         Self { value: a.value / b.value, exponent: a.exponent - b.exponent }
     }
 
+    /// The square root; NaN of what is below zero.
+    pub fn sqrt(self) -> Self {
+        let Self { value, exponent } = self.normal();
+        let odd = exponent.rem_euclid(2);
+        Self { value: Real::sqrt(value.scale(power_of_two(odd))), exponent: (exponent - odd) / 2 }
+    }
+
     /// The nearest number; infinite beyond the range.
     #[inline]
     pub fn to_f64(self) -> f64 {
@@ -133,6 +141,16 @@ mod tests {
         let rest = sum.plus(Scaled::new(DoubleDouble::from(-1.0), 2000));
         assert_eq!(rest.times(power_of_two(-1000)).times(power_of_two(-900)).to_f64(), 1.0);
         assert_eq!(Scaled::from(3.0).plus(large).plus(large.times(-1.0)).to_f64(), 0.0);
+    }
+
+    #[test]
+    fn roots_square_back_beyond_the_range() {
+        for exponent in [-3001, -2000, 0, 1, 2999] {
+            let x = Scaled::new(DoubleDouble::from(3.0), exponent);
+            let rest = x.sqrt().by(x.sqrt()).plus(x.times(-1.0)).over(x).to_f64();
+            assert!(rest.abs() < 2e-31, "{exponent}: {rest:e}"); // a few units in the 106th bit
+        }
+        assert_eq!(Scaled::ZERO.sqrt().to_f64(), 0.0);
     }
 
     #[test]

@@ -63,6 +63,9 @@ pub struct Method {
 pub enum Scheme {
     /// Alternating kicks and drifts.
     Splitting(Splitting),
+    /// The same, with an order that holds for `q'' = a(t, q)` alone: where kicks do not change what they depend on and
+    /// drifts are by velocities, `[B, [B, [B, A]]] = 0`, and conditions on such words are spared (Runge–Kutta–Nyström).
+    NystromSplitting(Splitting),
     /// Kicks and drifts, with velocities turned exactly in the middle of every kick.
     Boris(Splitting),
     /// Explicit Runge–Kutta with a fixed step.
@@ -147,7 +150,7 @@ impl Method {
         match self.scheme {
             Scheme::RungeKutta(_) | Scheme::Embedded(_) | Scheme::Boris(_) => 0,
             // The acceleration of the last kick.
-            Scheme::Splitting(_) => 1,
+            Scheme::Splitting(_) | Scheme::NystromSplitting(_) => 1,
             // Beside second differences: three blocks of accelerations, a compensated difference of coordinates, and
             // compensated coordinates of a kernel's own.
             Scheme::Multistep(Multistep { second_differences, .. }) => second_differences.len() + 7,
@@ -159,7 +162,7 @@ impl Method {
         match self.scheme {
             Scheme::RungeKutta(_) | Scheme::Embedded(_) => true,
             // Between two kicks, and at the nodes of a multistep method, there is no velocity of the same time.
-            Scheme::Splitting(_) | Scheme::Multistep(_) => {
+            Scheme::Splitting(_) | Scheme::NystromSplitting(_) | Scheme::Multistep(_) => {
                 matches!(form, Form::SecondOrder(_)) && !needs.velocities()
             }
             Scheme::Boris(_) => matches!(form, Form::SecondOrder(_)) && !needs.velocity,

@@ -4,6 +4,7 @@
 //! they are sharp is shown by changing every coefficient in its twelfth digit: each change must be noticed.
 
 mod multistep;
+mod nystrom;
 mod runge_kutta;
 mod splitting;
 mod trees;
@@ -18,9 +19,9 @@ use trees::{Tree, trees_to_order};
 /// The worst measured is 3.2e-32 (the continuous extension of DOP853): a few roundings of 2^-106 = 1.2e-32.
 const HOLDS: f64 = 1e-31;
 
-/// A condition fails when it misses by more than this share. The least measured is 5.4e-7, again DOP853's
-/// extension, in a sum of terms up to 180 times the result.
-const FAILS: f64 = 1e-7;
+/// A condition fails when it misses by more than this share: far more than rounding. The least measured is 1.2e-9, order 11 of
+/// Sofroniou and Spaletta's composition of order 10.
+const FAILS: f64 = 1e-12;
 
 /// What a family of conditions is about.
 #[derive(Debug)]
@@ -69,6 +70,7 @@ impl Family {
 /// A table of any kind, with the orders it is held to.
 enum Subject {
     Splitting(splitting::Table, usize),
+    NystromSplitting(nystrom::Table, usize),
     RungeKutta(runge_kutta::Table, Orders),
     Multistep(multistep::Table, usize),
 }
@@ -78,6 +80,7 @@ impl Subject {
         let (step, dense) = (method.order as usize, method.dense_order as usize);
         match &method.scheme {
             Scheme::Splitting(table) | Scheme::Boris(table) => Self::Splitting(table.into(), step),
+            Scheme::NystromSplitting(table) => Self::NystromSplitting(nystrom::Table(table.into()), step),
             Scheme::RungeKutta(table) => {
                 Self::RungeKutta(table.into(), Orders { step, dense, estimates: vec![] })
             }
@@ -93,6 +96,7 @@ impl Subject {
     fn misses(&self, trees: &[Tree]) -> Vec<Family> {
         match self {
             Self::Splitting(table, order) => table.misses(*order),
+            Self::NystromSplitting(table, order) => table.misses(*order),
             Self::RungeKutta(table, orders) => table.misses(orders, trees),
             Self::Multistep(table, order) => table.misses(*order),
         }
@@ -111,6 +115,11 @@ impl Subject {
                 table.coefficients().into_iter().nth(index).map(change)?;
                 Some(Self::Splitting(table, *order))
             }
+            Self::NystromSplitting(table, order) => {
+                let mut table = table.clone();
+                table.0.coefficients().into_iter().nth(index).map(change)?;
+                Some(Self::NystromSplitting(table, *order))
+            }
             Self::RungeKutta(table, orders) => {
                 let mut table = table.clone();
                 table.coefficients().into_iter().nth(index).map(change)?;
@@ -126,11 +135,12 @@ impl Subject {
     }
 }
 
-/// All trees that a method's conditions need: one order more than it has. Those of a multistep method are on powers
-/// of the time.
+/// All trees that a Runge–Kutta method's conditions need: one order more than it has.
 fn trees_of(method: &Method) -> Vec<Tree> {
     match method.scheme {
-        Scheme::Multistep(_) => vec![],
+        Scheme::Multistep(_) | Scheme::Splitting(_) | Scheme::NystromSplitting(_) | Scheme::Boris(_) => {
+            vec![]
+        }
         _ => trees_to_order(method.order as usize + 1),
     }
 }
@@ -153,6 +163,7 @@ fn no_table_satisfies_the_conditions_of_the_next_order() {
         let trees = trees_of(method);
         let families = match Subject::new(method, &trees) {
             Subject::Splitting(table, order) => table.misses(order + 1),
+            Subject::NystromSplitting(table, order) => table.misses(order + 1),
             Subject::RungeKutta(table, orders) => {
                 let estimates = orders.estimates.iter().map(|order| order + 1).collect();
                 let next = Orders { step: orders.step + 1, dense: orders.dense + 1, estimates };
@@ -179,7 +190,8 @@ fn a_change_in_the_twelfth_digit_of_any_coefficient_is_noticed() {
             assert!(noticed, "{}: coefficient {index}: {families:?}", method.name);
             index += 1;
         }
-        assert!(index >= 3, "{}: no coefficients were changed", method.name);
+        // Euler's method has a weight and a node.
+        assert!(index >= 2, "{}: no coefficients were changed", method.name);
     }
 }
 
@@ -202,7 +214,7 @@ fn a_method_is_what_it_declares() {
     for method in METHODS {
         let name = method.name;
         let stages = match Subject::new(method, &trees_of(method)) {
-            Subject::Splitting(table, _) => {
+            Subject::Splitting(table, _) | Subject::NystromSplitting(nystrom::Table(table), _) => {
                 assert!(method.symplectic, "{name}: kicks and drifts are symplectic");
                 assert_eq!(method.reversible, table.is_palindrome(), "{name}");
                 table.evaluations()

@@ -161,7 +161,9 @@ pub fn stepper<S: Element>(
     }
     Ok(match &method.scheme {
         Scheme::Boris(table) => Box::new(BorisStep::new(table, h, system)),
-        Scheme::Splitting(table) => Box::new(SplittingStep::new(table, h, system)),
+        Scheme::Splitting(table) | Scheme::NystromSplitting(table) => {
+            Box::new(SplittingStep::new(table, h, system))
+        }
         Scheme::RungeKutta(tableau) => Box::new(RungeKuttaStep::new(tableau, h, system, state)),
         Scheme::Multistep(table) => Box::new(MultistepStep::new(table, h, system, state)),
         Scheme::Embedded(_) => {

@@ -37,6 +37,8 @@ pub enum Kind {
     Vector,
     /// As a vector; as of an angular velocity, its sign changes when space is reflected or time is reversed.
     AxialVector,
+    /// As a vector, of any length above zero.
+    Direction,
     /// A place, which turns and moves with the bodies.
     Point,
     /// A potential energy.
@@ -126,7 +128,10 @@ impl Parameter {
                     None => Ok(()),
                 }
             }
-            (Kind::Vector | Kind::AxialVector | Kind::Point, Value::Vector(values))
+            (Kind::Direction, Value::Vector([0.0, 0.0, 0.0])) => {
+                refuse("a direction", "0.0 in every component".to_owned())
+            }
+            (Kind::Vector | Kind::AxialVector | Kind::Direction | Kind::Point, Value::Vector(values))
                 if values.iter().any(|x| !x.is_finite()) =>
             {
                 refuse("three finite numbers", numbers(values))
@@ -136,7 +141,7 @@ impl Parameter {
             }
             (Kind::Number(_), Value::Number(_))
             | (Kind::Indices, Value::Indices(_))
-            | (Kind::Vector | Kind::AxialVector | Kind::Point, Value::Vector(_))
+            | (Kind::Vector | Kind::AxialVector | Kind::Direction | Kind::Point, Value::Vector(_))
             | (Kind::Potential, Value::Potential(_))
             | (Kind::Choice(_), Value::Word(_)) => Ok(()),
             _ => Err(Error::Internal(format!("{class}: {} is of another kind", self.name))),

@@ -158,6 +158,7 @@ impl Continuation {
             position: from.position.clone(),
             velocity: from.velocity.clone(),
             forces: scene.forces.clone(),
+            own_forces: scene.own_forces.clone(),
             t0: from.t0,
             continuation: None,
         })

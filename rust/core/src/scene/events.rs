@@ -247,12 +247,14 @@ fn call(function: &Function, view: &View<'_>, around: &Surroundings<'_>) -> Resu
 
 fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {
     let mut bodies = PreciseBodies::default();
-    bodies.clear(if around.massive { view.bodies.len() } else { around.scene.particles });
+    // What a force names must be in its place; bodies that are elsewhere have no mass and add nothing.
+    let in_order = around.massive && !around.scene.forces.iter().any(|force| force.names_bodies());
+    bodies.clear(if in_order { view.bodies.len() } else { around.scene.particles });
     let masses = around.scene.masses(around.copy);
     let origin = view.origin.at(view.elapsed);
     for (place, &body) in around.bodies.iter().enumerate() {
         let [position, velocity] = view.state(place, &origin).map(|x| [x.map(|x| x.0), x.map(|x| x.1)]);
-        bodies.set(if around.massive { place } else { body }, masses[body], position, velocity);
+        bodies.set(if in_order { place } else { body }, masses[body], position, velocity);
     }
     bodies.settle();
     let mut state = Snapshot::new(&around.scene.forces, &bodies, [0.0; 3], 1, ticker);

@@ -25,7 +25,16 @@ use crate::words::{number, numbers};
 use continuation::Continuation;
 use std::sync::Arc;
 
-/// A batch of copies of a scene with the same forces (a batch of one is a scene).
+/// Sets of forces, one of which acts in each copy: those whose parameters differ from copy to copy.
+#[derive(Clone, Debug)]
+pub struct OwnForces {
+    /// The sets.
+    pub sets: Vec<Vec<Arc<dyn ForceTerm>>>,
+    /// Which of them acts in each copy.
+    pub of_copy: Vec<usize>,
+}
+
+/// A batch of copies of a scene (a batch of one is a scene).
 #[derive(Clone, Debug)]
 pub struct Scene {
     /// Copies.
@@ -38,8 +47,10 @@ pub struct Scene {
     pub position: Vec<[f64; 3]>,
     /// Velocities, `copies × particles`.
     pub velocity: Vec<[f64; 3]>,
-    /// The forces, in the order in which they are added.
+    /// The forces, in the order in which they are added; those of the first copy, if copies have their own.
     pub forces: Vec<Arc<dyn ForceTerm>>,
+    /// The forces of each copy, if they differ.
+    pub own_forces: Option<OwnForces>,
     /// The time of this state.
     pub t0: f64,
     /// How a run with fixed steps came to this state, if one did.
@@ -58,6 +69,11 @@ impl Scene {
     /// The velocities of a copy.
     pub fn velocities(&self, copy: usize) -> &[[f64; 3]] {
         &self.velocity[copy * self.particles..(copy + 1) * self.particles]
+    }
+
+    /// The forces of a copy.
+    pub fn forces_of(&self, copy: usize) -> &[Arc<dyn ForceTerm>] {
+        self.own_forces.as_ref().map_or(&self.forces, |own| &own.sets[own.of_copy[copy]])
     }
 
     /// The bodies, for a force to look at.

@@ -87,6 +87,8 @@ pub struct Plan {
     pub t0: f64,
     /// The node that the run goes on from; 0 is the scene.
     pub from: u64,
+    /// Sets of forces that copies have of their own, each planned by itself; this plan is that of the first.
+    pub sets_of_forces: usize,
     copies: usize,
     particles: usize,
 }
@@ -161,6 +163,7 @@ impl Plan {
             record: request.record.clone(),
             t0: scene.t0,
             from: 0,
+            sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
             copies: scene.copies,
             particles: scene.particles,
         };

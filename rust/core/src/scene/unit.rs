@@ -18,7 +18,6 @@ use super::layout::Layout;
 use super::plan::Plan;
 use crate::error::{Error, Result};
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::term::Coupling;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
@@ -57,7 +56,7 @@ impl Unit {
     /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
     /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {
-        if scene.forces.iter().any(|force| matches!(force.coupling(), Coupling::Listed(_))) {
+        if scene.forces.iter().any(|force| force.names_bodies()) {
             return self.bodies.iter().copied().eq(0..scene.particles);
         }
         let massive = scene.masses(self.copy).iter().filter(|&&mass| mass > 0.0).count();

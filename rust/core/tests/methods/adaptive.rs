@@ -77,7 +77,7 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
             if !method.adaptive() {
                 continue;
             }
-            let mut before = f64::INFINITY;
+            let (mut before, mut steps_before) = (f64::INFINITY, 0);
             for exponent in exponents_for(method.order) {
                 let rtol = 10f64.powi(-exponent);
                 let Problem { mut state, mut dynamics, .. } = make();
@@ -97,8 +97,10 @@ fn the_error_of_adaptive_methods_follows_the_tolerance() {
                 let error = distance(&state, &exact);
                 println!("{name}, {}: rtol {rtol:.0e}: error {error:.1e} in {steps} steps", method.name);
                 assert!(error < 10.0 * rtol, "{name}, {}: rtol {rtol:e}, error {error:e}", method.name);
-                assert!(error < before, "{name}, {}: no better at rtol {rtol:e}", method.name);
-                before = error;
+                // Of two steps the first was chosen without knowledge of the error, and may be much too short.
+                let known = steps_before > 2;
+                assert!(error < before || !known, "{name}, {}: no better at rtol {rtol:e}", method.name);
+                (before, steps_before) = (error, steps);
             }
         }
     }

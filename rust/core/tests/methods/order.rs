@@ -193,6 +193,51 @@ fn a_force_that_turns_velocities_is_followed_to_the_declared_order() {
     }
 }
 
+/// `a = -q³ + 1/(1 + t)²`.
+struct Driven;
+impl Force<DoubleDouble> for Driven {
+    fn apply(
+        &mut self,
+        &Phase { t, q, .. }: &Phase<'_, DoubleDouble>,
+        a: &mut [DoubleDouble],
+        _: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let one = DoubleDouble::from(1.0);
+        a[0] = one / ((one + *t) * (one + *t)) - q[0] * q[0] * q[0];
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { time: true, ..Needs::default() }
+    }
+}
+
+fn driven() -> Problem<DoubleDouble> {
+    let shape = Shape { rows: 1, components: 1 };
+    let number = |x: f64| [DoubleDouble::from(x)];
+    Problem {
+        dynamics: Dynamics::new(shape, vec![Box::new(Driven)]),
+        state: State::new(&number(1.0), &number(0.5)),
+        mass: vec![1.0],
+    }
+}
+
+#[test]
+fn the_time_goes_with_the_drifts_so_that_driven_systems_have_the_declared_order() {
+    for method in METHODS.iter().filter(|method| !matches!(method.scheme, Scheme::Multistep(_))) {
+        let end = |steps: usize| {
+            let Problem { mut state, mut dynamics, .. } = driven();
+            advance(method, 1.0 / steps as f64, steps, &mut state, &mut dynamics);
+            state
+        };
+        let steps = steps_for(method.order);
+        let [coarse, middle, fine] = [steps, 2 * steps, 4 * steps].map(end);
+        let order = (distance(&coarse, &middle) / distance(&middle, &fine)).log2();
+        println!("{}: order {order:.3} when driven", method.name);
+        assert!((order - f64::from(method.order)).abs() < 0.15, "{}: {order}", method.name);
+    }
+}
+
 /// `a = -q³ - v³/4`.
 struct Resisted;
 impl Force<DoubleDouble> for Resisted {
@@ -232,8 +277,9 @@ fn a_force_that_looks_at_velocities_gets_those_of_its_stage() {
             advance(method, 2.0 / steps as f64, steps, &mut state, &mut dynamics);
             state
         };
-        // Each halving of the step leaves a difference smaller by the order.
-        let steps = steps_for(method.order);
+        // Each halving of the step leaves a difference smaller by the order. At 128 steps of 2/128 order 9 is not yet to be
+        // seen (9.15).
+        let steps = 2 * steps_for(method.order);
         let [coarse, middle, fine] = [steps, 2 * steps, 4 * steps].map(end);
         let order = (distance(&coarse, &middle) / distance(&middle, &fine)).log2();
         println!("{}: order {order:.3} with resistance", method.name);

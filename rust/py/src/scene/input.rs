@@ -5,15 +5,16 @@ use crate::arrays::copied;
 use crate::errors::raised;
 use crate::registry;
 use numpy::PyReadonlyArrayDyn;
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::parallel::thread_count;
-use visviva_core::scene::Scene;
 use visviva_core::scene::continuation::{Continuation, Held};
 use visviva_core::scene::request::Request;
+use visviva_core::scene::{OwnForces, Scene};
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 
@@ -25,6 +26,7 @@ pub(crate) struct Asked<'py> {
     position: Array<'py>,
     velocity: Array<'py>,
     forces: Bound<'py, PyList>,
+    own_forces: Option<(Vec<Bound<'py, PyList>>, Vec<usize>)>,
     t0: f64,
     continuation: Option<Continued<'py>>,
     times: Array<'py>,
@@ -101,7 +103,9 @@ impl Asked<'_> {
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
-        let scene = Scene { copies, particles, mass, position, velocity, forces, t0, continuation };
+        let own_forces = self.own_forces.map(|own| own_forces(&own, copies)).transpose()?;
+        let scene =
+            Scene { copies, particles, mass, position, velocity, forces, own_forces, t0, continuation };
         let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, threads };
         Ok((scene, request, raised))
     }
@@ -127,6 +131,7 @@ pub(super) fn snapshot(
         position,
         velocity,
         forces: forces(specs)?,
+        own_forces: None,
         t0: 0.0,
         continuation: None,
     })
@@ -139,6 +144,18 @@ pub(super) fn point(values: &[f64]) -> [f64; 3] {
 
 pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {
     values.as_chunks().0.to_vec()
+}
+
+/// The sets of forces that copies have of their own, and which of them each has.
+///
+/// # Errors
+/// As [`forces`], and for sets that are not there.
+fn own_forces((sets, of_copy): &(Vec<Bound<'_, PyList>>, Vec<usize>), copies: usize) -> PyResult<OwnForces> {
+    let sets: Vec<_> = sets.iter().map(forces).collect::<PyResult<_>>()?;
+    if of_copy.len() != copies || of_copy.iter().any(|&set| set >= sets.len()) {
+        return Err(PyValueError::new_err("own_forces: expected a set of forces for each copy"));
+    }
+    Ok(OwnForces { sets, of_copy: of_copy.clone() })
 }
 
 /// The forces of a scene's description.

@@ -178,9 +178,10 @@ impl<V: Vector8 + InverseCube> Running<V> {
         let r2 = FusedDouble::sum_of_squares(d);
         let soft = FusedDouble::product(V::splat(softening), V::splat(softening));
         let soft2 = if SOFT { r2.plus(soft) } else { r2 };
-        let heavy = wanted.and(zero.less(from.mass)).and(zero.less(to.mass));
+        // Without their signs, as charges have them.
+        let heavy = wanted.and(zero.less(from.mass.abs())).and(zero.less(to.mass.abs()));
         let (least, most) = (V::splat(power_of_two(-RANGE)), V::splat(power_of_two(RANGE)));
-        let fine = least.less(soft2.high).and(soft2.high.less(most)).and(least.less(product.high));
+        let fine = least.less(soft2.high).and(soft2.high.less(most)).and(least.less(product.high.abs()));
         let inverse = soft2.inverse_root();
         let term = product.times(inverse);
         // Also what is not a number, of two massless bodies in one place or after the last, is taken out.

@@ -4,7 +4,7 @@ use super::{FewBodies, RING_MAX, Ring, Tiles, energy};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::context::{Arrangement, Context};
+use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
 use crate::numerics::power_of_two::exponent;
@@ -55,10 +55,38 @@ impl Gravity {
 
 /// Gravity among the few bodies of each system, batched.
 pub fn few_bodies(context: &Context<'_>, constant: f64, softening: f64) -> FewBodies<Lanes> {
-    let (constant, softening) =
-        (context.units.take(constant, CONSTANT), context.units.take(softening, [1, 0, 0]));
-    let strength = context.in_rows(context.active, |system, slot| constant * system.mass[slot]);
-    FewBodies::new(context.shape, context.blocks(), strength, softening)
+    let constant = context.units.take(constant, CONSTANT);
+    few(context, |system, slot| constant * system.mass[slot], softening)
+}
+
+fn few(
+    context: &Context<'_>,
+    strength: impl Fn(&System<'_>, usize) -> f64,
+    softening: f64,
+) -> FewBodies<Lanes> {
+    let strength = context.in_rows(context.active, strength);
+    FewBodies::new(context.shape, context.blocks(), strength, context.units.take(softening, [1, 0, 0]))
+}
+
+/// The kernel of Σ strengthⱼ (rⱼ − rᵢ)/(r² + softening²)^{3/2} on every body, from those of all that come first.
+pub fn attraction(
+    context: &Context<'_>,
+    strength: impl Fn(&System<'_>, usize) -> f64,
+    softening: f64,
+) -> Box<dyn Force<Lanes>> {
+    let (shape, active) = (context.shape, context.active);
+    if context.arrangement == Arrangement::Batched {
+        return Box::new(few(context, strength, softening));
+    }
+    let softening = context.units.take(softening, [1, 0, 0]);
+    let system = context.first();
+    let numbers = (0..active).map(|slot| strength(&system, slot));
+    if active <= RING_MAX {
+        return Box::new(Ring::new(shape, numbers.collect(), softening));
+    }
+    let mut rows = vec![Lanes::zero(); active.div_ceil(WIDTH)];
+    as_numbers_mut(&mut rows).iter_mut().zip(numbers).for_each(|(into, number)| *into = number);
+    Box::new(Tiles::new(shape, rows, active, softening, context.threads))
 }
 
 impl ForceTerm for Gravity {
@@ -67,24 +95,8 @@ impl ForceTerm for Gravity {
     }
 
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let (shape, active) = (context.shape, context.active);
-        let softening = context.units.take(self.softening, [1, 0, 0]);
         let constant = context.units.take(self.constant, CONSTANT);
-        let mass = context.first().mass;
-        match context.arrangement {
-            Arrangement::Batched => Box::new(few_bodies(context, self.constant, self.softening)),
-            Arrangement::Packed if active <= RING_MAX => {
-                let strength = mass[..active].iter().map(|mass| constant * mass).collect();
-                Box::new(Ring::new(shape, strength, softening))
-            }
-            Arrangement::Packed => {
-                let mut strength = vec![Lanes::zero(); active.div_ceil(WIDTH)];
-                for (strength, mass) in as_numbers_mut(&mut strength).iter_mut().zip(&mass[..active]) {
-                    *strength = constant * mass;
-                }
-                Box::new(Tiles::new(shape, strength, active, softening, context.threads))
-            }
-        }
+        attraction(context, |system, slot| constant * system.mass[slot], self.softening)
     }
 
     fn potential_and_virial(

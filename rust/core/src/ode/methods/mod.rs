@@ -1,11 +1,33 @@
 //! The methods, one file each: a table of coefficients, and what the method declares about itself.
 
+pub mod blanes_moan_rkn4;
+pub mod blanes_moan_rkn6_11;
+pub mod blanes_moan_rkn6_14;
+pub mod blanes_moan_s10;
+pub mod blanes_moan_s6;
 pub mod bogacki_shampine32;
 pub mod boris;
+pub mod boris4;
 pub mod dop853;
 pub mod dormand_prince54;
+pub mod euler;
+pub mod heun;
+pub mod kahan_li6;
 pub mod kahan_li8;
 pub mod leapfrog;
+pub mod leapfrog_dkd;
+pub mod mclachlan4;
+pub mod midpoint;
+pub mod pefrl4;
 pub mod rk4;
+pub mod ruth3;
+pub mod sofroniou_spaletta10;
+pub mod sofroniou_spaletta6;
+pub mod sofroniou_spaletta8;
 pub mod stormer13;
+pub mod symplectic_euler;
+pub mod tsitouras54;
+pub mod verner98;
 pub mod yoshida4;
+pub mod yoshida6;
+pub mod yoshida8;

@@ -14,8 +14,8 @@ use crate::numerics::real::Real;
 /// A table that a test may change.
 #[derive(Clone)]
 pub(super) struct Table {
-    kicks: Vec<DoubleDouble>,
-    drifts: Vec<DoubleDouble>,
+    pub(super) kicks: Vec<DoubleDouble>,
+    pub(super) drifts: Vec<DoubleDouble>,
 }
 
 impl From<&Splitting> for Table {

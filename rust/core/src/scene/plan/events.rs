@@ -53,8 +53,12 @@ impl Plan {
         }
     }
 
-    /// Whether an event is looked for in a unit of its own.
+    /// Whether an event is looked for on other steps than those of all bodies that it looks at: in a unit of its own, or in
+    /// that of massless bodies beside massive ones that have steps of their own.
     pub(super) fn watches_apart(&self) -> bool {
-        self.watched_kinds().len() > self.kinds().len()
+        let kinds = self.watched_kinds();
+        let beside =
+            |unit: &Unit| !unit.events.is_empty() && !unit.follows && unit.recorded.len() < unit.bodies.len();
+        kinds.len() > self.kinds().len() || (self.method.adaptive() && kinds.iter().any(beside))
     }
 }

@@ -27,6 +27,10 @@ impl Plan {
         };
         let (decision, reason) = self.describe_solution();
         row("solution", decision, reason);
+        if self.sets_of_forces > 1 {
+            let why = "copies have parameters of their own: each set is planned and run by itself, the first as told here";
+            row("sets of forces", self.sets_of_forces.to_string(), why.to_owned());
+        }
         if self.solutions.integrates() {
             let steps = match self.dt {
                 Some(dt) => format!("fixed step {dt}"),

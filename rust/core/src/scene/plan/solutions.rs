@@ -79,5 +79,6 @@ pub fn member(scene: &Scene, copy: usize) -> Member<'_> {
     let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
     let alone = Bodies { copies: 1, particles: scene.particles, mass, position, velocity };
     let forces = scene.forces.iter().filter(|force| force.acts(&alone));
-    Member { mass, position, velocity, forces: forces.map(|force| &**force as &dyn ForceTerm).collect() }
+    let forces = forces.map(|force| &**force as &dyn ForceTerm).collect();
+    Member { mass, position, velocity, forces, t0: scene.t0 }
 }

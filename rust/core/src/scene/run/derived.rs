@@ -39,7 +39,7 @@ pub(super) fn derive(
                 break;
             }
             read(scene, columns, copy, time, &mut bodies);
-            let mut state = Snapshot::new(&scene.forces, &bodies, [0.0; 3], 1, ticker);
+            let mut state = Snapshot::new(scene.forces_of(copy), &bodies, [0.0; 3], 1, ticker);
             let mut row = Vec::new();
             for column in &widths {
                 let Ok(numbers) = state.value(column) else { return Ok(values) };

@@ -38,7 +38,7 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> R
     Ok(Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect()))
 }
 
-/// Some copies of a scene.
+/// Some copies of a scene, which have the same forces.
 pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
     let pick = |of: fn(&Scene, usize) -> &[[f64; 3]]| {
         members.iter().flat_map(|&copy| of(scene, copy)).copied().collect()
@@ -49,7 +49,8 @@ pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
         mass: members.iter().flat_map(|&copy| scene.masses(copy)).copied().collect(),
         position: pick(|scene, copy| scene.positions(copy)),
         velocity: pick(|scene, copy| scene.velocities(copy)),
-        forces: scene.forces.clone(),
+        forces: scene.forces_of(members.first().copied().unwrap_or(0)).to_vec(),
+        own_forces: None,
         t0: scene.t0,
         continuation: None,
     }

@@ -1,0 +1,175 @@
+"""Osculating elements of the bodies of a scene: what each orbits, and by which μ; the conics are `visviva.orbits`.
+
+The one idea: the orbit of a body is that of the relative motion of two: itself, and what it is about, which has a
+place and a mass. μ = G (mass there + its own mass), so that two bodies have the elements of their true conic whichever
+of them the other is about.
+Source: Murray & Dermott, *Solar System Dynamics* (1999) §2.8, §9.7 (Jacobi coordinates).
+"""
+
+from __future__ import annotations
+
+from math import fsum
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import number
+from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, body_label
+from visviva.errors import InvalidInput
+from visviva.orbits import Elements, elements
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from visviva.scene import Scene
+
+__all__ = ["elements_of", "gravitational_constant"]
+
+
+def gravitational_constant(scene: Scene, given: float | None) -> float:
+    """The G that is given, or that of the scene's gravity."""
+    if given is not None:
+        return number("G", given)
+    found = [force.G for force in scene.forces if force.kind == "gravity"]  # type: ignore[attr-defined]
+    if not found:
+        raise InvalidInput("G", "expected the gravitational constant, since the scene has no Gravity; give G=…")
+    return fsum(found)
+
+
+def elements_of(
+    scene: Scene,
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    bodies: str | int | Sequence[str | int] | None,
+    about: str | int,
+    G: float | None,
+) -> Elements:
+    """The elements of states (…, N, 3), with masses (N,) or, of an ensemble's (B, T, N, 3), (B, N)."""
+    names, count = scene.particles.names, position.shape[-2]
+    constant = gravitational_constant(scene, G)
+    parent = (
+        about
+        if isinstance(about, str) and about in (CENTER_OF_MASS, JACOBI)
+        else body_index("about", about, names, count)
+    )
+    if bodies is None:
+        without = 0 if parent == JACOBI else parent
+        chosen = [body for body in range(count) if body != without]
+    else:
+        chosen = body_indices("bodies", bodies, names, count)
+        _check_chosen(chosen, parent, names)
+    if mass.ndim > 1:
+        mass = mass[:, None, :]
+    if parent == JACOBI:
+        parts = _jacobi(position, velocity, mass, chosen)
+    elif parent == CENTER_OF_MASS:
+        parts = [_others(position, velocity, mass, body) for body in chosen]
+    else:
+        assert isinstance(parent, int)
+        parts = [
+            (
+                position[..., body, :] - position[..., parent, :],
+                velocity[..., body, :] - velocity[..., parent, :],
+                mass[..., parent],
+            )
+            for body in chosen
+        ]
+    axes = (*position.shape[:-2], len(chosen))
+    r, v = np.empty((*axes, 3)), np.empty((*axes, 3))
+    mu = np.empty(axes)
+    for column, (body, (apart, rate, attracting)) in enumerate(zip(chosen, parts, strict=True)):
+        r[..., column, :], v[..., column, :] = apart, rate
+        with np.errstate(over="ignore"):
+            mu[..., column] = constant * (attracting + mass[..., body])
+        lost = ~np.isfinite(apart) & np.isfinite(position[..., body, :])
+        _check(apart, lost, mu[..., column], attracting, body_label(body, names), parent, names)
+    found = _conics(mu, r, v)
+    if isinstance(bodies, str | int | np.integer):
+        # Of one body alone, without the axis over bodies.
+        found = {name: values[(slice(None),) * (len(axes) - 1) + (0,)] for name, values in found.items()}
+    return Elements(**found)
+
+
+def _check_chosen(chosen: list[int], parent: str | int, names: tuple[str, ...]) -> None:
+    for body in chosen:
+        if body == parent:
+            raise InvalidInput("bodies", f"expected other bodies than {body_label(body, names)}, which they are about")
+        if parent == JACOBI and body == 0:
+            raise InvalidInput("bodies", f"expected bodies after the first, {body_label(0, names)}, which orbits none")
+
+
+def _check(
+    r: NDArray[np.float64],
+    lost: NDArray[np.bool_],
+    mu: NDArray[np.float64],
+    attracting: NDArray[np.float64],
+    who: str,
+    parent: str | int,
+    names: tuple[str, ...],
+) -> None:
+    """Refuse by name what has no conic."""
+    whom = {CENTER_OF_MASS: "the centre of mass of the others", JACOBI: "the centre of mass of those before it"}.get(
+        str(parent)
+    ) or body_label(int(parent), names)
+    if isinstance(parent, str) and not np.all(attracting > 0.0):
+        raise InvalidInput("about", f"expected bodies with mass, but {whom} has none for {who}")
+    if not np.all(mu != 0.0):
+        raise InvalidInput(
+            "about", f"expected an orbit, but neither {who} nor {whom} attracts: G times their mass is 0"
+        )
+    if not np.isfinite(mu).all():
+        raise InvalidInput("G", "expected units in which G times the masses is within the range of float64")
+    if lost.any():
+        raise InvalidInput("about", f"expected a distance of {who} from {whom} within the range of float64")
+    there = (r == 0.0).all(axis=-1)
+    if there.any():
+        row = tuple(np.argwhere(there)[0].tolist())
+        raise InvalidInput("about", f"expected an orbit, but {who} is at the very place of {whom} in row {row}")
+
+
+def _jacobi(
+    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], chosen: list[int]
+) -> list[tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]]:
+    """Each relative to the centre of mass of those before it, which moves by the share of each that is added."""
+    found = {}
+    center, rate, inside = position[..., 0, :], velocity[..., 0, :], mass[..., 0]
+    for body in range(1, max(chosen, default=0) + 1):
+        r, v, own = position[..., body, :] - center, velocity[..., body, :] - rate, mass[..., body]
+        found[body] = (r, v, inside)
+        total = inside + own
+        share = np.divide(own, total, out=np.zeros_like(total), where=total > 0.0)[..., None]
+        center, rate, inside = center + share * r, rate + share * v, total
+    return [found[body] for body in chosen]
+
+
+def _others(
+    position: NDArray[np.float64], velocity: NDArray[np.float64], mass: NDArray[np.float64], body: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Relative to the centre of mass of all others: the mean of the distances, so that none is lost in a great sum."""
+    weights = np.delete(mass, body, axis=-1)
+    total = weights.sum(axis=-1)
+    shares = np.divide(weights, total[..., None], out=np.zeros_like(weights), where=total[..., None] > 0.0)[..., None]
+
+    def apart(values: NDArray[np.float64]) -> NDArray[np.float64]:
+        mean: NDArray[np.float64] = ((values[..., body : body + 1, :] - np.delete(values, body, axis=-2)) * shares).sum(
+            axis=-2
+        )
+        return mean
+
+    return apart(position), apart(velocity), total
+
+
+def _conics(mu: NDArray[np.float64], r: NDArray[np.float64], v: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
+    """The elements of every state; NaN where the state is, as a copy of an ensemble is after it failed."""
+    known = np.isfinite(r).all(axis=-1) & np.isfinite(v).all(axis=-1)
+    found = elements(mu[known], r[known], v[known])
+    spread: dict[str, Any] = {}
+    for name in Elements.__slots__:
+        values = getattr(found, name)
+        spread[name] = np.full((*mu.shape, *values.shape[1:]), np.nan)
+        spread[name][known] = values
+    spread["mu"] = mu
+    return spread

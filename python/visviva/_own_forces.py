@@ -1,0 +1,104 @@
+"""Forces whose parameters differ from copy to copy of an ensemble.
+
+The one idea: a copy's forces are forces like any, made from the scene's with one value put in the place of another. So
+whatever a force checks of its parameters it checks of each.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import did_you_mean
+from visviva.errors import InvalidInput
+from visviva.forces import Force
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from visviva import _core
+    from visviva.scene import Scene
+
+__all__ = ["described", "forces_of_copies"]
+
+
+def forces_of_copies(
+    scene: Scene, parameters: Mapping[Force | int | str, Mapping[str, Any]]
+) -> tuple[tuple[Force, ...], ...]:
+    """The forces of each copy: those of the scene with the values that the copies have of their own."""
+    if not hasattr(parameters, "items") or not parameters:
+        raise InvalidInput("parameters", f"expected a dictionary {{force: {{name: values}}}}, got {parameters!r}")
+    values: dict[int, dict[str, Sequence[Any]]] = {}
+    for which, named in parameters.items():
+        place = _place(scene.forces, which)
+        if not hasattr(named, "items") or not named:
+            raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
+        known = scene.forces[place]._values()
+        for name, given in named.items():
+            if name not in known:
+                hint = did_you_mean(str(name), tuple(known))
+                raise InvalidInput(
+                    "parameters", f"expected parameters of {type(scene.forces[place]).__name__}, got {name!r}{hint}"
+                )
+            values.setdefault(place, {})[name] = _of_each(name, given)
+    counts = {name: len(given) for named in values.values() for name, given in named.items()}
+    first, count = next(iter(counts.items()))
+    for name, other in counts.items():
+        if other != count:
+            raise InvalidInput(
+                "parameters", f"expected values of {name!r} for {count} copies like {first}, got {other}"
+            )
+    return tuple(
+        tuple(_with_values(force, values.get(place), copy) for place, force in enumerate(scene.forces))
+        for copy in range(count)
+    )
+
+
+def _with_values(force: Force, values: dict[str, Sequence[Any]] | None, copy: int) -> Force:
+    if values is None:
+        return force
+    own = {name: given[copy] for name, given in values.items()}
+    try:
+        return type(force)(**{**force._values(), **own})
+    except InvalidInput as error:
+        raise InvalidInput("parameters", f"{type(force).__name__} of copy {copy}: {error}") from error
+
+
+def _of_each(name: str, given: Any) -> Sequence[Any]:
+    """One value for each copy, along the first axis."""
+    if isinstance(given, list | tuple) and given and not isinstance(given[0], int | float | list | tuple | np.ndarray):
+        return given
+    try:
+        array = np.asarray(given, dtype=float)
+    except (TypeError, ValueError):
+        array = np.zeros(())
+    if array.ndim == 0 or len(array) == 0:
+        raise InvalidInput(
+            "parameters", f"expected values of {name!r} with a leading axis over the copies, got {given!r}"
+        )
+    values: list[Any] = array.tolist() if array.ndim == 1 else list(array)
+    return values
+
+
+def _place(forces: tuple[Force, ...], which: Any) -> int:
+    """The place of a force that is given itself, by its place, or by the name of its class."""
+    shown = ", ".join(map(repr, forces)) or "none"
+    if isinstance(which, bool) or not isinstance(which, int | str | Force):
+        raise InvalidInput("parameters", f"expected forces of the scene ({shown}), got {which!r}")
+    if isinstance(which, int):
+        if not 0 <= which < len(forces):
+            raise InvalidInput("parameters", f"expected the place of a force, below {len(forces)}, got {which}")
+        return which
+    found = [i for i, force in enumerate(forces) if which in (force, type(force).__name__)]
+    if len(found) != 1:
+        why = "it has none like that" if not found else "it has several like that: give the place of one"
+        raise InvalidInput("parameters", f"expected a force of the scene ({shown}), got {which!r}; {why}")
+    return found[0]
+
+
+def described(copies: tuple[tuple[Force, ...], ...]) -> _core._OwnForces:
+    """What the core and a file are told: each set of forces once, and which of them each copy has."""
+    sets: dict[tuple[Force, ...], int] = {}
+    of_copy = [sets.setdefault(forces, len(sets)) for forces in copies]
+    return [[force._to_core() for force in forces] for forces in sets], of_copy

@@ -1,0 +1,87 @@
+"""Short trials: what a run would cost, before it is run, and how far a method is off.
+
+The one idea: the first stretch of the very run is done, as long as a few milliseconds, and scaled to the whole. No
+function of the user's is called, nothing is recorded, nothing is warned of.
+"""
+
+from __future__ import annotations
+
+import math
+from time import perf_counter
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from visviva import _core
+from visviva.plan import Cost
+
+if TYPE_CHECKING:
+    from visviva.plan import Plan
+
+__all__ = ["cost", "stretch"]
+
+# A trial is long enough to tell how fast it goes after this time and so many steps, or after the longest time.
+_SECONDS, _STEPS, _LONGEST = 4e-3, 50, 5e-2
+# Copies of an ensemble that are tried, and pairs in a step beyond which none is tried: it would take too long.
+_COPIES = 32
+_PAIRS = 10**8
+# The columns by their numbers for each copy and time, for N bodies.
+_NUMBERS = {name: axes for name, _, axes, _ in _core.columns()}
+
+
+def cost(asked: _core._Request, plan: Plan) -> Cost | None:
+    """What a run of what is asked would cost; None where a trial would take long or fails."""
+    copies, bodies = asked["mass"].shape
+    rows = len(asked["times"]) + (1 if asked["end_only"] else 0)
+    numbers = sum(3 * bodies if name in ("position", "velocity") else _NUMBERS.get(name, 3) for name in asked["record"])
+    memory = 8 * copies * rows * numbers
+    few = tuple(asked[name][:_COPIES] for name in ("mass", "position", "velocity"))
+    tried = cast(
+        "_core._Request",
+        dict(asked)
+        | dict(zip(("mass", "position", "velocity"), few, strict=True))
+        | {"events": [], "record": [], "end_only": True, "max_steps": None, "continuation": None},
+    )
+    scale = copies / max(1, len(few[0]))
+    if plan.closed_form:
+        result, seconds = stretch(tried, 1.0)
+        return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
+    if plan.evaluations_per_step * plan.pairs_per_evaluation > _PAIRS or not bodies or not copies:
+        return None
+    span = abs(float(asked["times"][-1]) - asked["t0"])
+    step = asked["dt"]
+    fraction = min(1.0, abs(step) / span if step is not None and span > 0.0 else 1.0 / 4096.0)
+    while True:
+        result, seconds = stretch(tried, fraction)
+        stats = result["stats"]
+        if result["error"] or result["status"].any():
+            return None
+        few_steps = stats["steps"] < _STEPS * len(few[0])
+        if fraction == 1.0 or seconds > (_LONGEST if few_steps else _SECONDS):
+            break
+        fraction = min(1.0, 4.0 * fraction)
+    if stats["steps"] == 0 and fraction < 1.0:
+        return None
+    seconds = min(seconds, stretch(tried, fraction)[1])  # the first may have been held up
+    ratio, exact = scale / fraction, scale / fraction == 1.0
+    steps = round(stats["steps"] * ratio)
+    if step is not None and step != 0.0:
+        # The way to the end from the last node is none.
+        steps, exact = copies * math.floor(span / abs(step) * (1.0 + 1e-12)), True
+        ratio = steps / stats["steps"] if stats["steps"] else scale
+    return Cost(steps, round(stats["evaluations"] * ratio), memory, seconds * ratio, exact=exact)
+
+
+def stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dict[str, Any], float]:
+    """Run the first `fraction` of what is asked, with so many outputs; give the result and the seconds it took."""
+    t0, end = asked["t0"], float(asked["times"][-1])
+    last = end if fraction == 1.0 else t0 + fraction * (end - t0)
+    outputs = np.array([last]) if times == 1 else np.linspace(t0, last, times + 1)[1:]
+    begun = perf_counter()
+    result = _core.run(
+        cast("_core._Request", dict(asked) | {"times": outputs, "end_only": times == 1}),
+        threads=None,
+        progress=None,
+        ensemble=len(asked["mass"]) > 1,
+    )
+    return result, perf_counter() - begun

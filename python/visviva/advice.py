@@ -1,0 +1,221 @@
+"""Advice: which method and which step hold an error that is asked for, by a short trial.
+
+The one idea: on the first stretch of the very run every method of the registry is tried with larger and larger steps
+against a reference, and the largest that hold what the stretch may be off are compared by their time. From the stretch
+to the whole, errors grow as the theory has it: the energy of a symplectic method not at all and its phase linearly, the
+energy of any other method linearly and its phase quadratically. A motion that is chaotic, or one that has its hardest
+part after the stretch, is worse than that.
+Source: Hairer, Lubich & Wanner, *Geometric Numerical Integration* 2nd ed., IX.8, X.3.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from visviva._arrays import number
+from visviva._keywords import known_keywords
+from visviva._trial import stretch
+from visviva.errors import ConvergenceError, InvalidInput
+from visviva.integrators import methods
+
+if TYPE_CHECKING:
+    from visviva import _core
+    from visviva.integrators import Method
+
+__all__ = ["Advice", "Option", "advise"]
+
+# The reference of a stretch takes this long, and its error is below this one.
+_SECONDS, _FLOOR = 0.03, 5e-13
+_OUTPUTS = 32
+_TIGHTEST = 2.3e-14
+# Beyond so many halvings of a step, or if a trial takes so many times the fastest, a method is given up.
+_HALVINGS, _PATIENCE = 16, 8.0
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Option:
+    """A method with a step or a tolerance that holds the error.
+
+    Attributes
+    ----------
+    how : dict
+        Arguments for ``run``: ``method``, and ``dt`` or ``rtol``.
+    error : float
+        What the run is expected to be off.
+    steps : int
+    seconds : float
+        What it is expected to take.
+    """
+
+    how: dict[str, Any]
+    error: float
+    steps: int
+    seconds: float
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Advice:
+    """Which method and step hold an error; the answer of `Scene.advise`. Print it.
+
+    Attributes
+    ----------
+    accuracy : float
+    of : str
+        What was asked for.
+    options : tuple of Option
+        What holds it, the fastest first.
+    tried : float
+        The part of the span that was tried.
+    """
+
+    accuracy: float
+    of: str
+    options: tuple[Option, ...]
+    tried: float
+
+    @property
+    def how(self) -> dict[str, Any]:
+        """Arguments for ``run`` of the fastest: ``scene.run(t, **advice.how)``."""
+        return dict(self.options[0].how)
+
+    def __str__(self) -> str:
+        lines = [f"{'':<20}{'dt or rtol':>14}{'error':>11}{'steps':>12}{'time':>12}"]
+        for option in self.options:
+            by = option.how.get("dt", option.how.get("rtol"))
+            shown = "" if by is None else f"{'dt' if 'dt' in option.how else 'rtol'} {by:.4g}"
+            name = option.how["method"] if by is not None else "auto: closed form"
+            lines.append(f"{name:<20}{shown:>14}{option.error:>11.1e}{option.steps:>12}{option.seconds:>10.2g} s")
+        part = "the whole of it" if self.tried == 1.0 else f"the first {self.tried:.2g} of it"
+        return "\n".join([f"{self.of} to {self.accuracy:g}, by a trial of {part}", *lines])
+
+
+@dataclass(frozen=True, slots=True)
+class _Trial:
+    """The stretch that is tried: what is asked, how much of it, and the reference there."""
+
+    asked: dict[str, Any]
+    fraction: float
+    of: str
+    values: np.ndarray[Any, np.dtype[np.float64]]
+    scale: float
+    seconds: float
+    step: float
+
+    def of_method(self, method: Method, **how: float) -> tuple[float, int, float] | None:
+        """Error, steps and seconds of a method on the stretch; None if it does not get through it."""
+        asked = self.asked | {"method": method.name, "dt": None, "rtol": 1e-9} | how
+        try:
+            found = _measured(asked, self.fraction, self.of)
+        except InvalidInput:
+            return None
+        if found is None:
+            return None
+        values, steps, seconds = found
+        return float(np.abs(values - self.values).max()) / self.scale, steps, seconds
+
+
+def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: str, closed: bool) -> Advice:
+    """What `Scene.advise` gives; `asked` is the request of the whole span, `closed` whether there is a closed form."""
+    wanted = number("accuracy", accuracy)
+    if not _FLOOR <= wanted < 1.0:
+        raise InvalidInput("accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1")
+    if of not in ("energy", "position"):
+        raise InvalidInput("of", f"expected 'energy' or 'position', got {of!r}")
+    if closed:
+        # Closed forms are right to some ulps.
+        return Advice(wanted, of, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)
+    trial = _reference(prepared, dict(asked), of)
+    options: list[Option] = []
+    # The best are likely among those of high order: with their times known, others are soon given up.
+    for method in sorted(methods(), key=lambda method: -method.order):
+        fastest = min((option.seconds * trial.fraction for option in options), default=trial.seconds)
+        option = _option(trial, method, wanted, _PATIENCE * max(fastest, _SECONDS / 8.0))
+        if option is not None:
+            options.append(option)
+    if not options:
+        raise ConvergenceError(
+            f"no method holds {wanted:g} of {of} over this span, as far as a trial of its first {trial.fraction:.2g} "
+            "tells; ask for less, or for a shorter span"
+        )
+    return Advice(wanted, of, tuple(sorted(options, key=lambda option: option.seconds)), trial.fraction)
+
+
+def _measured(
+    asked: dict[str, Any], fraction: float, of: str
+) -> tuple[np.ndarray[Any, np.dtype[np.float64]], int, float] | None:
+    column = "position" if of == "position" else "energy"
+    result, seconds = stretch(cast("_core._Request", asked | {"record": [column]}), fraction, _OUTPUTS)
+    if result["error"] or result["status"].any():
+        return None
+    return result["columns"][column][0], result["stats"]["steps"], seconds
+
+
+def _reference(prepared: _core._Scene, asked: dict[str, Any], of: str) -> _Trial:
+    """A stretch that DOP853 does within a moment to the tightest tolerance, or the whole span."""
+    asked |= {"events": [], "max_steps": None, "continuation": None, "atol": None, "max_step": None}
+    tight = asked | {"method": "dop853", "dt": None, "rtol": _TIGHTEST}
+    fraction, done = 1.0 / 65536.0, None
+    while True:
+        found = _measured(tight, fraction, of)
+        if found is None:
+            break
+        done = (fraction, *found)
+        if fraction == 1.0 or found[2] > _SECONDS:
+            break
+        fraction = min(1.0, 4.0 * fraction)
+    if done is None or done[2] == 0:
+        raise ConvergenceError("a trial of the first steps ended early, so there is nothing to advise on")
+    fraction, values, steps, seconds = done
+    span = abs(float(asked["times"][-1]) - asked["t0"]) * fraction
+    p = prepared["position"][0], prepared["velocity"][0], prepared["mass"][0]
+    if of == "position":
+        center = p[0].mean(axis=0)
+        scale = float(max(np.abs(values - center).max(), np.abs(p[0] - center).max()))
+    else:
+        kinetic = 0.5 * float((p[2] * (p[1] ** 2).sum(axis=1)).sum())
+        start = float(values[0])
+        # Of an energy that is a small difference, the parts.
+        scale = abs(start) if abs(start) > 1e-3 * (kinetic + abs(start - kinetic)) else kinetic + abs(start - kinetic)
+    return _Trial(asked, fraction, of, values, scale or 1.0, seconds, span / steps)
+
+
+def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> Option | None:
+    """The largest step or tolerance with which a method holds the error over the whole, if it does in time."""
+    whole = 1.0 / trial.fraction
+    growth = whole ** ((0 if method.symplectic else 1) + (1 if trial.of == "position" else 0))
+    allowed = accuracy / growth
+    if allowed < _FLOOR:
+        return None
+    direction = 1.0 if float(trial.asked["times"][-1]) >= trial.asked["t0"] else -1.0
+    # From a step that is too long on: of as many evaluations as a longest one of the reference.
+    sizes = (
+        [max(10.0 ** (-0.5 * k), _TIGHTEST) for k in range(4, 28)]
+        if method.adaptive
+        else [16.0 * direction * trial.step * method.stages / 12.0 * 2.0 ** (-0.5 * k) for k in range(2 * _HALVINGS)]
+    )
+    name = "rtol" if method.adaptive else "dt"
+    # Every fourth until one holds, then those that were passed over, the longest first.
+    stride = 4
+    held = None
+    for k in range(0, len(sizes), stride):
+        found = trial.of_method(method, **{name: sizes[k]})
+        if found is not None and found[0] <= allowed:
+            held = k
+            break
+        # Too long a step may be refused or fail; one that takes too long is no better when it is shorter.
+        if found is not None and found[2] > patience:
+            return None
+    if held is None:
+        return None
+    for k in [*range(max(0, held - stride + 1), held), held]:
+        found = trial.of_method(method, **{name: sizes[k]})
+        if found is not None and found[0] <= allowed:
+            error, steps, seconds = found
+            how = {"method": method.name, name: sizes[k]}
+            return Option(how, error * growth, round(steps * whole), seconds * whole)
+    return None

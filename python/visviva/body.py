@@ -1,0 +1,110 @@
+"""The motion of one body of a run: views of its rows of the columns."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from visviva._keywords import frozen, known_keywords
+from visviva._names import body_label
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
+    from visviva.orbits import Elements
+    from visviva.recorded import Recorded
+
+__all__ = ["BodyMotion"]
+
+
+@known_keywords
+@frozen
+class BodyMotion:
+    """The motion of one body. Made by indexing a run with a name, or by ``out.body``.
+
+    Attributes
+    ----------
+    index : int
+        Which body of the scene it is.
+    name : str
+        Its name; ``"body 3"`` where the particles have none.
+    t : ndarray, shape (T,)
+
+    Arrays are views of the run's, read-only, with a leading axis B of an ensemble.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.datasets.outer_solar_system().scene.run(t=[0.0, 1000.0], method="dop853")
+    >>> out["Jupiter"]
+    BodyMotion('Jupiter', 2 times)
+    >>> out["Jupiter"].elements(about="Sun").eccentricity.round(3).tolist()
+    [0.048, 0.048]
+    """
+
+    __slots__ = ("_run", "index", "name", "t")
+
+    index: int
+    name: str
+    t: NDArray[np.float64]
+    _run: Recorded
+
+    def __init__(self, run: Recorded, index: int) -> None:
+        for attribute, value in {
+            "_run": run,
+            "index": index,
+            "name": body_label(index, run._start._names),
+            "t": run.t,
+        }.items():
+            object.__setattr__(self, attribute, value)
+
+    def __repr__(self) -> str:
+        return f"BodyMotion({self.name!r}, {len(self.t)} times)"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._run, self.index)
+
+    @property
+    def mass(self) -> NDArray[np.float64]:
+        """Its mass, a number, or (B,)."""
+        mass: NDArray[np.float64] = self._run._start._keywords["mass"][..., self.index]
+        return mass if self._run._start._is_ensemble else mass[0]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Positions, shape (T, 3), or (B, T, 3)."""
+        return self._run.position[..., self.index, :]
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (T, 3), or (B, T, 3)."""
+        return self._run.velocity[..., self.index, :]
+
+    def elements(self, *, about: str | int = 0, G: float | None = None) -> Elements:
+        """Its osculating elements at the output times, as of `Trajectory.elements`.
+
+        Parameters
+        ----------
+        about : str or int, optional
+            What it orbits: a body, ``"jacobi"`` or ``"center_of_mass"``.
+        G : float, optional
+            The gravitational constant; by default that of the scene's `Gravity`.
+
+        Returns
+        -------
+        Elements
+            Arrays of shape (T,), or (B, T).
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As of `Trajectory.elements`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.body(1).elements(about=0).eccentricity.round(12).tolist()
+        [0.5, 0.5]
+        """
+        return self._run.elements(self.index, about=about, G=G)

@@ -1,0 +1,355 @@
+"""Work against precision: what each method costs for what it is off, on a problem whose answer is known.
+
+The one idea: full sweeps of steps and tolerances, so that no setting is picked; the time of a run alone, least of
+several; the error of places against the reference and of the energy against the start. The envelope, the fastest of all
+for each error, is what a user wants to know.
+Source: Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.10.
+"""
+
+from __future__ import annotations
+
+import warnings
+from dataclasses import dataclass
+from math import inf, isfinite, nan
+from time import perf_counter
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import positive, whole_number
+from visviva._keywords import known_keywords
+from visviva._problem import Problem
+from visviva.errors import AccuracyWarning, Error, InvalidInput
+from visviva.integrators import Method
+from visviva.integrators import methods as all_methods
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from matplotlib.axes import Axes
+
+    from visviva.trajectory import Trajectory
+    from visviva.typing import MethodName
+
+__all__ = ["Point", "WorkPrecision", "work_precision"]
+
+_TIGHTEST = 2.3e-14
+# Errors at which the table compares.
+_MARKS = (1e-3, 1e-6, 1e-9, 1e-12)
+# After so many steps that got no better, smaller ones are at the rounding.
+_NO_BETTER = 4
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Point:
+    """One run.
+
+    Attributes
+    ----------
+    series : str
+        The method.
+    setting : float
+        Its step or relative tolerance.
+    seconds : float
+        What the run took, the least of several.
+    position_error : float
+        The largest distance of a body from its reference at the end.
+    energy_error : float
+        |E − E₀|/|E₀| there; NaN where the scene does not conserve its energy, or a peer did not tell.
+    """
+
+    series: str
+    setting: float
+    seconds: float
+    position_error: float
+    energy_error: float
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class WorkPrecision:
+    """Runs of a problem by several methods; the answer of `work_precision`. Print it, or plot it.
+
+    Attributes
+    ----------
+    name : str
+        The problem.
+    points : tuple of Point
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.work_precision(vv.problems.figure_eight(), ["dop853", "kahan_li8"], seconds=0.005, repeats=1)
+    >>> found.series
+    ('dop853', 'kahan_li8')
+    """
+
+    name: str
+    points: tuple[Point, ...]
+
+    @property
+    def series(self) -> tuple[str, ...]:
+        """The methods, in the order in which they came."""
+        return tuple(dict.fromkeys(point.series for point in self.points))
+
+    def best(self, error: float, series: str | None = None) -> Point | None:
+        """The fastest run whose places are off by this at most; None if there is none.
+
+        Parameters
+        ----------
+        error : float
+        series : str, optional
+            Of one method only.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.WorkPrecision("none", ()).best(1e-6) is None
+        True
+        """
+        good = (p for p in self.points if p.position_error <= error and series in (None, p.series))
+        return min(good, key=lambda point: point.seconds, default=None)
+
+    def envelope(self) -> tuple[Point, ...]:
+        """The runs that none beats in both time and error, from the roughest on."""
+        front: list[Point] = []
+        for point in sorted(self.points, key=lambda p: (p.seconds, p.position_error)):
+            if not front or point.position_error < front[-1].position_error:
+                front.append(point)
+        return tuple(front)
+
+    def joined(self, points: Iterable[Point]) -> WorkPrecision:
+        """The same with more points, for example of another package.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.WorkPrecision("one", ()).joined([vv.Point("peer", 0.1, 2.0, 1e-6, 1e-7)]).best(1e-5).series
+        'peer'
+        """
+        return WorkPrecision(self.name, (*self.points, *points))
+
+    def __str__(self) -> str:
+        head = f"{self.name:<24}" + "".join(f"{f'to {mark:g}':>12}" for mark in _MARKS) + f"{'best':>12}"
+        lines = [head]
+        for name in self.series:
+            cells = (self.best(mark, name) for mark in _MARKS)
+            shown = "".join(f"{'—' if cell is None else _seconds(cell.seconds):>12}" for cell in cells)
+            least = min(p.position_error for p in self.points if p.series == name)
+            lines.append(f"{name:<24}{shown}{least:>12.1e}")
+        return "\n".join(lines)
+
+    def plot(self, axes: Axes | None = None, *, peers: Iterable[str] = ()) -> Axes:
+        """Time against error of places, a line for each method, the envelope marked.
+
+        Parameters
+        ----------
+        axes : matplotlib.axes.Axes, optional
+            Where; in a figure of its own if not given.
+        peers : iterable of str, optional
+            Series that are drawn as another's: dashed, with open marks.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> points = [vv.Point("rk4", 0.1 / k, 1e-3 * k, 1e-3 / k**4, 1e-3 / k**4) for k in (1, 2, 4)]
+        >>> vv.WorkPrecision("test", tuple(points)).plot().get_xscale()
+        'log'
+        """
+        from visviva.plot import new_figure
+
+        if axes is None:
+            _, (axes,) = new_figure(1, (6.5, 5.0))
+        others = frozenset(peers)
+        front = self.envelope()
+        axes.plot(
+            [p.position_error for p in front],
+            [p.seconds for p in front],
+            color="0.85",
+            linewidth=7.0,
+            solid_capstyle="round",
+            zorder=0,
+            label="best of all",
+        )
+        for name in self.series:
+            own = [p for p in self.points if p.series == name and p.position_error > 0.0]
+            own.sort(key=lambda point: point.seconds)
+            style: dict[str, Any] = (
+                {"linestyle": "--", "marker": "s", "markerfacecolor": "none"} if name in others else {"marker": "o"}
+            )
+            axes.plot(
+                [p.position_error for p in own],
+                [p.seconds for p in own],
+                markersize=3.0,
+                linewidth=1.0,
+                label=name,
+                **style,
+            )
+        axes.set(xscale="log", yscale="log", xlabel="error of positions", ylabel="seconds", title=self.name)
+        axes.invert_xaxis()
+        axes.grid(alpha=0.3)
+        axes.legend(fontsize="x-small")
+        return axes
+
+
+@known_keywords
+def work_precision(
+    problem: Problem,
+    methods: Iterable[MethodName | Method] | None = None,
+    *,
+    seconds: float = 0.5,
+    repeats: int = 3,
+    threads: int = 1,
+) -> WorkPrecision:
+    """Run a problem by several methods over all their steps or tolerances: time against error.
+
+    Methods that choose their steps are given relative tolerances from 10⁻² down to 2.3·10⁻¹⁴, two in a decade; those of
+    fixed steps, whole numbers of steps from 16 up, each √2 times the last, until no more is gained. Nothing is recorded
+    but the end. A closed form is used by the method "auto" alone.
+
+    Parameters
+    ----------
+    problem : Problem
+        One of `visviva.problems`, with a reference at its end.
+    methods : iterable of str or Method, optional
+        By default all that the scene's forces allow.
+    seconds : float, optional
+        A method is taken no further once two runs in turn take so long.
+    repeats : int, optional
+        Runs for each time, of which the least is taken.
+    threads : int, optional
+
+    Returns
+    -------
+    WorkPrecision
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name; for a problem that has no reference at its end.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.work_precision(vv.problems.kepler(e=0.6), ["dop853", "leapfrog"], seconds=0.01, repeats=1)
+    >>> found.best(1e-6).series
+    'dop853'
+    """
+    if not isinstance(problem, Problem):
+        raise InvalidInput("problem", f"expected one of visviva.problems, got {type(problem).__name__}")
+    if problem.t_end not in [reference.t for reference in problem.references]:
+        raise InvalidInput(
+            "problem", f"expected a reference at the end, but {problem.name} has none at {problem.t_end}"
+        )
+    limit, times = positive("seconds", seconds), whole_number("repeats", repeats, low=1)
+    known = {method.name: method for method in all_methods()}
+    names = list(known) if methods is None else [m.name if isinstance(m, Method) else m for m in methods]
+    run = _Runner(problem, limit, times, whole_number("threads", threads, low=1))
+    points: list[Point] = []
+    for name in names:
+        if name != "auto":
+            try:
+                problem.scene.plan(
+                    problem.t_end,
+                    method=name,
+                    dt=None if name in known and known[name].adaptive else problem.t_end / 16,
+                )
+            except InvalidInput:
+                if methods is not None:
+                    raise
+                continue
+        points.extend(run.closed() if name == "auto" else run.sweep(known[name]))
+    return WorkPrecision(problem.name, tuple(points))
+
+
+@dataclass(frozen=True, slots=True)
+class _Runner:
+    problem: Problem
+    limit: float
+    repeats: int
+    threads: int
+
+    def closed(self) -> Iterator[Point]:
+        """The scene as it is run without a method."""
+        if (point := self.point("auto", nan, {})) is not None:
+            yield point
+
+    def sweep(self, method: Method) -> Iterator[Point]:
+        """All settings, as far as they gain something."""
+        least, no_better, slow = inf, 0, 0
+        for setting in self.settings(method):
+            how = {"rtol": setting} if method.adaptive else {"dt": setting}
+            point = self.point(method.name, setting, {"method": method.name, **how})
+            if point is None:
+                continue
+            yield point
+            no_better = 0 if point.position_error < 0.9 * least else no_better + 1
+            least = min(least, point.position_error)
+            slow = slow + 1 if point.seconds > self.limit else 0
+            # One slow run may have been held up.
+            if slow == 2 or (no_better >= _NO_BETTER and least < 1e-6):
+                return
+
+    def settings(self, method: Method) -> Iterator[float]:
+        if method.adaptive:
+            yield from (max(10.0 ** (-0.5 * k), _TIGHTEST) for k in range(4, 28))
+        else:
+            span = self.problem.t_end - self.problem.scene.t0
+            yield from (span / round(16.0 * 2.0 ** (0.5 * k)) for k in range(60))
+
+    def point(self, name: str, setting: float, how: dict[str, Any]) -> Point | None:
+        """A run and its errors; None if it did not come to its end, or nowhere near."""
+        scene, end = self.problem.scene, self.problem.t_end
+        took, out = inf, None
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # rough steps are meant
+            for _ in range(self.repeats):
+                begun = perf_counter()
+                try:
+                    out = scene.run(end, threads=self.threads, **how)
+                except InvalidInput:
+                    raise
+                except Error:
+                    return None
+                took = min(took, perf_counter() - begun)
+                if took > self.limit:
+                    break
+        assert out is not None
+        error = self.problem.error(out)
+        size = float(np.abs(self.problem.references[0].position).max())
+        if not isfinite(error) or error > size:
+            return None
+        return Point(name, setting, took, error, self.energy_error(out))
+
+    def energy_error(self, out: Trajectory) -> float:
+        scene = self.problem.scene
+        p = scene.particles
+        keeps = _core.conserves(
+            mass=p.mass,
+            forces=scene._keywords["forces"],
+            position=p.position,
+            velocity=p.velocity,
+            about=np.zeros(3),
+        )
+        if not keeps["energy"]:
+            return nan
+        start = scene.invariants().energy
+        return abs(out.final.invariants().energy - start) / (abs(start) or 1.0)
+
+
+def _seconds(value: float) -> str:
+    for size, unit in ((1e-3, "µs"), (1.0, "ms")):
+        if value < size:
+            return f"{value / size * 1e3:.3g} {unit}"
+    return f"{value:.3g} s"

@@ -1,0 +1,50 @@
+"""What data sets of bodies have in common: numbers, their source, and the particles and the scene they make."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva.forces import Gravity
+from visviva.particles import Particles
+from visviva.scene import Scene
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["Bodies", "columns"]
+
+
+@dataclass(frozen=True, eq=False)
+class Bodies:
+    """Named bodies that attract each other, as somebody published them."""
+
+    names: tuple[str, ...]
+    mass: NDArray[np.float64]
+    position: NDArray[np.float64]
+    velocity: NDArray[np.float64]
+    G: float
+    epoch: str
+    source: str
+
+    @property
+    def particles(self) -> Particles:
+        """The bodies, with their names."""
+        return Particles(self.mass, self.position, self.velocity, self.names)
+
+    @property
+    def scene(self) -> Scene:
+        """The bodies under their gravity, as the arrays have them."""
+        return Scene(self.particles, Gravity(self.G))
+
+
+def columns(
+    mass: object, position: object, velocity: object
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
+    """Read-only arrays of all bodies."""
+    arrays = np.array(mass, dtype=float), np.array(position, dtype=float), np.array(velocity, dtype=float)
+    for array in arrays:
+        array.flags.writeable = False
+    return arrays

@@ -1,0 +1,233 @@
+"""Drag of spheres: which law holds and how strong it is, and what is told of a body thrown straight up.
+
+The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both
+together are the mixed law.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from visviva import _core
+from visviva._arrays import positive
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.forces import LinearDrag, QuadraticDrag
+
+__all__ = ["Throw", "crossover_speed", "quadratic", "reynolds_number", "stokes", "throw"]
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Throw:
+    """What is told of a body thrown straight up, as plain numbers."""
+
+    terminal_speed: float
+    """The speed that a long fall approaches."""
+    apex_time: float
+    """When it stands still."""
+    apex_height: float
+    """How high that is over the start."""
+    return_time: float
+    """When it is back at the start."""
+    return_speed: float
+    """How fast it is then."""
+
+
+@known_keywords
+def throw(*, speed: float, g: float, tau: float | None = None, terminal_speed: float | None = None) -> Throw:
+    """Rise and fall of a body thrown straight up, with linear or with quadratic drag.
+
+    Parameters
+    ----------
+    speed : float
+        The speed at the start, upward.
+    g : float
+        The acceleration of gravity, downward, positive.
+    tau : float, optional
+        The time of linear drag, as of `visviva.LinearDrag`.
+    terminal_speed : float, optional
+        That of quadratic drag, √(m g/coefficient). One of the two has to be given.
+
+    Returns
+    -------
+    Throw
+        Correct to a few units in the last place, also where drag is weak and differences of what is told vanish.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive, or not one of `tau` and `terminal_speed` is given.
+
+    References
+    ----------
+    The return against linear drag by Lambert's function: Corless et al., Adv. Comput. Math. 5 (1996) 329.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.drag.throw(speed=12.0, g=9.80665, tau=1.75).return_time
+    2.054327667233007
+    """
+    if (tau is None) == (terminal_speed is None):
+        raise InvalidInput("tau", "expected one of tau (linear drag) and terminal_speed (quadratic drag)")
+    values = _core.drag_throw(
+        positive("speed", speed),
+        positive("g", g),
+        None if tau is None else positive("tau", tau),
+        0.0 if terminal_speed is None else positive("terminal_speed", terminal_speed),
+    )
+    return Throw(*values)
+
+
+@known_keywords
+def reynolds_number(*, density: float, radius: float, speed: float, viscosity: float) -> float:
+    """The Reynolds number ρ a v/μ of a sphere.
+
+    Parameters
+    ----------
+    density, radius, speed, viscosity : float
+        Density of the fluid, radius and speed of the sphere, viscosity of the fluid; positive, in consistent units.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.drag.reynolds_number(density=2.0, radius=3.0, speed=4.0, viscosity=8.0)
+    3.0
+    """
+    return _core.drag_reynolds_number(
+        positive("density", density),
+        positive("radius", radius),
+        positive("speed", speed),
+        positive("viscosity", viscosity),
+    )
+
+
+@known_keywords
+def quadratic(
+    *,
+    density: float,
+    radius: float,
+    drag_coefficient: float,
+    viscosity: float | None = None,
+    speed: float | None = None,
+) -> QuadraticDrag:
+    """Quadratic drag on a sphere, with the coefficient ½ C ρ π a².
+
+    Parameters
+    ----------
+    density, radius : float
+        Density of the fluid and radius of the sphere.
+    drag_coefficient : float
+        C, about 0.5 for a smooth sphere where the law holds.
+    viscosity, speed : float, optional
+        Viscosity of the fluid and speed of the sphere: where both are given, the law is refused where it does not hold.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive; for a Reynolds number outside of 1e3 to 1e5.
+
+    References
+    ----------
+    Landau & Lifshitz, Fluid Mechanics, 2nd ed., section 45.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> ball = vv.drag.quadratic(density=1.2, radius=0.02, drag_coefficient=0.47, viscosity=1.8e-5, speed=30.0)
+    >>> round(ball.coefficient, 9)
+    0.000354372
+    """
+    checked = _both("viscosity", viscosity, "speed", speed)
+    return QuadraticDrag(
+        _core.drag_quadratic(
+            positive("density", density),
+            positive("radius", radius),
+            positive("drag_coefficient", drag_coefficient),
+            *checked,
+        )
+    )
+
+
+@known_keywords
+def stokes(
+    *, mass: float, radius: float, viscosity: float, density: float | None = None, speed: float | None = None
+) -> LinearDrag:
+    """Linear drag on a sphere by Stokes' law, with the time m/(6πaμ).
+
+    Parameters
+    ----------
+    mass, radius, viscosity : float
+        Mass and radius of the sphere, viscosity of the fluid.
+    density, speed : float, optional
+        Density of the fluid and speed of the sphere: where both are given, the law is refused where it does not hold.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive; for a Reynolds number above 0.3, where the law errs by more than a tenth.
+
+    References
+    ----------
+    Landau & Lifshitz, Fluid Mechanics, 2nd ed., section 20.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> round(vv.drag.stokes(mass=1e-15, radius=4e-7, viscosity=1.002e-3).tau, 12)
+    1.32364e-07
+    """
+    checked = _both("density", density, "speed", speed)
+    return LinearDrag(
+        _core.drag_stokes(
+            positive("mass", mass), positive("radius", radius), positive("viscosity", viscosity), *checked
+        )
+    )
+
+
+@known_keywords
+def crossover_speed(*, density: float, radius: float, viscosity: float, drag_coefficient: float) -> float:
+    """The speed of a sphere at which Stokes' law and the quadratic one give the same drag.
+
+    Parameters
+    ----------
+    density, radius, viscosity, drag_coefficient : float
+        As in `quadratic`.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.drag.crossover_speed(density=2.0, radius=3.0, viscosity=4.0, drag_coefficient=0.5)
+    16.0
+    """
+    return _core.drag_crossover_speed(
+        positive("density", density),
+        positive("radius", radius),
+        positive("viscosity", viscosity),
+        positive("drag_coefficient", drag_coefficient),
+    )
+
+
+def _both(one: str, first: float | None, other: str, second: float | None) -> tuple[float, float]:
+    """Both numbers, or zeros if neither is known."""
+    if first is None and second is None:
+        return 0.0, 0.0
+    if first is None or second is None:
+        missing = one if first is None else other
+        raise InvalidInput(missing, f"expected {one} and {other}, or neither; {missing} is missing")
+    return positive(one, first), positive(other, second)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -1,0 +1,186 @@
+//! Dampers between listed pairs of bodies: what slows down the rate at which their distance changes.
+//!
+//! Canonical order: dampers act one after another, in the order in which they are listed, whatever the lanes are.
+//! Products and sums are not fused, so that one number has the bits of a lane.
+
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::links::{Linked, Links, check_counts, of_link};
+use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::{Error, Result};
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
+use crate::numerics::real::Real;
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
+use crate::tiered;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in a force over a speed.
+const COEFFICIENT: [i32; 3] = [0, 1, -1];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "damper",
+    class_name: "Damper",
+    summary: "A damper between two bodies, or one for each of several pairs",
+    formula: "F = −c d|rⱼ − rᵢ|/dt along the line between them",
+    notes: "Numbers are for all pairs, arrays of shape (M,) for each of M pairs. Beside a Spring between the same bodies \
+            it is a damped spring. Momentum and angular momentum are conserved, energy is not. Ends must have mass, and \
+            must not coincide: the direction would not be known.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.5",
+    example: ">>> vv.Damper(i=0, j=1, c=0.5)\nDamper(i=0, j=1, c=0.5)",
+    at_rest: "",
+    one_way: "damping takes energy away, run backward it would bring some",
+    parameters: &[
+        Parameter::new("i", Kind::Indices, "The body at one end"),
+        Parameter::new("j", Kind::Indices, "The body at the other end"),
+        Parameter::new("c", Kind::Numbers(Sign::NotNegative), "The force over the rate of the distance")
+            .of(COEFFICIENT),
+    ],
+    make: |values| Ok(Arc::new(Dampers::new(values)?)),
+};
+
+/// Dampers, in the order in which they act.
+#[derive(Debug)]
+struct Dampers {
+    links: Links,
+    coefficient: Vec<f64>,
+}
+
+impl Dampers {
+    fn new(values: &[Value]) -> Result<Self> {
+        let [i, j, c] = values else {
+            return Err(Error::Internal("Damper takes three parameters".to_owned()));
+        };
+        let (i, j, c) = (i.indices(), j.indices(), c.numbers());
+        let count = check_counts("dampers", &[("i", i.len()), ("j", j.len()), ("c", c.len())])?;
+        let coefficient = (0..count).map(|at| of_link(&c, at)).collect();
+        Ok(Self { links: Links::new(count, &i, &j), coefficient })
+    }
+}
+
+impl ForceTerm for Dampers {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let linked = Linked::new(&self.links, context);
+        let own = linked
+            .links
+            .iter()
+            .map(|&(at, _)| context.units.take(self.coefficient[at], COEFFICIENT))
+            .collect();
+        Box::new(Kernel { coefficient: own, linked })
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        self.links.validate(view)?;
+        self.links.refuse_coincident(view, "a Damper", |at| self.coefficient[at] > 0.0)
+    }
+    fn needs_mass(&self, particle: usize) -> bool {
+        self.links.at(particle).next().is_some()
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.coefficient.iter().any(|&c| c != 0.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+    fn coupling(&self) -> Coupling {
+        Coupling::Listed(self.links.pairs().to_vec())
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { momentum: true, angular_momentum: About::Everywhere, spin: true, energy: false }
+    }
+    fn keeps_plane(&self) -> bool {
+        true
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    linked: Linked,
+    coefficient: Vec<f64>,
+}
+
+/// Adds the drag of a damper to the accelerations of its ends, whose numbers are at these places.
+#[inline(always)]
+fn act<S: Real>(
+    coefficient: f64,
+    (i, j): (usize, usize),
+    (stride, components): (usize, usize),
+    inverse_mass: &[S],
+    (q, v): (&[S], &[S]),
+    a: &mut [S],
+) {
+    let mut d = [S::zero(); 3];
+    let (mut square, mut closing) = (S::zero(), S::zero());
+    for c in 0..components {
+        d[c] = q[c * stride + j] - q[c * stride + i];
+        square += d[c] * d[c];
+        closing += d[c] * (v[c * stride + j] - v[c * stride + i]);
+    }
+    let share = S::splat(coefficient) * closing / square;
+    for c in 0..components {
+        let force = share * d[c];
+        a[c * stride + i] += force * inverse_mass[i];
+        a[c * stride + j] += -force * inverse_mass[j];
+    }
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) {
+    let linked = &force.linked;
+    let Shape { rows, components } = linked.shape;
+    if first {
+        a.fill(Lanes::zero());
+    }
+    if linked.packed {
+        let stride = rows * WIDTH;
+        let (q, v, a) = (as_numbers(q), as_numbers(v), as_numbers_mut(a));
+        let inverse_mass = as_numbers(&linked.inverse_mass);
+        for (at, &(_, ends)) in linked.links.iter().enumerate() {
+            act::<f64>(force.coefficient[at], ends, (stride, components), inverse_mass, (q, v), a);
+        }
+        return;
+    }
+    let (q, v, a, inverse_mass) = (V::view(q), V::view(v), V::view_mut(a), V::view(&linked.inverse_mass));
+    let bodies = rows / linked.blocks.max(1);
+    for block in 0..linked.blocks {
+        for (at, &(_, (i, j))) in linked.links.iter().enumerate() {
+            let ends = (block * bodies + i, block * bodies + j);
+            act::<V>(force.coefficient[at], ends, (rows, components), inverse_mass, (q, v), a);
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, phase.q, phase.v, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+}

@@ -1,0 +1,121 @@
+//! The first post-Newtonian correction to the pull of dominant bodies: Schwarzschild's field.
+
+use super::Force;
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::oblate::{CONSTANT, check_sources, sources_act};
+use super::sources::{Kernel, Law};
+use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
+use crate::error::{Error, Result};
+use crate::numerics::inverse_cube::InverseCube;
+use crate::numerics::lanes::Lanes;
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use std::sync::Arc;
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "post_newtonian",
+    class_name: "PostNewtonian",
+    summary: "What general relativity adds, to first order in 1/c², to the pull of a dominant body, or of several, on all others",
+    formula: "a = G M/(c² r³) ((4 G M/r − v²) r + 4 (r·v) v), r and v relative to the body",
+    notes: "Gravity gives the rest. Right for bodies that are light beside the one that is named: it is the field of \
+            Schwarzschild in harmonic coordinates, by which an orbit advances by 6πGM/(c² a (1 − e²)) a turn. The others \
+            pull back, so momentum is conserved; the energies and angular momenta of Newton are not.",
+    source: "Anderson et al., Astrophys. J. 200 (1975) 221, equation 1; Soffel, Relativity in Astrometry, Celestial \
+             Mechanics and Geodesy, section 4.2",
+    example: ">>> vv.PostNewtonian(0, G=1.0, c=1e4)\nPostNewtonian(body=0, G=1.0, c=10000.0)",
+    at_rest: "",
+    one_way: "",
+    parameters: &[
+        Parameter::new("body", Kind::Indices, "The dominant body, or bodies"),
+        Parameter::number("G", CONSTANT, "The gravitational constant"),
+        Parameter::positive("c", [1, 0, -1], "The speed of light"),
+    ],
+    make: |values| match values {
+        [body, constant, c] => {
+            Ok(Arc::new(PostNewtonian { bodies: body.indices(), constant: constant.number(), c: c.number() }))
+        }
+        _ => Err(Error::Internal("PostNewtonian takes three parameters".to_owned())),
+    },
+};
+
+/// Dominant bodies.
+#[derive(Debug)]
+struct PostNewtonian {
+    bodies: Vec<usize>,
+    constant: f64,
+    c: f64,
+}
+
+impl ForceTerm for PostNewtonian {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let c = context.units.take(self.c, [1, 0, -1]);
+        let law = Schwarzschild { inverse_square: 1.0 / c / c };
+        let constant = context.units.take(self.constant, CONSTANT);
+        Box::new(Kernel::new(law, &self.bodies, constant, context))
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        check_sources(&self.bodies, view, "PostNewtonian")
+    }
+    fn acts(&self, view: &Bodies<'_>) -> bool {
+        self.constant != 0.0 && sources_act(&self.bodies, view)
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+    fn coupling(&self) -> Coupling {
+        Coupling::AllPairs
+    }
+    fn names_bodies(&self) -> bool {
+        true
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { momentum: true, angular_momentum: About::Nowhere, spin: false, energy: false }
+    }
+    fn keeps_plane(&self) -> bool {
+        true
+    }
+}
+
+/// The correction to first order.
+#[derive(Debug)]
+struct Schwarzschild {
+    /// 1/c².
+    inverse_square: f64,
+}
+
+impl Law for Schwarzschild {
+    const VELOCITY: bool = true;
+
+    #[inline(always)]
+    fn pull<S: InverseCube>(&self, _: usize, strength: S, d: [S; 3], v: [S; 3]) -> [S; 3] {
+        let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
+        let v2 = v[2].multiply_add(v[2], v[1].multiply_add(v[1], v[0] * v[0]));
+        let product = d[2].multiply_add(v[2], d[1].multiply_add(v[1], d[0] * v[0]));
+        let w = r2.inverse_cube();
+        let four = S::splat(4.0) * strength;
+        let factor = strength * w * S::splat(self.inverse_square);
+        // 4 GM/r − v², 1/r being r² r⁻³.
+        let radial = factor * (four * (w * r2) - v2);
+        let moving = factor * S::splat(4.0) * product;
+        [
+            radial.multiply_add(d[0], moving * v[0]),
+            radial.multiply_add(d[1], moving * v[1]),
+            radial.multiply_add(d[2], moving * v[2]),
+        ]
+    }
+}

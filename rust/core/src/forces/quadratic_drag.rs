@@ -1,0 +1,147 @@
+//! Quadratic drag: what a fast body feels in a thin medium at rest.
+
+use super::bodies::PreciseBodies;
+use super::context::Context;
+use super::term::{Bodies, ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::tiered;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in a force over the square of a speed.
+const COEFFICIENT: [i32; 3] = [-1, 1, 0];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "quadratic_drag",
+    class_name: "QuadraticDrag",
+    summary: "Drag in proportion to the square of the speed, in a medium at rest",
+    formula: "F = −coefficient |v| v",
+    notes: "It has no potential energy and conserves nothing. A body that feels it must have mass. Beside LinearDrag it \
+            is the mixed law.",
+    source: "Landau & Lifshitz, Fluid Mechanics, 2nd ed., section 45",
+    example: ">>> stone = vv.Scene(vv.Particles([2.0], [[0.0, 0.0, 0.0]], [[8.0, 0.0, 0.0]]), \
+              vv.QuadraticDrag(0.5))\n>>> stone.run(t=1.5).velocity[-1, 0].tolist()\n[2.0, 0.0, 0.0]",
+    at_rest: "medium",
+    one_way: "drag slows bodies down, run backward it would speed them up",
+    parameters: &[Parameter::new(
+        "coefficient",
+        Kind::Numbers(Sign::NotNegative),
+        "The force at unit speed, on every body, or shape (N,): on each",
+    )
+    .of(COEFFICIENT)],
+    make: |values| match values {
+        [coefficient] => Ok(Arc::new(QuadraticDrag { coefficient: coefficient.numbers() })),
+        _ => Err(crate::Error::Internal("QuadraticDrag takes one parameter".to_owned())),
+    },
+};
+
+/// Drag with the coefficient of each body, or of all.
+#[derive(Debug)]
+struct QuadraticDrag {
+    coefficient: Vec<f64>,
+}
+
+impl QuadraticDrag {
+    fn coefficient(&self, particle: usize) -> f64 {
+        of_body(&self.coefficient, particle)
+    }
+}
+
+/// The number of a body, of one for all or one for each.
+pub(super) fn of_body(numbers: &[f64], particle: usize) -> f64 {
+    if let [all] = numbers { *all } else { numbers.get(particle).copied().unwrap_or(0.0) }
+}
+
+impl ForceTerm for QuadraticDrag {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let ratio = context.per_body(|system, slot| {
+            let coefficient = context.units.take(self.coefficient(system.bodies[slot]), COEFFICIENT);
+            if coefficient == 0.0 { 0.0 } else { -coefficient / system.mass[slot] }
+        });
+        Box::new(Kernel { shape: context.shape, ratio })
+    }
+    fn potential_and_virial(
+        &self,
+        _: &PreciseBodies,
+        _: usize,
+        _: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        Ok((Scaled::ZERO, Scaled::from(f64::NAN)))
+    }
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        view.check_count("coefficient", self.coefficient.len())
+    }
+    fn needs_mass(&self, particle: usize) -> bool {
+        self.coefficient(particle) != 0.0
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.coefficient.iter().any(|&c| c != 0.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+    fn translation_invariant(&self) -> bool {
+        true
+    }
+    fn keeps_plane(&self) -> bool {
+        true
+    }
+    fn as_quadratic_drag(&self, particle: usize) -> Option<f64> {
+        Some(self.coefficient(particle))
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    shape: Shape,
+    /// −coefficient/mass.
+    ratio: Vec<Lanes>,
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (v, a, ratio) = (V::view(v), V::view_mut(a), V::view(&force.ratio));
+    for row in 0..rows {
+        let mut square = v[row] * v[row];
+        for c in 1..components {
+            square = v[c * rows + row].multiply_add(v[c * rows + row], square);
+        }
+        let slowing = ratio[row] * square.sqrt();
+        for c in 0..components {
+            let at = c * rows + row;
+            let term = slowing * v[at];
+            a[at] = if first { term } else { a[at] + term };
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, phase.v, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+}

@@ -1,0 +1,174 @@
+//! A frame that turns: the centrifugal force and the Coriolis force on everything that is described in it.
+
+use super::bodies::{Of, PreciseBodies, Vector};
+use super::context::Context;
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::points::distance;
+use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter};
+use crate::tiered;
+use crate::units::Units;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in an angular velocity.
+const FREQUENCY: [i32; 3] = [0, 0, -1];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "rotating_frame",
+    class_name: "RotatingFrame",
+    summary: "Positions and velocities are told in a frame that turns uniformly about an axis",
+    formula: "a = −2 ω × v − ω × (ω × (r − center)),   V = −½ Σ mᵢ |ω × (rᵢ − center)|²",
+    notes: "Energy is Jacobi's integral: the kinetic energy in the frame, the centrifugal potential and what the other \
+            forces have. Those are as they are in this frame: a field at rest in it turns with it.",
+    source: "Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 4.10",
+    example: ">>> star = vv.Scene(vv.Particles([0.0], [[1.0, 0.0, 0.0]], [[0.0, -2.0, 0.0]]), \
+              vv.RotatingFrame([0.0, 0.0, 2.0]))\n\
+              >>> star.run(t=np.pi / 4).position[-1, 0].round(12).tolist()  # at rest, seen from the frame\n\
+              [0.0, -1.0, 0.0]",
+    at_rest: "axis",
+    one_way: "",
+    parameters: &[
+        Parameter::new("omega", Kind::AxialVector, "The angular velocity of the frame").of(FREQUENCY),
+        Parameter::new("center", Kind::Point, "A point of the axis").of([1, 0, 0]).or(0.0),
+    ],
+    make: |values| match values {
+        [omega, center] => Ok(Arc::new(RotatingFrame { omega: omega.vector(), center: center.vector() })),
+        _ => Err(crate::Error::Internal("RotatingFrame takes two parameters".to_owned())),
+    },
+};
+
+/// An angular velocity about an axis through a point.
+#[derive(Debug)]
+struct RotatingFrame {
+    omega: [f64; 3],
+    center: [f64; 3],
+}
+
+impl ForceTerm for RotatingFrame {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(Kernel {
+            shape: context.shape,
+            omega: context.units.take_vector(self.omega, FREQUENCY),
+            center: context.units.take_vector(self.center, [1, 0, 0]),
+            there: context.per_body(|_, _| 1.0),
+        })
+    }
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        _: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        let unit = bodies.units.length;
+        let spin = exponent(self.omega.into_iter().fold(0.0, |most: f64, x| most.max(x.abs())));
+        let omega = self.omega.map(|x| DoubleDouble::from(scale(x, -spin)));
+        let mut energy = Scaled::ZERO;
+        for body in 0..bodies.massive() {
+            let place = bodies.vector(Of::Position, body);
+            let d: Vector =
+                core::array::from_fn(|c| place[c] - DoubleDouble::from(scale(self.center[c], -unit)));
+            let speed: Vector = core::array::from_fn(|c| {
+                let (e, f) = ((c + 1) % 3, (c + 2) % 3);
+                omega[e] * d[f] - omega[f] * d[e]
+            });
+            let square = speed[0] * speed[0] + speed[1] * speed[1] + speed[2] * speed[2];
+            let mass = Scaled::new(DoubleDouble::from(-0.5 * bodies.mass()[body]), bodies.units.mass);
+            energy = energy.plus(Scaled::new(square, 2 * (unit + spin)).by(mass));
+            ticker.tick()?;
+        }
+        Ok((energy, Scaled::from(f64::NAN)))
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.omega.iter().any(|&x| x != 0.0)
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { energy: true, ..Conserves::NOTHING }
+    }
+    fn keeps_plane(&self) -> bool {
+        self.omega[0] == 0.0 && self.omega[1] == 0.0
+    }
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        let omega = distance(units.take_vector(self.omega, FREQUENCY), [0.0; 3]);
+        let center = units.take_vector(self.center, [1, 0, 0]);
+        Ok(bodies.iter().map(|&(_, _, place)| omega * omega * distance(place, center)).fold(0.0, f64::max))
+    }
+    fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
+        2.0 * distance(units.take_vector(self.omega, FREQUENCY), [0.0; 3])
+    }
+    fn as_rotating(&self) -> Option<([f64; 3], [f64; 3])> {
+        Some((self.omega, self.center))
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    shape: Shape,
+    omega: [f64; 3],
+    center: [f64; 3],
+    /// One in the lanes of bodies, zero in the others, which stay at rest: the error of a step is measured over all.
+    there: Vec<Lanes>,
+}
+
+/// 2 v × ω + (ω² d − (ω·d) ω), d from the center. In the plane z = 0 the axis is across it, and d_z is not seen.
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (q, v, a, there) = (V::view(q), V::view(v), V::view_mut(a), V::view(&force.there));
+    let [x, y, z] = force.omega;
+    let square = V::splat(x * x + y * y + z * z);
+    let (mut omega, mut twice) = ([V::zero(); 3], [V::zero(); 3]);
+    for c in 0..3 {
+        omega[c] = V::splat(force.omega[c]);
+        twice[c] = V::splat(2.0 * force.omega[c]);
+    }
+    for row in 0..rows {
+        let (mut d, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
+        for c in 0..components {
+            d[c] = q[c * rows + row] - V::splat(force.center[c]);
+            speed[c] = v[c * rows + row];
+        }
+        let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
+        for c in 0..components {
+            let (e, f) = ((c + 1) % 3, (c + 2) % 3);
+            let turning = speed[e] * twice[f] - speed[f] * twice[e];
+            let term = there[row] * (turning + (square * d[c] - along * omega[c]));
+            let a = &mut a[c * rows + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, phase.q, phase.v, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        Needs { velocity: true, ..Needs::default() }
+    }
+}

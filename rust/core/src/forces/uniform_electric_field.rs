@@ -1,0 +1,161 @@
+//! A uniform electric field: the force charge E on every charge.
+
+use super::bodies::{Of, PreciseBodies, Vector};
+use super::context::Context;
+use super::quadratic_drag::of_body;
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
+use super::{Force, Phase};
+use crate::error::Result;
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::points::distance;
+use crate::numerics::scaled::Scaled;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
+use crate::tiered;
+use crate::units::Units;
+use std::sync::Arc;
+
+/// The exponents of length, mass and time in charge times field.
+const FORCE: [i32; 3] = [1, 1, -2];
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "uniform_electric_field",
+    class_name: "UniformElectricField",
+    summary: "The force of an electric field that is the same everywhere",
+    formula: "V = −Σ chargeᵢ E·rᵢ",
+    notes: "The unit of charge is that in which charge times E is a force. A charged body must have mass. Beside \
+            UniformMagneticField it is the Lorentz force of crossed fields.",
+    source: "Jackson, Classical Electrodynamics, 3rd ed., section 12.3",
+    example: ">>> ion = vv.Scene(vv.Particles([2.0], [[0.0, 0.0, 0.0]]), \
+              vv.UniformElectricField([3.0, 0.0, 0.0], charge=4.0))\n\
+              >>> ion.run(t=0.5).velocity[-1, 0].tolist()\n[3.0, 0.0, 0.0]",
+    at_rest: "",
+    one_way: "",
+    parameters: &[
+        Parameter::new("E", Kind::Vector, "The field").of(FORCE),
+        Parameter::new(
+            "charge",
+            Kind::Numbers(Sign::Any),
+            "The charge of every body, or shape (N,): of each",
+        )
+        .or(1.0),
+    ],
+    make: |values| match values {
+        [field, charge] => {
+            Ok(Arc::new(UniformElectricField { field: field.vector(), charge: charge.numbers() }))
+        }
+        _ => Err(crate::Error::Internal("UniformElectricField takes two parameters".to_owned())),
+    },
+};
+
+/// A field and the charges that feel it.
+#[derive(Debug)]
+struct UniformElectricField {
+    field: [f64; 3],
+    charge: Vec<f64>,
+}
+
+impl ForceTerm for UniformElectricField {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let ratio = context.per_body(|system, slot| {
+            let charge = of_body(&self.charge, system.bodies[slot]);
+            if charge == 0.0 { 0.0 } else { charge / system.mass[slot] }
+        });
+        let field = context.units.take_vector(self.field, FORCE);
+        Box::new(Kernel { shape: context.shape, field, ratio })
+    }
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        _: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        let mut work = Scaled::ZERO;
+        for body in 0..bodies.len() {
+            let charge = of_body(&self.charge, body);
+            let place: Vector = bodies.vector(Of::Position, body);
+            for c in 0..3 {
+                let part = Scaled::new(place[c], bodies.units.length).times(self.field[c]);
+                work = work.plus(part.times(charge));
+            }
+            ticker.tick()?;
+        }
+        Ok((work.times(-1.0), work))
+    }
+    fn validate(&self, view: &Bodies<'_>) -> Result<()> {
+        view.check_count("charge", self.charge.len())
+    }
+    fn needs_mass(&self, particle: usize) -> bool {
+        of_body(&self.charge, particle) != 0.0
+    }
+    fn acts(&self, _: &Bodies<'_>) -> bool {
+        self.field.iter().any(|&e| e != 0.0) && self.charge.iter().any(|&q| q != 0.0)
+    }
+    fn names_bodies(&self) -> bool {
+        self.charge.len() > 1
+    }
+    fn conserves(&self) -> Conserves {
+        Conserves { energy: true, ..Conserves::NOTHING }
+    }
+    fn translation_invariant(&self) -> bool {
+        true
+    }
+    fn keeps_plane(&self) -> bool {
+        self.field[2] == 0.0
+    }
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        let field = distance(units.take_vector(self.field, FORCE), [0.0; 3]);
+        let of = |&(body, mass, _): &(usize, f64, [f64; 3])| match of_body(&self.charge, body) {
+            0.0 => 0.0,
+            charge => charge.abs() / mass * field,
+        };
+        Ok(bodies.iter().map(of).fold(0.0, f64::max))
+    }
+    fn as_electric(&self, particle: usize) -> Option<([f64; 3], f64)> {
+        Some((self.field, of_body(&self.charge, particle)))
+    }
+}
+
+#[derive(Debug)]
+struct Kernel {
+    shape: Shape,
+    field: [f64; 3],
+    /// Charge over mass.
+    ratio: Vec<Lanes>,
+}
+
+#[inline(always)]
+fn kernel<V: Vector8>(force: &Kernel, a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (a, ratio) = (V::view_mut(a), V::view(&force.ratio));
+    for c in 0..components {
+        let field = V::splat(force.field[c]);
+        for row in 0..rows {
+            let term = ratio[row] * field;
+            let a = &mut a[c * rows + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn kernel_tier[][](force: &Kernel, a: &mut [Lanes], first: bool) = kernel;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        _: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        kernel_tier(self, a, first);
+        Ok(())
+    }
+}

@@ -1,0 +1,86 @@
+"""Advice: what is advised is run, and is as accurate as was asked for."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+
+def off(problem: vv.problems.Problem, advice: vv.Advice) -> float:
+    """Of positions, relative to the size of the system."""
+    final = problem.scene.run(problem.t_end, **advice.how)
+    reference = problem.references[-1].position
+    return problem.error(final) / float(np.abs(reference).max())
+
+
+@pytest.mark.parametrize("accuracy", [1e-5, 1e-9])
+@pytest.mark.parametrize("name", ["outer_solar_system", "figure_eight", "pleiades"])
+def test_positions_hold_what_was_asked(name: str, accuracy: float) -> None:
+    """To a factor of 3: of a distance, not of its largest coordinate, and beyond what the trial saw."""
+    problem = getattr(vv.problems, name)()
+    advice = problem.scene.advise(problem.t_end, accuracy=accuracy, of="position")
+    assert off(problem, advice) < 3.0 * accuracy
+    seconds = [option.seconds for option in advice.options]
+    assert seconds == sorted(seconds)
+    assert all(option.error <= accuracy for option in advice.options)
+
+
+def test_the_energy_of_a_long_run_is_held_by_a_part_of_it() -> None:
+    """A hundred thousand years, of which a part is tried; not only by the fastest."""
+    problem = vv.problems.outer_solar_system()
+    advice = problem.scene.advise(3.65e7, accuracy=1e-7)
+    assert advice.tried < 1.0
+    symplectic = {method.name for method in vv.methods() if method.symplectic}
+    best = next(option for option in advice.options if option.how["method"] in symplectic)
+    for option in (advice.options[0], best):
+        out = problem.scene.run(np.linspace(0.0, 3.65e7, 20), **option.how)
+        assert out.conservation().energy.max < 3e-7
+        assert abs(option.steps / out.stats.steps - 1.0) < 0.05
+
+
+def test_what_loses_energy_is_measured_against_what_it_should_lose() -> None:
+    bodies = vv.Particles([1.0, 0.2], [[0, 0, 0], [1, 0, 0]], [[0, 0, 0], [0, 1.1, 0]])
+    scene = vv.Scene(bodies, vv.Gravity(1.0), vv.LinearDrag(100.0), t0=2.0)
+    for end in (12.0, -2.0):
+        advice = scene.advise(end, accuracy=1e-8)
+        exact = scene.run(end, method="dop853", rtol=2.3e-14, record="energy").energy[-1]
+        found = scene.run(end, record="energy", **advice.how).energy[-1]
+        assert abs(found / exact - 1.0) < 3e-8
+
+
+def test_a_closed_form_needs_no_method() -> None:
+    advice = vv.problems.kepler(e=0.9).scene.advise(100.0, accuracy=1e-12)
+    assert advice.how == {"method": "auto"}
+    assert "closed form" in str(advice)
+
+
+def test_it_prints_a_table() -> None:
+    text = str(vv.problems.figure_eight().scene.advise(6.0, accuracy=1e-6, of="position"))
+    assert text.startswith("position to 1e-06")
+    assert "dt " in text
+    assert len(text.splitlines()) > 3
+
+
+@pytest.mark.parametrize(
+    ("how", "argument"),
+    [
+        ({"accuracy": 0.0}, "accuracy"),
+        ({"accuracy": 1e-16}, "accuracy"),
+        ({"accuracy": 2.0}, "accuracy"),
+        ({"accuracy": "1e-9"}, "accuracy"),
+        ({"accuracy": 1e-9, "of": "time"}, "of"),
+        ({"accuracy": 1e-9, "accurcy": 1.0}, "accurcy"),
+    ],
+)
+def test_what_makes_no_sense_is_refused(how: dict[str, object], argument: str) -> None:
+    with pytest.raises(vv.InvalidInput) as caught:
+        vv.problems.figure_eight().scene.advise(1.0, **how)  # type: ignore[arg-type]
+    assert caught.value.argument == argument
+
+
+def test_what_no_method_holds_is_said() -> None:
+    with pytest.raises(vv.ConvergenceError, match="ask for less"):
+        vv.problems.outer_solar_system().scene.advise(1e12, accuracy=1e-12, of="position")
+    falls = vv.Scene(vv.Particles([1.0, 1.0, 0.1], [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0]]), vv.Gravity(1.0))
+    with pytest.raises(vv.ConvergenceError):
+        falls.advise(1e3, accuracy=1e-6)

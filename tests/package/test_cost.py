@@ -1,0 +1,77 @@
+"""What `plan()` says of the cost before a run, against what the run then took."""
+
+import pickle
+import warnings
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+
+@pytest.mark.parametrize(("span", "dt"), [(1000.0, 10.0), (-1000.0, -10.0), (1000.0, 7.0), (3.0, 10.0), (1e4, 0.5)])
+def test_fixed_steps_are_counted(span: float, dt: float) -> None:
+    scene = vv.problems.outer_solar_system().scene
+    cost = scene.plan(span, method="leapfrog", dt=dt).cost()
+    assert cost is not None
+    assert cost.exact
+    with warnings.catch_warnings(action="ignore", category=vv.AccuracyWarning):  # a step longer than the run
+        assert cost.steps == scene.run(span, method="leapfrog", dt=dt).stats.steps
+    assert 0.0 < cost.seconds < 5.0
+    assert abs(cost.evaluations - cost.steps) < 0.5 * cost.steps + 10
+
+
+def test_adaptive_steps_are_scaled_from_a_trial() -> None:
+    """Of nearly circular planets every stretch is like another: to a tenth."""
+    scene = vv.problems.outer_solar_system().scene
+    cost, stats = scene.plan(1e6).cost(), scene.run(1e6).stats
+    assert cost is not None
+    assert not cost.exact or cost.steps == stats.steps
+    assert abs(cost.steps / stats.steps - 1.0) < 0.1
+    assert abs(cost.evaluations / stats.evaluations - 1.0) < 0.1
+
+
+def test_the_memory_is_that_of_the_columns() -> None:
+    scene = vv.problems.outer_solar_system().scene
+    for record in (["position"], ["energy", "momentum"], ["position", "velocity", "energy", "center_of_mass"]):
+        for t in (10.0, np.linspace(0.0, 10.0, 7)):
+            copies = scene.ensemble(mass=scene.particles.mass * np.ones((3, 1)))
+            for what in (scene, copies):
+                cost = what.plan(t, record=record).cost()
+                out = what.run(t, record=record)
+                assert cost is not None
+                assert cost.memory == sum(getattr(out, name).nbytes for name in record)
+
+
+def test_the_steps_of_an_ensemble_are_those_of_all_copies() -> None:
+    scene = vv.problems.figure_eight().scene
+    copies = scene.ensemble(mass=scene.particles.mass * np.linspace(1.0, 1.001, 100)[:, None])
+    cost = copies.plan(5.0).cost()
+    assert cost is not None
+    assert abs(cost.steps / copies.run(5.0).stats.steps - 1.0) < 0.1
+
+
+def test_a_closed_form_takes_no_steps() -> None:
+    cost = vv.problems.kepler().scene.plan(100.0).cost()
+    assert cost is not None
+    assert (cost.steps, cost.evaluations, cost.memory, cost.exact) == (0, 0, 2 * 2 * 6 * 8, True)
+
+
+def test_it_is_printed_and_calls_nobody() -> None:
+    def called(*_: object) -> float:
+        raise AssertionError("an event function in a trial")
+
+    plan = vv.problems.figure_eight().scene.plan(10.0, method="leapfrog", dt=0.01, events=[called])
+    text = str(plan)
+    for words in ("steps: 1 000\n", "force evaluations: about 1 0", "memory of the results: 288 bytes", "time: about"):
+        assert words in text
+    assert pickle.loads(pickle.dumps(plan)) == plan
+    out = vv.problems.figure_eight().scene.run(10.0, method="leapfrog", dt=0.01)
+    assert out.plan.cost() is None
+    assert "expected" not in str(out.plan)
+
+
+def test_what_cannot_be_tried_says_nothing() -> None:
+    falls = vv.Scene(vv.Particles([1.0, 1.0], [[0, 0, 0], [1e-3, 0, 0]]), vv.Gravity(1.0))
+    assert falls.plan(1e3, method="dop853").cost() is None
+    assert vv.Scene(vv.Particles([], np.zeros((0, 3)))).plan(1.0, method="leapfrog", dt=0.1).cost() is None
