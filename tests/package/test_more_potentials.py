@@ -101,8 +101,8 @@ def test_thomas_and_fermi() -> None:
     phi = potential.value(x) * x
     slope = (phi - potential.force(x) * x * x) / x
     bend = (potential.curvature(x) * x**3 - 2.0 * (phi - x * slope)) / x**2
-    # A difference of numbers of order φ, against x² φ'' = (x φ)^1.5; two derivatives of polynomials in pieces of a tenth
-    # of their distance take two to three digits.
+    # A difference of numbers of order φ, against x² φ'' = (x φ)^1.5; two derivatives of polynomials in pieces of a
+    # tenth of their distance take two to three digits.
     assert np.all(np.abs(bend * x**2 - (x * phi) ** 1.5) < 2e-13 * (phi + (x * phi) ** 1.5))
     far = ScreenedCoulomb(1.0, 1.0, "thomas_fermi").value(1e9) * 1e9
     # 144/x³ (1 − 13.27 x^−0.772 + …): at 1e9 off by 1.5e-6.
