@@ -196,7 +196,7 @@ impl Powers for Avx512 {
     }
 }
 impl Powers for DoubleDouble {
-    /// To 30 digits relative to 1 + |exponent · ln|.
+    /// To 30 digits relative to 1 + |exponent| (1 + |ln|).
     fn power(self, by: &Power) -> Self {
         if !(self.high() > 0.0 && self.high() < f64::INFINITY) {
             return Self::from(self.high().power(by));

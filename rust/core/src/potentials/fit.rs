@@ -93,7 +93,7 @@ pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64) -> Result<F
         let errors: Vec<f64> = pieces.iter().zip(&joined).map(|(piece, p)| error(piece, p)).collect();
         let worst = errors.iter().enumerate().max_by(|a, b| a.1.total_cmp(b.1)).unwrap_or((0, &0.0));
         // What is no number is worse than any; over more than an octave the checks do not look at the near end.
-        let wide = |at: &usize| !(errors[*at] <= tolerance) || is_long(pieces[*at].ends);
+        let wide = |at: &usize| errors[*at].is_nan() || errors[*at] > tolerance || is_long(pieces[*at].ends);
         let split: Vec<usize> = (0..pieces.len()).filter(wide).collect();
         if split.is_empty() {
             let breaks = pieces.iter().map(|piece| piece.ends[0]).chain([high]).collect();

@@ -137,7 +137,7 @@ fn is_wild(r: &[f64], v: &[f64], bends: &[Bend], i: usize) -> bool {
         (None, true) => step(i + 1),
         (None, false) => 0.0,
     };
-    turns > 1 || !(excess <= BEYOND * step(i).max(outer))
+    turns > 1 || excess > BEYOND * step(i).max(outer)
 }
 
 /// The quintic of an interval in t = (r − r₀)/h, from both of its ends.
