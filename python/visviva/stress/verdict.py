@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import AccuracyWarning, Error, InvalidInput
 from visviva.status import Status
 
@@ -31,6 +32,7 @@ _LONGEST = 30.0
 """Seconds, for cases of the short form: a hang."""
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class Verdict:
     """What a method made of a case.
