@@ -45,7 +45,17 @@ pub fn cluster(particles: usize, solar: bool) -> Bodies {
         position[0] = [0.0; 3];
     }
     let forces = gravity(if solar { 0.0 } else { 0.01 });
-    Scene { copies: 1, particles, mass, position, velocity, forces, t0: 0.0, continuation: None }
+    Scene {
+        copies: 1,
+        particles,
+        mass,
+        position,
+        velocity,
+        forces,
+        own_forces: None,
+        t0: 0.0,
+        continuation: None,
+    }
 }
 
 /// As [`cluster`], softened so that every method takes it easily, with the mass in the first `massive` bodies.
@@ -94,6 +104,7 @@ pub fn figure_eights(copies: usize) -> Bodies {
         position,
         velocity: [v, v, scaled(v, -2.0)].repeat(copies),
         forces: gravity(0.0),
+        own_forces: None,
         t0: 0.0,
         continuation: None,
     }

@@ -53,9 +53,9 @@ class Verdict:
     method: str
     word: str
     told: str
-    position_error: float = float("nan")
-    energy_error: float = float("nan")
-    seconds: float = 0.0
+    position_error: float
+    energy_error: float
+    seconds: float
 
 
 def judged(case: Case, method: Method) -> Verdict:

@@ -43,7 +43,9 @@ fn around<V: Vector8 + Analytic, P: Formula>(
         } else {
             potential.over_distance(r2)
         };
-        let pull = pull * inverse_mass[row];
+        // Lanes without a body are far out, where a table has no force.
+        let nobody = inverse_mass[row].less_equal(V::zero());
+        let pull = V::select(nobody, V::zero(), pull * inverse_mass[row]);
         for c in 0..components {
             let a = &mut a[c * rows + row];
             let term = pull * d[c];
