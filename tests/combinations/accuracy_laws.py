@@ -119,7 +119,7 @@ def _tame(recipe: Recipe) -> Case:
     # What is fixed in space fixes the origin: 1e8 away the given positions have digits to 1e-8 alone.
     if any(type(getattr(force, "potential", None)).__name__ in ROUGH for force in recipe.case().members()[0].forces):
         raise Refused("a higher derivative of the potential jumps, where no method has its order")
-    fixed = any(name == "CentralField" for name, _ in recipe.forces)
+    fixed = any(name.startswith("CentralField") for name, _ in recipe.forces)
     offset = min(recipe.offset, 3) if fixed else recipe.offset
     return replace(recipe, tame=True, ragged=False, outputs=0, steps=16, decades=9, offset=offset).case()
 

@@ -32,6 +32,8 @@ def force_classes() -> dict[str, type[Any]]:
 
 FORCES = force_classes()
 POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
+# What is kept (`kept.py`) from when there were no others stays what it was.
+FIRST_POTENTIALS = ["Coulomb", "Yukawa", "LennardJones"]
 METHODS = {method.name: method for method in vv.methods()}
 # Potentials a derivative of which jumps somewhere, the third or a higher one.
 ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
@@ -75,6 +77,7 @@ class Draw:
     def __init__(self, words: object, bodies: int, *, tame: bool) -> None:
         self.random = random.Random(repr(words))
         self.bodies, self.tame = bodies, tame
+        self.potentials = list(POTENTIALS)
         self.pairs: list[int] = []
 
     def number(self, sign: str = "any") -> float:
@@ -103,7 +106,7 @@ class Draw:
         return self.vector()
 
     def potential(self) -> vv.potentials.Potential:
-        entry = self.random.choice(list(POTENTIALS.values()))
+        entry = POTENTIALS[self.random.choice(self.potentials)]
         if entry["class_name"] in self.TABLES:
             return self.TABLES[entry["class_name"]](self)
         values = {parameter["name"]: self.value(_complete(parameter)) for parameter in entry["parameters"]}
@@ -161,8 +164,10 @@ class Draw:
 
 
 def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
-    """The force of that name and seed."""
+    """The force of that name and seed; of ``name/3`` with one of the first three potentials that there were."""
+    name, _, potentials = name.partition("/")
     draw = Draw((name, seed), bodies, tame=tame)
+    draw.potentials = FIRST_POTENTIALS if potentials else list(POTENTIALS)
     arguments = {}
     for parameter in declared(FORCES[name]):
         value = draw.value(parameter)

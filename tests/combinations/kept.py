@@ -84,7 +84,7 @@ KEPT: list[tuple[str, Recipe]] = [
         "a_member_is_as_if_alone",
         Recipe(
             bodies=2,
-            forces=(("CentralField", 0), ("Gravity", 0), ("UniformField", 0)),
+            forces=(("CentralField/3", 0), ("Gravity", 0), ("UniformField", 0)),
             tame=False,
             members=3,
             steps=1,
@@ -107,13 +107,13 @@ KEPT: list[tuple[str, Recipe]] = [
     (
         "forces_add",
         Recipe(
-            bodies=5, forces=(("PairPotential", 61), ("DrivenForce", 53)), seed=550, tame=False, planar=True, steps=4
+            bodies=5, forces=(("PairPotential/3", 61), ("DrivenForce", 53)), seed=550, tame=False, planar=True, steps=4
         ),
     ),
     # The energy of a pair was formed in units in which its strength has two digits.
     (
         "declared_invariants_hold",
-        Recipe(bodies=5, forces=(("PairPotential", 24),), units=(-310, -162, -13), steps=4, outputs=1),
+        Recipe(bodies=5, forces=(("PairPotential/3", 24),), units=(-310, -162, -13), steps=4, outputs=1),
     ),
     # Bodies that went on where another one of their member had failed were still in the rows beyond.
     (
@@ -121,7 +121,7 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             method="bogacki_shampine32",
             bodies=5,
-            forces=(("CentralField", 29),),
+            forces=(("CentralField/3", 29),),
             tame=False,
             steps=4,
             decades=12,
@@ -133,7 +133,7 @@ KEPT: list[tuple[str, Recipe]] = [
         "units_of_powers_of_two_change_no_bit",
         Recipe(
             bodies=9,
-            forces=(("PairPotential", 25), ("Spring", 80)),
+            forces=(("PairPotential/3", 25), ("Spring", 80)),
             tame=False,
             members=3,
             wild_member=True,
@@ -142,12 +142,12 @@ KEPT: list[tuple[str, Recipe]] = [
     ),
     (
         "units_of_powers_of_two_change_no_bit",
-        Recipe(forces=(("PairPotential", 25), ("Spring", 80)), tame=False, members=1, wild_member=True, steps=4),
+        Recipe(forces=(("PairPotential/3", 25), ("Spring", 80)), tame=False, members=1, wild_member=True, steps=4),
     ),
     # A method of order 3 needs more steps for 1e-11 than the law allowed.
     (
         "two_methods_agree",
-        Recipe(bodies=29, forces=(("PairPotential", 53),), seed=36, at_origin=True, members=8, steps=4),
+        Recipe(bodies=29, forces=(("PairPotential/3", 53),), seed=36, at_origin=True, members=8, steps=4),
     ),
     # Members in lockstep paid for the looks into steps of each other, and for steps after their own end.
     (
@@ -184,7 +184,7 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             method="dormand_prince54",
             bodies=11,
-            forces=(("DrivenForce", 78), ("UniformField", 73), ("CentralField", 32)),
+            forces=(("DrivenForce", 78), ("UniformField", 73), ("CentralField/3", 32)),
             seed=55,
             drifting=True,
             units=(-53, 55, 35),
@@ -219,13 +219,13 @@ KEPT: list[tuple[str, Recipe]] = [
     ),
     (
         "a_run_goes_on_with_the_bits_of_the_whole",
-        Recipe(method="rk4", bodies=9, forces=(("PairPotential", 50),), seed=104, tame=False, planar=True, members=3),
+        Recipe(method="rk4", bodies=9, forces=(("PairPotential/3", 50),), seed=104, tame=False, planar=True, members=3),
     ),
     (
         "progress_ends_at_its_total",
         Recipe(
             bodies=32,
-            forces=(("PairPotential", 88), ("PairPotential", 91)),
+            forces=(("PairPotential/3", 88), ("PairPotential/3", 91)),
             seed=870,
             tame=False,
             planar=True,
@@ -255,7 +255,7 @@ KEPT: list[tuple[str, Recipe]] = [
         "units_of_powers_of_two_change_no_bit",
         Recipe(
             bodies=3,
-            forces=(("CentralField", 76),),
+            forces=(("CentralField/3", 76),),
             seed=4266,
             tame=False,
             at_origin=True,
@@ -351,7 +351,7 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             method="rk4",
             bodies=3,
-            forces=(("CentralField", 6),),
+            forces=(("CentralField/3", 6),),
             seed=633,
             tame=False,
             at_origin=True,
@@ -382,7 +382,7 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             method="kahan_li8",
             bodies=21,
-            forces=(("PairPotential", 49),) * 2,
+            forces=(("PairPotential/3", 49),) * 2,
             seed=36620,
             tame=True,
             planar=True,
@@ -397,7 +397,7 @@ KEPT: list[tuple[str, Recipe]] = [
         Recipe(
             method="dormand_prince54",
             bodies=22,
-            forces=(("PairPotential", 32), ("UniformField", 48), ("Spring", 48)),
+            forces=(("PairPotential/3", 32), ("UniformField", 48), ("Spring", 48)),
             seed=149,
             tame=True,
             planar=True,
