@@ -70,6 +70,7 @@ _HOME = {
     "work_precision": "comparison",
 }
 _ROOMS = (
+    "audit",
     "datasets",
     "drag",
     "errors",
@@ -130,6 +131,7 @@ __all__ = [
     "UniformMagneticField",
     "UnknownKeyword",
     "WorkPrecision",
+    "audit",
     "datasets",
     "drag",
     "errors",
@@ -150,6 +152,7 @@ __all__ = [
 
 if TYPE_CHECKING:
     from visviva import (
+        audit,
         datasets,
         drag,
         errors,

@@ -1,0 +1,361 @@
+"""What a field of force does and whether it may: work along paths, curl, and action against reaction.
+
+The one idea: a field is a function of places, whatever made it. `field` makes one of a force of a scene; everything
+else here takes any function ``F(r)`` of places of shape (K, 3).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array, positive
+from visviva._keywords import known_keywords
+from visviva.errors import ConvergenceError, InvalidInput
+from visviva.forces import Force
+from visviva.particles import Particles
+from visviva.scene import Scene
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from numpy.typing import ArrayLike, NDArray
+
+    Field = Callable[[NDArray[np.float64]], ArrayLike]
+
+__all__ = ["Curl", "ThirdLaw", "curl", "field", "third_law", "work", "work_along"]
+
+_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
+_MOST_PANELS = 2**14
+_NEAR = 2.0**-10
+"""The step of differences, of the size of what is looked at: fourth order errs by 1e-12 there, rounding by as much."""
+_ROUNDING = 1e-8
+"""What such differences err by at most, of fields that bend on the scale of the places."""
+
+
+def __dir__() -> list[str]:
+    return sorted(__all__)
+
+
+@known_keywords
+def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """The force on a body at rest, as a function of where it is.
+
+    Parameters
+    ----------
+    force : Force
+        One that acts on each body for itself, such as `CentralField` or `UniformField`.
+    mass : float
+        Of the body.
+    t0 : float
+        The time, for a force that looks at it.
+
+    Returns
+    -------
+    callable
+        Of places, shape (K, 3); gives forces, shape (K, 3).
+
+    Raises
+    ------
+    visviva.InvalidInput
+        A force between bodies.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.audit.field(vv.Harmonic(k=2.0))(np.array([[1.0, 0.0, 0.0]])).tolist()
+    [[-2.0, 0.0, 0.0]]
+    """
+    if not isinstance(force, Force):
+        raise InvalidInput("force", f"expected a force, got {type(force).__name__}")
+    mass = positive("mass", mass)
+
+    def at(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        bodies = Particles(np.full(len(places), mass), places)
+        return mass * Scene(bodies, force, t0=t0).acceleration()
+
+    here = np.array([[1.0, 2.0, 3.0]])
+    # What acts between bodies feels another one far away, too; what acts on each for itself does not.
+    if np.any(at(np.vstack([here, here + 1.0]))[:1] != at(here)):
+        raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
+    return at
+
+
+@known_keywords
+def work(
+    force: Force | Field, path: ArrayLike | Callable[[NDArray[np.float64]], ArrayLike], *, rtol: float = 1e-12
+) -> float:
+    """The work ∫ F·dr of a field along a path.
+
+    Parameters
+    ----------
+    force : Force or callable
+        A force, on a body of mass 1, or a function of places (K, 3) that gives forces (K, 3).
+    path : array_like, shape (P, 3), or callable
+        The corners of straight lines, or a smooth function of s from 0 to 1, shape (K,), that gives places (K, 3).
+    rtol : float
+        Allowed error, of ∫ the product of the sizes of F and dr.
+
+    Returns
+    -------
+    float
+
+    Raises
+    ------
+    visviva.ConvergenceError
+        If the integral does not settle: a field that jumps or is singular on the path.
+
+    Notes
+    -----
+    Gauss–Legendre with 8 places in each of ever more pieces, until two in turn agree. Goldstein, Poole & Safko,
+    Classical Mechanics, 3rd ed., equation 1.10.
+
+    Examples
+    --------
+    Not every field of places is conservative: (-y, x) does the work 2π R² around a circle.
+
+    >>> import visviva as vv
+    >>> circle = lambda s: np.stack([np.cos(2 * np.pi * s), np.sin(2 * np.pi * s), 0 * s], axis=-1)
+    >>> round(vv.audit.work(lambda r: np.stack([-r[:, 1], r[:, 0], 0 * r[:, 2]], axis=-1), circle) / np.pi, 9)
+    2.0
+    >>> round(vv.audit.work(vv.Harmonic(k=2.0), circle), 12) + 0.0
+    0.0
+    """
+    at = field(force) if isinstance(force, Force) else force
+    rtol = positive("rtol", rtol)
+    if callable(path):
+        return _integral(at, path, rtol)
+    corners = float_array("path", path, (None, 3))
+    if len(corners) < 2:
+        raise InvalidInput("path", f"expected two corners at least, got {len(corners)}")
+    pieces = (_integral(at, _line(a, b), rtol) for a, b in pairwise(corners))
+    return float(sum(pieces))
+
+
+def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    return lambda s: a + s[:, None] * (b - a)
+
+
+def _differentiation(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Derivatives at the nodes of the polynomial through values there: Berrut & Trefethen, SIAM Rev. 46 (2004) 501."""
+    apart = nodes[:, None] - nodes
+    np.fill_diagonal(apart, 1.0)
+    weights = 1.0 / apart.prod(axis=1)
+    matrix: NDArray[np.float64] = weights / weights[:, None] / apart
+    np.fill_diagonal(matrix, 0.0)
+    np.fill_diagonal(matrix, -matrix.sum(axis=1))
+    return matrix
+
+
+_DERIVATIVE = _differentiation(_NODES)
+
+
+def _integral(at: Field, path: Callable[[NDArray[np.float64]], ArrayLike], rtol: float) -> float:
+    before, panels = np.inf, 4
+    while panels <= _MOST_PANELS:
+        s = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)) / panels
+        places = float_array("path", path(s.ravel()), (s.size, 3))
+        forces = float_array("force", at(places), places.shape)
+        # dr over half a piece, the unit of the nodes.
+        steps = np.einsum("ij,pjc->pic", _DERIVATIVE, places.reshape(panels, -1, 3))
+        rate = (forces.reshape(steps.shape) * steps).sum(axis=2)
+        sizes = np.linalg.norm(forces.reshape(steps.shape), axis=2) * np.linalg.norm(steps, axis=2)
+        total, size = float((rate @ _WEIGHTS).sum()), float((sizes @ _WEIGHTS).sum())
+        if abs(total - before) <= rtol * size:
+            return total
+        before, panels = total, 2 * panels
+    raise ConvergenceError(f"the work does not settle to {rtol:g} of it: the field jumps or is singular on the path")
+
+
+@known_keywords
+def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
+    """The work of one force on each body along a recorded run, up to each of its times.
+
+    Parameters
+    ----------
+    trajectory : Trajectory
+        With position and velocity at times as close as the motion needs.
+    force : Force
+        One that acts on each body for itself.
+
+    Returns
+    -------
+    ndarray, shape (T, N)
+        From 0 at the first time. All forces together do the work by which the kinetic energy grows.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        A force between bodies, or a run that did not record velocities.
+
+    Notes
+    -----
+    Power F·v between two times is that at three places of Gauss and Lobatto, the middle one on Hermite's cubic through
+    both ends: the error falls with the fourth power of the times' distance.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> pull = vv.UniformField((0, 0, -10.0))
+    >>> ball = vv.Scene(vv.Particles([2.0], [[0, 0, 0]], [[1.0, 0, 5.0]]), pull)
+    >>> vv.audit.work_along(ball.run(t=np.linspace(0, 1, 5)), pull)[-1].tolist()
+    [0.0]
+    """
+    t, x, v = trajectory.t, trajectory.position, trajectory.velocity
+    mass = trajectory.scene.particles.mass
+    before, after = slice(None, -1), slice(1, None)
+    h = np.diff(t)[:, None, None]
+    middle_x = 0.5 * (x[before] + x[after]) + 0.125 * h * (v[before] - v[after])
+    middle_v = 1.5 * (x[after] - x[before]) / h - 0.25 * (v[before] + v[after])
+    ends = _power(force, mass, t, x, v)
+    middle = _power(force, mass, 0.5 * (t[before] + t[after]), middle_x, middle_v)
+    steps = h[:, :, 0] / 6.0 * (ends[before] + 4.0 * middle + ends[after])
+    return np.concatenate([np.zeros((1, len(mass))), np.cumsum(steps, axis=0)])
+
+
+def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
+    """F·v of every body at every time."""
+    _ = field(force)  # refuses one between bodies
+    rows = [
+        mass[:, None] * Scene(Particles(mass, *state), force, t0=float(now)).acceleration()
+        for now, *state in zip(t, x, v, strict=True)
+    ]
+    power: NDArray[np.float64] = np.einsum("tnc,tnc->tn", np.array(rows).reshape(x.shape), v)
+    return power
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Curl:
+    """What `curl` finds.
+
+    Attributes
+    ----------
+    value : ndarray, shape (K, 3)
+        The curl of the field at each place.
+    relative : float
+        The largest, over the largest derivative of the field at its place.
+    conservative : bool
+        Whether that is no more than what the differences err by (1e-8).
+    """
+
+    value: NDArray[np.float64]
+    relative: float
+    conservative: bool
+
+
+@known_keywords
+def curl(force: Force | Field, places: ArrayLike) -> Curl:
+    """The curl of a field: zero wherever it is the gradient of a potential.
+
+    Parameters
+    ----------
+    force : Force or callable
+        As of `work`.
+    places : array_like, shape (K, 3)
+        Where to look.
+
+    Returns
+    -------
+    Curl
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> places = np.random.default_rng(1).normal(size=(5, 3))
+    >>> vv.audit.curl(vv.CentralField(vv.potentials.Yukawa(k=-1.0, length=2.0)), places).conservative
+    True
+    >>> turning = vv.audit.curl(lambda r: np.stack([-r[:, 1], r[:, 0], 0 * r[:, 2]], axis=-1), places)
+    >>> turning.conservative, (turning.value[0].round(9) + 0.0).tolist()
+    (False, [0.0, 0.0, 2.0])
+    """
+    at = field(force) if isinstance(force, Force) else force
+    x = float_array("places", places, (None, 3))
+    if len(x) == 0:
+        raise InvalidInput("places", "expected one place at least, got none")
+    h = _NEAR * max(float(np.abs(x).max()), np.finfo(float).tiny)
+    derivatives = np.zeros((len(x), 3, 3))  # of each component along each axis
+    for axis in range(3):
+        moved = [x + k * h * np.eye(3)[axis] for k in (-2, -1, 1, 2)]
+        f = [float_array("force", at(place), x.shape) for place in moved]
+        derivatives[:, :, axis] = (f[0] - 8.0 * f[1] + 8.0 * f[2] - f[3]) / (12.0 * h)
+    d = derivatives
+    value = np.stack([d[:, 2, 1] - d[:, 1, 2], d[:, 0, 2] - d[:, 2, 0], d[:, 1, 0] - d[:, 0, 1]], axis=-1)
+    size = np.abs(d).max(axis=(1, 2))
+    relative = float(np.max(np.abs(value).max(axis=1) / np.where(size > 0.0, size, 1.0)))
+    return Curl(value, relative, relative <= _ROUNDING)
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class ThirdLaw:
+    """What `third_law` finds.
+
+    Attributes
+    ----------
+    force : ndarray, shape (3,)
+        The sum of all forces between the bodies, zero if action is reaction.
+    torque : ndarray, shape (3,)
+        The sum of their torques, zero if they act along the lines between the bodies, besides.
+    weak : bool
+        Whether the force of each body on each other one is opposite to the other's on it.
+    strong : bool
+        Whether both lie along the line between them, too.
+    """
+
+    force: NDArray[np.float64]
+    torque: NDArray[np.float64]
+    weak: bool
+    strong: bool
+
+
+@known_keywords
+def third_law(position: ArrayLike, forces: ArrayLike, *, rtol: float = 1e-12) -> ThirdLaw:
+    """Newton's third law for forces between bodies, in its weak and in its strong form.
+
+    Parameters
+    ----------
+    position : array_like, shape (N, 3)
+    forces : array_like, shape (N, N, 3)
+        ``forces[i, j]`` is the force on body i by body j; nothing acts on itself.
+    rtol : float
+        What counts as zero beside the larger of two forces.
+
+    Returns
+    -------
+    ThirdLaw
+
+    Raises
+    ------
+    visviva.InvalidInput
+        A force of a body on itself.
+
+    Notes
+    -----
+    Goldstein, Poole & Safko, Classical Mechanics, 3rd ed., section 1.2.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> across = np.zeros((2, 2, 3))
+    >>> across[0, 1], across[1, 0] = [0.5, 0.25, 2.0], [-0.5, -0.25, -2.0]
+    >>> audit = vv.audit.third_law([[0, 0, 0], [1.0, 2.0, -1.0]], across)
+    >>> audit.weak, audit.strong, audit.torque.tolist()
+    (True, False, [-4.25, 2.5, 0.75])
+    """
+    x = float_array("position", position, (None, 3))
+    f = float_array("forces", forces, (len(x), len(x), 3))
+    rtol = positive("rtol", rtol)
+    for i in range(len(x)):
+        if f[i, i].any():
+            raise InvalidInput("forces", f"expected no force of a body on itself, got forces[{i}, {i}] = {f[i, i]}")
+    back = f.swapaxes(0, 1)
+    apart = x[:, None] - x
+    size = np.maximum(np.abs(f), np.abs(back)).max(axis=2)
+    weak = bool((np.abs(f + back).max(axis=2) <= rtol * size).all())
+    across = np.abs(np.cross(apart, f)).max(axis=2)
+    strong = weak and bool((across <= rtol * size * np.abs(apart).max(axis=2)).all())
+    return ThirdLaw(f.sum(axis=(0, 1)), np.cross(x[:, None], f).sum(axis=(0, 1)), weak, strong)

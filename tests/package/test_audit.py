@@ -1,0 +1,115 @@
+"""Work, curl and the third law: what holds for every field, and a field that breaks each."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from numpy.typing import NDArray
+
+import visviva as vv
+
+Points = NDArray[np.float64]
+FIELDS = [
+    vv.Harmonic(k=2.0, center=(0.1, 0.2, 0.3)),
+    vv.UniformField((1.0, -2.0, 3.0)),
+    vv.CentralField(vv.potentials.Yukawa(k=-1.5, length=2.0), center=(4.0, 4.0, 4.0)),
+    vv.CentralField(vv.potentials.LennardJones(epsilon=1.0, sigma=1.0), center=(4.0, 4.0, 4.0)),
+]
+
+
+def around(radius: float) -> Callable[[Points], Points]:
+    """A closed path that is not plane."""
+    return lambda s: (
+        radius * np.stack([np.cos(2 * np.pi * s), np.sin(2 * np.pi * s), 0.3 * np.sin(4 * np.pi * s)], axis=-1)
+    )
+
+
+def turning(r: Points) -> Points:
+    return np.stack([-r[:, 1], r[:, 0], 0 * r[:, 2]], axis=-1)
+
+
+@pytest.mark.parametrize("force", FIELDS)
+def test_no_work_around_a_closed_path(force: vv.forces.Force) -> None:
+    path = around(1.5)
+    there = vv.audit.work(force, path)
+    size = vv.audit.work(lambda r: np.abs(vv.audit.field(force)(r)), lambda s: s[:, None] * np.ones(3), rtol=1e-3)
+    assert abs(there) < 1e-11 * size
+    assert vv.audit.curl(force, path(np.linspace(0, 1, 7))).conservative
+
+
+@given(radius=st.floats(1e-3, 1e3))
+def test_a_field_that_turns(radius: float) -> None:
+    """Stokes: curl 2 over the area π R²."""
+    assert vv.audit.work(turning, around(radius)) == pytest.approx(2 * np.pi * radius**2, rel=1e-11)
+    found = vv.audit.curl(turning, around(radius)(np.array([0.1, 0.6])))
+    assert not found.conservative
+    np.testing.assert_allclose(found.value, [[0, 0, 2.0]] * 2, atol=1e-10)
+
+
+@pytest.mark.parametrize("force", FIELDS)
+def test_work_is_the_loss_of_potential_energy_on_every_path(force: vv.forces.Force) -> None:
+    """Equation 3.17 of the source: W = V1 - V2."""
+    ends = np.array([[1.0, 0, 0], [-0.5, 2.0, 1.25]])
+    energies = [vv.Scene(vv.Particles([1.0], [end]), force).invariants().potential_energy for end in ends]
+    for corners in (ends, [ends[0], [0.3, -1.0, 2.0], ends[1]]):
+        assert vv.audit.work(force, corners) == pytest.approx(energies[0] - energies[1], rel=1e-12)
+
+
+def test_the_golden_case() -> None:
+    """G3.17: V = (k/2)(x² + y²) + c x y z."""
+    k, c = 2.0, 0.75
+
+    def force(r: Points) -> Points:
+        x, y, z = r.T
+        return -np.stack([k * x + c * y * z, k * y + c * x * z, c * x * y], axis=-1)
+
+    assert vv.audit.work(force, [[1.0, 0, 0], [-0.5, 2.0, 1.25]]) == pytest.approx(-2.3125, rel=1e-13)
+
+
+def test_work_along_a_run_is_the_growth_of_kinetic_energy() -> None:
+    """With drag, that has no potential, and with a magnetic field, that does no work."""
+    field, drag, magnetic = vv.UniformField((0, 0, -9.0)), vv.LinearDrag(tau=0.7), vv.UniformMagneticField((0, 2.0, 0))
+    start = vv.Particles([2.0, 3.0], [[0, 0, 0], [1.0, 0, 0]], [[1.0, 2.0, 5.0], [0, 1.0, 0]])
+    errors = []
+    for times in (101, 201):
+        out = vv.Scene(start, field, drag, magnetic).run(t=np.linspace(0.0, 2.0, times), method="dop853", rtol=1e-13)
+        works = [vv.audit.work_along(out, force) for force in (field, drag, magnetic)]
+        kinetic = 0.5 * start.mass * (out.velocity**2).sum(axis=-1)
+        assert np.abs(works[2]).max() < 1e-13 * kinetic.max()
+        assert (np.diff(works[1], axis=0) < 0.0).all()
+        errors.append(np.abs(sum(works) - (kinetic - kinetic[0])).max() / kinetic.max())
+    assert errors[1] < 1e-8
+    assert errors[0] / errors[1] == pytest.approx(16.0, rel=0.1)  # fourth order
+
+
+def test_third_law_of_gravity_and_of_what_breaks_it() -> None:
+    rng = np.random.default_rng(1)
+    x, m = rng.normal(size=(5, 3)), rng.uniform(1, 2, 5)
+    apart = x[None] - x[:, None]
+    cubes = np.linalg.norm(apart, axis=-1, keepdims=True) ** 3 + np.eye(5)[:, :, None]
+    forces = m[:, None, None] * m[None, :, None] * apart / cubes
+    found = vv.audit.third_law(x, forces)
+    assert found.weak
+    assert found.strong
+    np.testing.assert_allclose(found.force, 0.0, atol=1e-13)
+    np.testing.assert_allclose(found.torque, 0.0, atol=1e-13)
+    # The sum over the others is what a scene of them feels.
+    accelerations = vv.Scene(vv.Particles(m, x), vv.Gravity(1.0)).acceleration()
+    np.testing.assert_allclose(forces.sum(axis=1), m[:, None] * accelerations, rtol=1e-12)
+    forces[0, 1] *= 1.0 + 1e-9
+    assert not vv.audit.third_law(x, forces).weak
+
+
+def test_refusals() -> None:
+    with pytest.raises(vv.InvalidInput, match="acts between bodies"):
+        vv.audit.field(vv.Gravity(1.0))
+    with pytest.raises(vv.InvalidInput, match="two corners"):
+        vv.audit.work(FIELDS[0], [[0.0, 0, 0]])
+    with pytest.raises(vv.InvalidInput, match="on itself"):
+        vv.audit.third_law(np.zeros((1, 3)), np.ones((1, 1, 3)))
+    with pytest.raises(vv.InvalidInput, match="one place at least"):
+        vv.audit.curl(turning, np.zeros((0, 3)))
+    with pytest.raises(vv.ConvergenceError, match="jumps or is singular"):
+        vv.audit.work(lambda r: np.sign(r - 0.123456789), [[0.0, 0, 0], [1.0, 0.7, 0.3]])
