@@ -121,7 +121,10 @@ def _tame(recipe: Recipe) -> Case:
         raise Refused("a higher derivative of the potential jumps, where no method has its order")
     fixed = any(name.startswith("CentralField") for name, _ in recipe.forces)
     offset = min(recipe.offset, 3) if fixed else recipe.offset
-    return replace(recipe, tame=True, ragged=False, outputs=0, steps=16, decades=9, offset=offset).case()
+    # Run backward this drag makes a body infinitely fast in a finite time.
+    forward = any(name == "QuadraticDrag" for name, _ in recipe.forces)
+    how: dict[str, Any] = {"ragged": False, "outputs": 0, "steps": 16, "decades": 9, "offset": offset}
+    return replace(recipe, tame=True, backward=recipe.backward and not forward, **how).case()
 
 
 @law

@@ -66,8 +66,9 @@ def test_energy_within_the_methods_own_bound(method: vv.Method, scene: vv.Scene)
     assert error < energy_error(scene, state_error(scene, method)) + 1e-14
     if method.symplectic and method.reversible:
         half = run(scene, method, dt=step(method) / 2).conservation().energy
-        # The error is a series in h² that begins at hᵖ. Worst: 1.01.
-        assert half.max * half.scale <= 1.05 * error / 2.0**method.order + 1e-14
+        # The error is a series in h² that begins at hᵖ. Worst: 1.01, and 1.06 of blanes_moan_rkn4, whose first term was
+        # made small beside the second.
+        assert half.max * half.scale <= 1.15 * error / 2.0**method.order + 1e-14
 
 
 @pytest.mark.parametrize(
