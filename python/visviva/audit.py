@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    Field = Callable[[NDArray[np.float64]], ArrayLike]
+    _Field = Callable[[NDArray[np.float64]], ArrayLike]
 
 __all__ = ["Curl", "ThirdLaw", "curl", "field", "third_law", "work", "work_along"]
 
@@ -86,7 +86,7 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
 
 @known_keywords
 def work(
-    force: Force | Field, path: ArrayLike | Callable[[NDArray[np.float64]], ArrayLike], *, rtol: float = 1e-12
+    force: Force | _Field, path: ArrayLike | Callable[[NDArray[np.float64]], ArrayLike], *, rtol: float = 1e-12
 ) -> float:
     """The work ∫ F·dr of a field along a path.
 
@@ -153,7 +153,7 @@ def _differentiation(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
 _DERIVATIVE = _differentiation(_NODES)
 
 
-def _integral(at: Field, path: Callable[[NDArray[np.float64]], ArrayLike], rtol: float) -> float:
+def _integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], rtol: float) -> float:
     before, panels = np.inf, 4
     while panels <= _MOST_PANELS:
         s = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)) / panels
@@ -248,7 +248,7 @@ class Curl:
 
 
 @known_keywords
-def curl(force: Force | Field, places: ArrayLike) -> Curl:
+def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     """The curl of a field: zero wherever it is the gradient of a potential.
 
     Parameters
