@@ -16,6 +16,7 @@ import numpy as np
 from visviva._arrays import number
 from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, body_label
 from visviva.errors import InvalidInput
+from visviva.forces import Gravity
 from visviva.orbits import Elements, elements
 
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def gravitational_constant(forces: tuple[Force, ...], given: float | None) -> fl
     """The G that is given, or that of the scene's gravity."""
     if given is not None:
         return number("G", given)
-    found = [force.G for force in forces if force.kind == "gravity"]  # type: ignore[attr-defined]
+    found = [force.G for force in forces if isinstance(force, Gravity)]
     if not found:
         raise InvalidInput("G", "expected the gravitational constant, since the scene has no Gravity; give G=…")
     return fsum(found)

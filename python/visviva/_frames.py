@@ -1,0 +1,165 @@
+"""The same scene elsewhere: displaced, boosted, turned, in other units, backward, or in another state.
+
+The one idea: bodies and forces know how they change; a scene of the changed parts is the changed scene.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from typing import TYPE_CHECKING, Self
+
+import numpy as np
+
+from visviva._arrays import float_array, in_range
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from numpy.typing import ArrayLike
+
+    from visviva.forces import Force
+    from visviva.particles import Particles
+
+__all__ = ["Framed"]
+
+
+@known_keywords
+class Framed(ABC):
+    """What has particles and forces at a time, and can be seen from another frame."""
+
+    __slots__ = ()
+
+    particles: Particles
+    forces: tuple[Force, ...]
+    t0: float
+
+    @abstractmethod
+    def _like(self, particles: Particles, forces: Iterable[Force], t0: float) -> Self:
+        """One of these parts."""
+
+    def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
+        """The scene displaced by `position` and boosted by `velocity`, the fields with it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For a boost of a field with a fixed centre.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]])).shifted(position=[1.0, 2.0, 3.0])
+        >>> scene.particles.position
+        array([[1., 2., 3.]])
+        """
+        displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
+        p = self.particles
+        moved = p._changed(position=p.position + displacement, velocity=p.velocity + boost)
+        return self._like(moved, (force.shifted(displacement, boost) for force in self.forces), self.t0)
+
+    def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
+        """The scene as seen from a frame that moves at the constant `velocity`: r′ = r − origin − V t.
+
+        Parameters
+        ----------
+        velocity : array_like, shape (3,)
+            Velocity V of the frame.
+        origin : array_like, shape (3,), optional
+            Where the frame's origin is at t = 0.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.Scene(vv.Particles([1.0], [[7.0, 0.0, 0.0]], [[4.0, 0.0, 0.0]]), t0=1.0)
+        >>> scene.in_frame(velocity=[5.0, 0.0, 0.0]).particles.velocity
+        array([[-1.,  0.,  0.]])
+        """
+        frame = float_array("velocity", velocity, (3,))
+        return self.shifted(position=-(float_array("origin", origin, (3,)) + frame * self.t0), velocity=-frame)
+
+    def center_of_mass_frame(self) -> Self:
+        """The scene in the frame in which its centre of mass rests at the origin.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.outer_solar_system().scene.center_of_mass_frame()
+        >>> bool(np.abs(scene.invariants().momentum).max() < 1e-18)
+        True
+        """
+        position, velocity = self.particles.center_of_mass()
+        return self.shifted(position=-position, velocity=-velocity)
+
+    def rotated(self, rotation: ArrayLike) -> Self:
+        """The scene turned (or reflected) about the origin by an orthogonal matrix, shape (3, 3).
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the matrix is not orthogonal to 1e-12.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> mirror = vv.problems.kepler(e=0.5).scene.rotated(np.diag([1.0, -1.0, 1.0]))
+        >>> float(mirror.invariants().angular_momentum[2]) < 0.0
+        True
+        """
+        matrix = float_array("rotation", rotation, (3, 3))
+        defect = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
+        if defect > 1e-12:
+            raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
+        p = self.particles
+        turned = p._changed(position=p.position @ matrix.T, velocity=p.velocity @ matrix.T)
+        return self._like(turned, (force.rotated(matrix) for force in self.forces), self.t0)
+
+    def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
+        """The same scene in other units: how many new units of each kind make one old unit.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a scale is not positive, a force cannot be scaled, or a number would leave the range of float64.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> days = vv.problems.outer_solar_system().scene
+        >>> f"{days.rescaled(time=1 / 365.25).forces[0].G:.3f}"
+        '39.477'
+        """
+        particles = self.particles.rescaled(length=length, mass=mass, time=time)
+        forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
+        return self._like(particles, forces, in_range("t0", self.t0, self.t0 * time))
+
+    def reversed(self) -> Self:
+        """The scene with every velocity turned round: run on, it retraces its path.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If a force has no reverse: drag, or a force that goes on with time.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.Scene(vv.Particles([1.0], [[0, 0, 0]], [[1.0, 2.0, 3.0]])).reversed().particles.velocity
+        array([[-1., -2., -3.]])
+        """
+        p = self.particles
+        return self._like(p._changed(velocity=-p.velocity), (force.reversed() for force in self.forces), self.t0)
+
+    def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Self:
+        """The scene with other positions and velocities, and another time if given.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.pythagorean().scene
+        >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
+        array([2., 6., 0.])
+        """
+        moved = self.particles._changed(position=position, velocity=velocity)
+        return self._like(moved, self.forces, self.t0 if t0 is None else t0)
