@@ -405,4 +405,11 @@ KEPT: list[tuple[str, Recipe]] = [
             units=(-35, -33, -37),
         ),
     ),
+    # An event at the very node of an output took the row with it.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="euler", bodies=5, forces=(("PostNewtonian", 47),), seed=335, planar=True, at_origin=True, steps=1
+        ),
+    ),
 ]

@@ -216,6 +216,21 @@ def test_a_terminal_event_ends_the_run(method: str) -> None:
     np.testing.assert_array_equal(out.position, whole.position[:rows])
 
 
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("end", [0.5, 1.0])
+def test_an_event_on_an_output_keeps_its_row(method: str, end: float) -> None:
+    """A body that comes to a plane at the very node of an output, before the end of the run or at it."""
+    body = vv.Particles(mass=[1.0], position=[[-end, 0.0, 0.0]], velocity=[[1.0, 0.0, 0.0]])
+    plane = events.plane([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], terminal=True)
+    scene = vv.Scene(body)
+    how = {} if BY_NAME[method].adaptive else {"dt": 0.125}
+    out = scene.run([0.25, 0.5, 1.0], method=method, events=[plane], **how)
+    # Adaptive methods find the time to round-off.
+    assert out.events.t == pytest.approx([end], rel=1e-15)
+    if out.events.t[0] == end:
+        assert list(out.t) == [0.25, 0.5, 1.0][: 2 if end == 0.5 else 3]
+
+
 @pytest.mark.parametrize("method", ["dop853", "leapfrog"])
 def test_members_stop_each_at_its_own_event(method: str) -> None:
     scene = kepler()

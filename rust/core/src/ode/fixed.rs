@@ -246,15 +246,16 @@ fn through<S: Element>(
         walk.stepper.look_back();
     }
     let mut ahead = if recorder.looks_ahead() { Ahead::new(walk.state) } else { None };
+    let mut going = true;
     for (index, place) in places.enumerate() {
-        while walk.node < place.node {
+        while going && walk.node < place.node {
             if walk.node == last {
                 walk.stepper.settle(walk.state);
                 return Ok(());
             }
             let past = walk.node - from;
             let at_most = (place.node.min(last) - walk.node).min(PROGRESS_STEPS - past % PROGRESS_STEPS);
-            let going = match (&mut before, &mut ahead) {
+            going = match (&mut before, &mut ahead) {
                 (None, _) => {
                     walk.step(at_most, ticker)?;
                     true
@@ -275,7 +276,7 @@ fn through<S: Element>(
                 ticker.advance(PROGRESS_STEPS);
             }
             if !going {
-                return Ok(());
+                break;
             }
             if past.is_multiple_of(WATCH_STEPS) {
                 walk.stepper.settle(walk.state);
@@ -287,6 +288,10 @@ fn through<S: Element>(
                 walk.stepper.settle(walk.state);
                 return Err(error);
             }
+        }
+        // What ended the run may have been at this very node.
+        if !going && (walk.node < place.node || place.past.is_some()) {
+            return Ok(());
         }
         let Walk { node, repeated, .. } = *walk;
         let (stepper, state, system) = (&mut *walk.stepper, &mut *walk.state, &mut *walk.system);
