@@ -412,4 +412,20 @@ KEPT: list[tuple[str, Recipe]] = [
             method="euler", bodies=5, forces=(("PostNewtonian", 47),), seed=335, planar=True, at_origin=True, steps=1
         ),
     ),
+    # A law that asked for the same last state where numbers ceased to be after another output.
+    (
+        "other_outputs_change_no_bit",
+        Recipe(
+            method="euler",
+            bodies=27,
+            forces=(("UniformField", 15), ("UniformField", 15), ("QuadraticDrag", 46)),
+            seed=50447,
+            tame=False,
+            drifting=True,
+            steps=11,
+            ragged=True,
+            outputs=1,
+            columns=("position", "velocity"),
+        ),
+    ),
 ]
