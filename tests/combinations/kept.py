@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
+from kept_motions import KEPT_MOTIONS
 from recipe import Recipe
 
 KEPT: list[tuple[str, Recipe]] = [
+    *KEPT_MOTIONS,
     # An adaptive chunk took its masses from its first member: more than eight bodies, masses of their own.
-    (
-        "two_methods_agree",
-        Recipe(method="dop853", bodies=9, massless=1, seed=46, members=9, own=("mass",), steps=4, outputs=1),
-    ),
-    ("two_methods_agree", Recipe(method="yoshida4", bodies=9, seed=413, members=9, own=("mass",), steps=4)),
     (
         "threads_change_no_bit",
         Recipe(bodies=9, massless=7, seed=809, members=9, own=("mass",), own_massless=True, steps=4),
@@ -22,23 +19,6 @@ KEPT: list[tuple[str, Recipe]] = [
     # The state was shaped for the massive bodies alone: index out of bounds.
     ("a_member_is_as_if_alone", Recipe(bodies=9, massless=1, members=5, steps=8)),
     ("threads_change_no_bit", Recipe(bodies=3, crowd=210, steps=8)),
-    # The second Gravity took the constant of the first.
-    ("declared_invariants_hold", Recipe(bodies=3, forces=(("Gravity", 42), ("Gravity", 76)), steps=8)),
-    ("two_methods_agree", Recipe(bodies=2, forces=(("Gravity", 42), ("Gravity", 42)), steps=8)),
-    # Störmer's kernel of two or three bodies took a repulsive constant for no mass.
-    ("two_methods_agree", Recipe(method="stormer13", seed=2938, members=3, steps=2)),
-    # A lone massive body beside massless ones in a uniform field had no size: NaN in the first step.
-    (
-        "two_methods_agree",
-        Recipe(
-            forces=(("UniformField", 4), ("Gravity", 12)),
-            members=3,
-            own=("mass",),
-            own_massless=True,
-            steps=4,
-            outputs=1,
-        ),
-    ),
     # `final` forgot what the state leaves out.
     # Bodies at rest had the plan's unit for a velocity scale.
     (
@@ -65,20 +45,6 @@ KEPT: list[tuple[str, Recipe]] = [
         "progress_ends_at_its_total",
         Recipe(method="kahan_li8", bodies=5, forces=(), members=3, own=("mass",), own_massless=True, steps=8),
     ),
-    # Far from the origin, gravity and a field: rounded coordinates kept the adaptive method from its tolerance.
-    (
-        "two_methods_agree",
-        Recipe(
-            bodies=38,
-            forces=(("UniformField", 32), ("Gravity", 13)),
-            planar=True,
-            at_origin=True,
-            offset=9,
-            members=5,
-            steps=8,
-            outputs=1,
-        ),
-    ),
     # Lanes without a body fell in a uniform field and entered the error of a step.
     (
         "a_member_is_as_if_alone",
@@ -102,18 +68,6 @@ KEPT: list[tuple[str, Recipe]] = [
     (
         "massless_bodies_do_not_touch_the_massive",
         Recipe(method="dop853", bodies=15, massless=14, forces=(("LinearDrag", 49), ("Gravity", 1)), steps=8),
-    ),
-    # The acceleration of a scene lost digits about its center of mass.
-    (
-        "forces_add",
-        Recipe(
-            bodies=5, forces=(("PairPotential/3", 61), ("DrivenForce", 53)), seed=550, tame=False, planar=True, steps=4
-        ),
-    ),
-    # The energy of a pair was formed in units in which its strength has two digits.
-    (
-        "declared_invariants_hold",
-        Recipe(bodies=5, forces=(("PairPotential/3", 24),), units=(-310, -162, -13), steps=4, outputs=1),
     ),
     # Bodies that went on where another one of their member had failed were still in the rows beyond.
     (
@@ -143,11 +97,6 @@ KEPT: list[tuple[str, Recipe]] = [
     (
         "units_of_powers_of_two_change_no_bit",
         Recipe(forces=(("PairPotential/3", 25), ("Spring", 80)), tame=False, members=1, wild_member=True, steps=4),
-    ),
-    # A method of order 3 needs more steps for 1e-11 than the law allowed.
-    (
-        "two_methods_agree",
-        Recipe(bodies=29, forces=(("PairPotential/3", 53),), seed=36, at_origin=True, members=8, steps=4),
     ),
     # Members in lockstep paid for the looks into steps of each other, and for steps after their own end.
     (
@@ -266,18 +215,6 @@ KEPT: list[tuple[str, Recipe]] = [
         ),
     ),
     (
-        "two_methods_agree",
-        Recipe(
-            method="dormand_prince54",
-            bodies=2,
-            forces=(("UniformField", 67), ("Gravity", 79), ("UniformField", 40)),
-            seed=285,
-            planar=True,
-            at_origin=True,
-            backward=True,
-        ),
-    ),
-    (
         "no_step_is_longer_than_max_step",
         Recipe(
             bodies=8,
@@ -376,40 +313,19 @@ KEPT: list[tuple[str, Recipe]] = [
             events=(("distance", 3), ("energy", 72), ("plane", 84)),
         ),
     ),
-    # Laws that took steps too long for the scene: steps of a close pair, and an encounter that they miss.
-    (
-        "two_methods_agree",
-        Recipe(
-            method="kahan_li8",
-            bodies=21,
-            forces=(("PairPotential/3", 49),) * 2,
-            seed=36620,
-            tame=True,
-            planar=True,
-            at_origin=True,
-            drifting=True,
-            offset=7,
-            members=11,
-        ),
-    ),
-    (
-        "two_methods_agree",
-        Recipe(
-            method="dormand_prince54",
-            bodies=22,
-            forces=(("PairPotential/3", 32), ("UniformField", 48), ("Spring", 48)),
-            seed=149,
-            tame=True,
-            planar=True,
-            at_origin=True,
-            units=(-35, -33, -37),
-        ),
-    ),
     # An event at the very node of an output took the row with it.
     (
         "a_terminal_event_only_cuts",
         Recipe(
-            method="euler", bodies=5, forces=(("PostNewtonian", 47),), seed=335, planar=True, at_origin=True, steps=1
+            method="euler",
+            bodies=5,
+            forces=(("PostNewtonian", 47),),
+            seed=335,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            offset=1,
+            steps=1,
         ),
     ),
     # A law that asked for the same last state where numbers ceased to be after another output.

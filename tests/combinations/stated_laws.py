@@ -7,7 +7,8 @@ Each law is a function of a recipe that raises `AssertionError`, or `Refused` wh
 import accuracy_laws
 import bit_laws
 import event_laws
+import motion_laws
 import symmetry_laws
 from law_book import LAWS
 
-__all__ = ["LAWS", "accuracy_laws", "bit_laws", "event_laws", "symmetry_laws"]
+__all__ = ["LAWS", "accuracy_laws", "bit_laws", "event_laws", "motion_laws", "symmetry_laws"]

@@ -105,6 +105,9 @@ impl ForceTerm for Harmonic {
         let k = units.take(self.k, STIFFNESS);
         bodies.iter().map(|&(_, mass, _)| (k / mass).sqrt()).fold(0.0, f64::max)
     }
+    fn fixed_point(&self) -> Option<[f64; 3]> {
+        Some(self.center)
+    }
     fn as_harmonic(&self) -> Option<(f64, [f64; 3])> {
         Some((self.k, self.center))
     }

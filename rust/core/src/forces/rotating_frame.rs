@@ -110,6 +110,9 @@ impl ForceTerm for RotatingFrame {
     fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
         2.0 * distance(units.take_vector(self.omega, FREQUENCY), [0.0; 3])
     }
+    fn fixed_point(&self) -> Option<[f64; 3]> {
+        Some(self.center)
+    }
     fn as_rotating(&self) -> Option<([f64; 3], [f64; 3])> {
         Some((self.omega, self.center))
     }

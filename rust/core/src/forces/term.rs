@@ -193,6 +193,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn center(&self) -> Option<[f64; 3]> {
         None
     }
+    /// The point at rest that places are told from, singular there or not.
+    fn fixed_point(&self) -> Option<[f64; 3]> {
+        self.center()
+    }
     /// The distances, of bodies from each other or from its center, between which it is, if not at all.
     fn domain(&self) -> Option<(f64, f64)> {
         None

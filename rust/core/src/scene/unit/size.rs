@@ -60,7 +60,8 @@ impl Prepared {
         self.position.len() == 1
     }
 
-    /// A fixed center if there is one, else the centre of mass of several bodies, unless most of them are far from it.
+    /// A fixed center if there is one, else the centre of mass of several bodies, unless most of them are far from it; of a
+    /// body alone the point that forces tell its place from, lest its size be how far the scene is from the origin.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
         let center = plan.forces.iter().find_map(|force| force.center());
@@ -69,6 +70,8 @@ impl Prepared {
             return reference;
         }
         if self.is_lone() {
+            let fixed = plan.forces.iter().find_map(|force| force.fixed_point()).unwrap_or_default();
+            reference.center = self.units.take_vector(fixed, [1, 0, 0]);
             return reference;
         }
         let total: f64 = self.strength.iter().sum();
