@@ -5,10 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from visviva import _core
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
     from visviva.typing import MethodName
 
 __all__ = ["Method", "methods"]
@@ -47,6 +51,36 @@ class Method:
     adaptive: bool
     dense_order: int
     reference: str
+
+    @property
+    def coefficients(self) -> dict[str, NDArray[np.float64]]:
+        """The tables that a step is made of, in units of the step.
+
+        Runge–Kutta methods have the strictly lower triangle ``a``, shape (S, S), the weights ``b`` and the nodes ``c``,
+        shape (S,), and adaptive ones the weights of their error estimate, ``error``, with one more where the derivative
+        at the end of the step enters. Splittings have ``kicks`` and ``drifts``: a kick, a drift, and so on to the last
+        kick; outer kicks may be zero. Multistep methods have the weights of ``second_differences`` of the
+        accelerations, and of those in the ``velocity``.
+
+        They are the float64 numbers nearest to the coefficients, which are kept as double-doubles.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> rk4 = next(method for method in vv.methods() if method.name == "rk4")
+        >>> (6 * rk4.coefficients["b"]).tolist()
+        [1.0, 2.0, 2.0, 1.0]
+        """
+        (tables,) = (row["coefficients"] for row in _core.methods() if row["name"] == self.name)
+        return {name: _triangle(rows) if name == "a" else np.array(rows[0]) for name, rows in tables.items()}
+
+
+def _triangle(rows: list[list[float]]) -> NDArray[np.float64]:
+    """Rows of growing lengths as a square, with zeros on and above its diagonal."""
+    square = np.zeros((len(rows), len(rows)))
+    for place, row in enumerate(rows):
+        square[place, : len(row)] = row
+    return square
 
 
 @known_keywords

@@ -169,25 +169,6 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     assert best > max(amplitude(expected["omega_res"] - near), amplitude(expected["omega_res"] + near))
 
 
-@golden("GI-verlet-oscillator")
-def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    h, n = given["h"], given["n"]
-    scene = along(1.0, given["x0"], given["v0"], vv.Harmonic(given["omega"] ** 2))
-    x, v = heights(scene.run(t=[h, n * h], method="leapfrog", dt=h))
-    close([x[1], v[1]], [expected["x_n"], expected["v_n"]])
-    close(math.acos(x[0] / given["x0"]), expected["phase_per_step"])
-    close(0.5 * v**2 + 0.5 * (1 - h * h / 4) * x**2, [expected["H_mod"]] * 2)
-
-
-@golden("GI-rk4-oscillator")
-def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    h, n = given["h"], given["n"]
-    out = along(1.0, given["x0"], given["v0"], vv.Harmonic(given["omega"] ** 2)).run(t=[0, n * h], method="rk4", dt=h)
-    x, v = heights(out)
-    close([x[1], v[1]], [expected["x_n"], expected["v_n"]])
-    close(out.energy[1] / out.energy[0], expected["energy_ratio"])
-
-
 @golden("G6.16-oscillator-H")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     m, k = given["m"], given["k"]

@@ -11,6 +11,7 @@ use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::memory::reserved;
+use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::potentials::fit::fit;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::potentials::{Potential, screening};
@@ -31,6 +32,12 @@ pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         dict.set_item("adaptive", method.adaptive())?;
         dict.set_item("dense_order", method.dense_order)?;
         dict.set_item("reference", method.reference)?;
+        let numbers = |row: &[DoubleDouble]| row.iter().map(|x| x.to_f64()).collect::<Vec<_>>();
+        let coefficients = PyDict::new(py);
+        for (name, rows) in method.scheme.tables() {
+            coefficients.set_item(name, rows.into_iter().map(numbers).collect::<Vec<_>>())?;
+        }
+        dict.set_item("coefficients", coefficients)?;
         Ok(dict)
     };
     registry::METHODS.iter().map(row).collect()

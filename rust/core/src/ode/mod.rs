@@ -138,6 +138,32 @@ const fn dd(high: f64, low: f64) -> DoubleDouble {
 /// An absent coefficient.
 const ZERO: DoubleDouble = dd(0.0, 0.0);
 
+/// A named table of coefficients, row by row.
+pub type NamedTable = (&'static str, Vec<&'static [DoubleDouble]>);
+
+impl Scheme {
+    /// The tables that a step is made of, by the names that they have in this file.
+    pub fn tables(&self) -> Vec<NamedTable> {
+        let of = |Tableau { a, b, c }: &Tableau| vec![("a", a.to_vec()), ("b", vec![*b]), ("c", vec![*c])];
+        match self {
+            Self::Splitting(table) | Self::NystromSplitting(table) | Self::Boris(table) => {
+                vec![("kicks", vec![table.kicks]), ("drifts", vec![table.drifts])]
+            }
+            Self::RungeKutta(table) => of(table),
+            Self::Embedded(table) => {
+                let mut tables = of(&table.tableau);
+                tables.push(("error", vec![table.error]));
+                tables.extend(table.second_error.map(|second| ("second_error", vec![second])));
+                tables
+            }
+            Self::Multistep(table) => vec![
+                ("second_differences", vec![table.second_differences]),
+                ("velocity", vec![table.velocity]),
+            ],
+        }
+    }
+}
+
 impl Method {
     /// Whether the method chooses its own steps.
     pub const fn adaptive(&self) -> bool {
