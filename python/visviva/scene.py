@@ -226,7 +226,7 @@ class Scene(Runnable[Trajectory], Framed):
         return advise(self._keywords, asked, accuracy, of, closed=self.plan(t).closed_form)
 
     def acceleration(self) -> NDArray[np.float64]:
-        """Accelerations of the bodies at the scene's state, shape (N, 3).
+        """Accelerations of the bodies at the scene's state and time, shape (N, 3).
 
         Examples
         --------
@@ -236,7 +236,7 @@ class Scene(Runnable[Trajectory], Framed):
         """
         p = self.particles
         return _core.acceleration(
-            mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity
+            mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity, t0=self.t0
         )
 
     def invariants(self, about: ArrayLike | str | None = None) -> Invariants:

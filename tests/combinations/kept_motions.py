@@ -135,4 +135,9 @@ KEPT_MOTIONS: list[tuple[str, Recipe]] = [
         "a_scene_moves_alike_in_another_frame",
         Recipe(method="bogacki_shampine32", bodies=1, forces=(("Harmonic", 8),), seed=8, at_origin=True, offset=6),
     ),
+    # The acceleration of a scene was that at time 0, whenever the scene was.
+    (
+        "the_work_of_the_forces_is_the_kinetic_energy_gained",
+        Recipe(method="midpoint", bodies=1, forces=(("DrivenForce", 82),), seed=391),
+    ),
 ]

@@ -9,6 +9,7 @@ import bit_laws
 import event_laws
 import motion_laws
 import symmetry_laws
+import work_laws
 from law_book import LAWS
 
-__all__ = ["LAWS", "accuracy_laws", "bit_laws", "event_laws", "motion_laws", "symmetry_laws"]
+__all__ = ["LAWS", "accuracy_laws", "bit_laws", "event_laws", "motion_laws", "symmetry_laws", "work_laws"]

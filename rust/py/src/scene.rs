@@ -19,6 +19,7 @@ use visviva_core::conservation::PreciseBodies;
 use visviva_core::conservation::columns::{COLUMNS, Snapshot, column};
 use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::parallel::thread_count;
+use visviva_core::scene::Scene;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
 use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
@@ -148,17 +149,18 @@ pub(crate) fn conserves<'py>(
     Ok(dict)
 }
 
-/// The acceleration of every particle.
+/// The acceleration of every particle at that time.
 #[pyfunction]
-#[pyo3(signature = (*, mass, forces, position, velocity))]
+#[pyo3(signature = (*, mass, forces, position, velocity, t0))]
 pub(crate) fn acceleration<'py>(
     py: Python<'py>,
     mass: Array<'py>,
     forces: Bound<'py, PyList>,
     position: Array<'py>,
     velocity: Array<'py>,
+    t0: f64,
 ) -> PyResult<Bound<'py, numpy::PyArrayDyn<f64>>> {
-    let scene = snapshot(&mass, &position, &velocity, &forces)?;
+    let scene = Scene { t0, ..snapshot(&mass, &position, &velocity, &forces)? };
     let threads = thread_count(None).map_err(|error| raised(py, error))?;
     let shape = [scene.particles, 3];
     let values = compute(py, 0, None, |ticker| acceleration_of(&scene, threads, ticker))?.whole(py)?;
