@@ -89,9 +89,9 @@ def of_distance(function: Any) -> Callable[[float], float] | None:
         raise InvalidInput("function", f"expected a compiled function double f(double r), got {signature}")
     if not address:
         raise InvalidInput("function", f"expected the address of double f(double r), got {address}")
-    compiled: Any = prototype(address)
-    compiled.kept = keep  # alive as long as what is called
-    return compiled  # type: ignore[no-any-return]
+    compiled = prototype(address)
+    vars(compiled)["kept"] = keep  # alive as long as what is called
+    return compiled
 
 
 def _with(fun: object, address: int | None, takes_data: bool, args: object) -> Compiled:
