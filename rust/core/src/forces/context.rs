@@ -51,6 +51,11 @@ pub fn packed_place(slot: usize, active: usize) -> (usize, usize) {
     }
 }
 
+/// The number of a body, of one for all or one for each.
+pub(super) fn of_body(numbers: &[f64], particle: usize) -> f64 {
+    if let [all] = numbers { *all } else { numbers.get(particle).copied().unwrap_or(0.0) }
+}
+
 impl<'a> Context<'a> {
     /// The first system, by whose make-up all go.
     pub fn first(&self) -> System<'a> {

@@ -4,9 +4,8 @@
 //! acceleration. So the order in which a body's terms are added is theirs ([`gravity`](super::gravity)).
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
+use super::context::{Context, of_body};
 use super::gravity::{energy, newton};
-use super::quadratic_drag::of_body;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};

@@ -1,7 +1,7 @@
 //! Quadratic drag: what a fast body feels in a thin medium at rest.
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
+use super::context::{Context, of_body};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -52,11 +52,6 @@ impl QuadraticDrag {
     fn coefficient(&self, particle: usize) -> f64 {
         of_body(&self.coefficient, particle)
     }
-}
-
-/// The number of a body, of one for all or one for each.
-pub(super) fn of_body(numbers: &[f64], particle: usize) -> f64 {
-    if let [all] = numbers { *all } else { numbers.get(particle).copied().unwrap_or(0.0) }
 }
 
 impl ForceTerm for QuadraticDrag {

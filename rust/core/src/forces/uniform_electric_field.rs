@@ -1,8 +1,7 @@
 //! A uniform electric field: the force charge E on every charge.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::Context;
-use super::quadratic_drag::of_body;
+use super::context::{Context, of_body};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
