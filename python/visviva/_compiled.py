@@ -16,7 +16,9 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-__all__ = ["Compiled", "compiled"]
+    from numpy.typing import NDArray
+
+__all__ = ["Compiled", "compiled", "sampled"]
 
 _SIGNATURE = "void f(double t, const double *y, double *rate), with void *data at the end or without"
 _FUNCTION: Any = type(ctypes.CFUNCTYPE(None)()).__mro__[1]  # ctypes names it with an underscore
@@ -92,6 +94,38 @@ def of_distance(function: Any) -> Callable[[float], float] | None:
     compiled = prototype(address)
     vars(compiled)["kept"] = keep  # alive as long as what is called
     return compiled
+
+
+def sampled(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
+    """Give what samples a function of ``of``, compiled or of Python, at an array.
+
+    Raises
+    ------
+    InvalidInput
+        For what is no function; when it is called, for results that are no real numbers of the shape of the array.
+    """
+    compiled = of_distance(function)
+    if compiled is None and not callable(function):
+        raise InvalidInput(
+            "function", f"expected a function of {of}, or a compiled double f(double), got {type(function).__name__}"
+        )
+
+    def sample(places: NDArray[np.float64]) -> NDArray[np.float64]:
+        if compiled is not None:
+            return np.array([compiled(place) for place in places.tolist()])
+        shape = places.shape
+        values = np.asarray(function(places))
+        if values.shape != shape:
+            raise InvalidInput(
+                "function",
+                f"expected one value for each {of}, shape {shape}, got shape {values.shape}; write it for arrays, "
+                "or wrap it in numpy.vectorize",
+            )
+        if values.dtype.kind not in "fiu":
+            raise InvalidInput("function", f"expected real numbers, got an array of {values.dtype.name}")
+        return values.astype(np.float64)
+
+    return sample
 
 
 def _with(fun: object, address: int | None, takes_data: bool, args: object) -> Compiled:

@@ -1,20 +1,25 @@
 """Drag of spheres: which law holds and how strong it is, and what is told of a body thrown straight up.
 
 The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both
-together are the mixed law.
+together are the mixed law. `visviva.Drag` has the laws that hold between them, by name; `custom` and `tabulated` take
+one's own.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
 
 from visviva import _core
-from visviva._arrays import positive
+from visviva._arrays import float_array, number, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.forces import LinearDrag, QuadraticDrag
+from visviva.forces import LinearDrag, QuadraticDrag, SampledDrag
 
-__all__ = ["Throw", "crossover_speed", "quadratic", "reynolds_number", "stokes", "throw"]
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number", "stokes", "tabulated", "throw"]
 
 
 @known_keywords
@@ -189,6 +194,113 @@ def stokes(
             positive("mass", mass), positive("radius", radius), positive("viscosity", viscosity), *checked
         )
     )
+
+
+@known_keywords
+def custom(
+    function: Any,
+    R_min: float,
+    R_max: float,
+    *,
+    density: float,
+    viscosity: float,
+    radius: ArrayLike,
+    tolerance: float = 1e-12,
+) -> SampledDrag:
+    """Drag F(R) ρ a² v² by a function of the Reynolds number, sampled once: polynomials in pieces that were checked.
+
+    What is kept is the factor f = R F/(6π), drag over that of Stokes. Below `R_min` it stays what it is there, so drag
+    is linear; beyond `R_max` there is no value. A drag coefficient C of the Reynolds number Re with the diameter is the
+    function ``lambda R: np.pi / 2 * C(2 * R)``.
+
+    Parameters
+    ----------
+    function : callable, int, numba CFunc, ctypes function or scipy.LowLevelCallable
+        F(R) of an array, elementwise, nowhere negative; or a compiled ``double f(double)``, or its address.
+    R_min, R_max : float, positive
+        Reynolds numbers, ρ a v/μ, between which the function is asked.
+    density, viscosity : float, positive
+        Of the fluid.
+    radius : float or array_like, not negative
+        Of every body, or of each.
+    tolerance : float, optional
+        Largest error of f allowed, from 1e-12 to 1e-4, relative to f + R abs(df/dR): as of `visviva.potentials.Custom`.
+
+    Returns
+    -------
+    SampledDrag
+        With a continuous second derivative, and in `error` the largest error found. The function is not kept.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a number that is not as said above, values that are no finite numbers of the shape of R, and a function that
+        is not smooth enough.
+
+    References
+    ----------
+    L. N. Trefethen, Approximation Theory and Approximation Practice (2013), chapters 3 to 8.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> def abraham(R):  # F. F. Abraham, Phys. Fluids 13 (1970) 2194
+    ...     return np.pi / 2 * 0.29238 * (1 + 9.06 / np.sqrt(2 * R)) ** 2
+    >>> drop = vv.drag.custom(abraham, 1e-6, 2.5e3, density=1.2, viscosity=1.8e-5, radius=1e-3)
+    >>> drop.error < 1e-12
+    True
+    """
+    from visviva._compiled import sampled
+
+    between = number("R_min", R_min), number("R_max", R_max)
+    pieces = _core.fitted(sampled(function, "R"), between, number("tolerance", tolerance), drag=True)
+    return SampledDrag(density, viscosity, radius, *pieces)
+
+
+@known_keywords
+def tabulated(
+    R: ArrayLike,
+    F: ArrayLike,
+    *,
+    density: float,
+    viscosity: float,
+    radius: ArrayLike,
+) -> SampledDrag:
+    """Drag F(R) ρ a² v² by a table over the Reynolds number: twice continuously differentiable, and monotone.
+
+    Where R F rises, or falls, over four points in a row, so does the curve of it between the middle two. Below the
+    first point drag is linear, beyond the last there is no value.
+
+    Parameters
+    ----------
+    R : array_like, shape (P,)
+        Reynolds numbers, ρ a v/μ, ascending and above 0, at least four.
+    F : array_like, shape (P,)
+        Values there, not negative; π/2 C of a drag coefficient C.
+    density, viscosity : float, positive
+        Of the fluid.
+    radius : float or array_like, not negative
+        Of every body, or of each.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If a number is not as said above.
+
+    References
+    ----------
+    R. L. Dougherty, A. Edelman, J. M. Hyman, Math. Comp. 52 (1989) 471.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> Re = np.array([0.1, 1.0, 10.0, 100.0, 1e3, 1e4])  # S. A. Morsi, A. J. Alexander, J. Fluid Mech. 55 (1972) 193
+    >>> C = np.array([240.0, 26.5, 4.1, 1.07, 0.46, 0.41])
+    >>> vv.drag.tabulated(Re / 2, np.pi / 2 * C, density=1.2, viscosity=1.8e-5, radius=1e-3).breaks[-1].item()
+    5000.0
+    """
+    pieces = _core.tabulated_drag(float_array("R", R, (None,)), float_array("F", F, (None,)))
+    return SampledDrag(density, viscosity, radius, *pieces)
 
 
 @known_keywords

@@ -1,6 +1,6 @@
 # Written by tools/write_stubs.py from the core's registry.
 from dataclasses import dataclass
-from typing import Any, ClassVar, Self
+from typing import Any, ClassVar, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ __all__ = [
     "CentralField",
     "Coulomb",
     "Damper",
+    "Drag",
     "DrivenForce",
     "Force",
     "Gravity",
@@ -22,6 +23,7 @@ __all__ = [
     "PostNewtonian",
     "QuadraticDrag",
     "RotatingFrame",
+    "SampledDrag",
     "Spring",
     "UniformElectricField",
     "UniformField",
@@ -95,6 +97,38 @@ class LinearDrag(Force):
 class QuadraticDrag(Force):
     coefficient: float | NDArray[np.float64]
     def __init__(self, coefficient: ArrayLike) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Drag(Force):
+    density: float
+    viscosity: float
+    radius: float | NDArray[np.float64]
+    law: Literal["schiller_naumann", "clift_gauvin", "turton_levenspiel", "stokes"]
+    def __init__(
+        self,
+        density: float,
+        viscosity: float,
+        radius: ArrayLike,
+        law: Literal["schiller_naumann", "clift_gauvin", "turton_levenspiel", "stokes"] = "schiller_naumann",
+    ) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class SampledDrag(Force):
+    density: float
+    viscosity: float
+    radius: float | NDArray[np.float64]
+    breaks: NDArray[np.float64]
+    coefficients: NDArray[np.float64]
+    error: float
+    def __init__(
+        self,
+        density: float,
+        viscosity: float,
+        radius: ArrayLike,
+        breaks: ArrayLike,
+        coefficients: ArrayLike,
+        error: float = 0.0,
+    ) -> None: ...
 
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class UniformElectricField(Force):

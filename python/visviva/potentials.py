@@ -9,8 +9,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, ClassVar, Self
 
-import numpy as np
-
 from visviva import _core
 from visviva._arrays import float_array, number, positive
 from visviva._declared import Declared, make
@@ -20,6 +18,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -227,31 +226,12 @@ def Custom(function: Any, r_min: float, r_max: float, *, tolerance: float = 1e-1
     >>> bool(soft.error <= 1e-12), round(float(soft.force(1.0)), 9)
     (True, 0.707106781)
     """
-    from visviva._compiled import of_distance
-
-    compiled = of_distance(function)
-    if compiled is None and not callable(function):
-        raise InvalidInput(
-            "function", f"expected a function of r, or a compiled double f(double r), got {type(function).__name__}"
-        )
-
-    def sample(r: NDArray[np.float64]) -> NDArray[np.float64]:
-        if compiled is not None:
-            return np.array([compiled(place) for place in r.tolist()])
-        shape = r.shape
-        values = np.asarray(function(r))
-        if values.shape != shape:
-            raise InvalidInput(
-                "function",
-                f"expected one value for each distance, shape {shape}, got shape {values.shape}; write it for arrays, "
-                "or wrap it in numpy.vectorize",
-            )
-        if values.dtype.kind not in "fiu":
-            raise InvalidInput("function", f"expected real numbers, got an array of {values.dtype.name}")
-        return values.astype(np.float64)
+    from visviva._compiled import sampled
 
     low, high = number("r_min", r_min), number("r_max", r_max)
-    breaks, coefficients, error = _core.fitted(sample, (low, high), number("tolerance", tolerance))
+    breaks, coefficients, error = _core.fitted(
+        sampled(function, "r"), (low, high), number("tolerance", tolerance), drag=False
+    )
     made: Potential = _BY_NAME["piecewise_polynomial"](breaks, coefficients, error)
     return made
 

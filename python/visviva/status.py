@@ -8,7 +8,7 @@ __all__ = ["Status"]
 class Status(IntEnum):
     """How a trajectory ended: `STOPPED` is by a terminal event, which is no failure.
 
-    `OUTSIDE_DOMAIN`: bodies came to a distance at which a potential of the scene is not known, as beyond a table.
+    `OUTSIDE_DOMAIN`: bodies came to a distance or a speed at which a force is not known, as beyond a table.
 
     Examples
     --------

@@ -37,6 +37,8 @@ FIRST_POTENTIALS = ["Coulomb", "Yukawa", "LennardJones"]
 METHODS = {method.name: method for method in vv.methods()}
 # Potentials a derivative of which jumps somewhere, the third or a higher one.
 ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
+# As those, in a speed.
+ROUGH_FORCES = {"Drag", "SampledDrag"}
 # A function of one's own is no value that a recipe could hold.
 EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function"})
 
@@ -129,6 +131,16 @@ class Draw:
         last = 64.0 if self.tame else 8.0
         return vv.potentials.Custom(lambda r: strength / r + decay * np.exp(-rate * r), 2.0**-6, last, tolerance=1e-9)
 
+    def sampled_drag(self) -> vv.SampledDrag:
+        """What `drag.custom` makes of a law, known up to speeds that a tame scene does not reach."""
+        slow, fast = self.number("positive"), self.number("not_negative")
+        last = 256.0 if self.tame else 8.0
+        numbers = {name: self.number("positive") for name in ("density", "viscosity")}
+        radius = [self.number("not_negative") for _ in range(self.bodies)]
+        return vv.drag.custom(
+            lambda R: 6 * np.pi * slow / R + fast, 2.0**-6, last, **numbers, radius=radius, tolerance=1e-9
+        )
+
     # What has a table is drawn as a whole: its columns go together.
     TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {
         "Tabulated": tabulated,
@@ -168,6 +180,8 @@ def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
     name, _, potentials = name.partition("/")
     draw = Draw((name, seed), bodies, tame=tame)
     draw.potentials = FIRST_POTENTIALS if potentials else list(POTENTIALS)
+    if name == "SampledDrag":
+        return draw.sampled_drag()
     arguments = {}
     for parameter in declared(FORCES[name]):
         value = draw.value(parameter)

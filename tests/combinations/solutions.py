@@ -10,7 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import FORCES, METHODS, ROUGH, declared
+from drawing import FORCES, METHODS, ROUGH, ROUGH_FORCES, declared
 from law_book import EPSILON
 from recipe import MAX_STEPS, Case, Recipe, Refused
 from running import execute
@@ -117,6 +117,8 @@ def tame(recipe: Recipe) -> Case:
     """The same scene at a span and a method of this law's choosing."""
     if any(type(getattr(force, "potential", None)).__name__ in ROUGH for force in recipe.case().members()[0].forces):
         raise Refused("a higher derivative of the potential jumps, where no method has its order")
+    if any(name in ROUGH_FORCES for name, _ in recipe.forces):
+        raise Refused("a higher derivative of the drag is not finite at rest, or jumps")
     drawn = [FORCES[name.partition("/")[0]] for name, _ in recipe.forces]
     # What is fixed in space fixes the origin: 1e8 away the given positions have digits to 1e-8 alone.
     fixed = any(parameter["kind"] == "point" for force in drawn for parameter in declared(force))

@@ -221,6 +221,8 @@ def test_coincident_ends_of_a_spring_with_a_length_are_refused() -> None:
         vv.Spring([0, 1], [1, 2], [1.0, 2.0], 0.3),
         vv.Harmonic(2.0, [0.5, -1.0, 2.0]),
         vv.QuadraticDrag([1.0, 0.5, 0.0]),
+        vv.Drag(1.5, 0.25, [1.0, 0.5, 0.0]),
+        vv.drag.custom(lambda R: 20.0 / R + 1.0, 0.5, 64.0, density=1.5, viscosity=0.25, radius=[1.0, 0.5, 0.0]),
         vv.UniformElectricField([0.3, -0.4, 1.0], [1.0, -2.0, 0.5]),
         vv.RotatingFrame([0.3, -0.4, 1.0], [0.5, -1.0, 2.0]),
         vv.Damper([0, 1], [1, 2], [1.0, 2.0]),
@@ -249,11 +251,12 @@ def test_a_charge_retraces_its_path_and_drag_does_not() -> None:
     there = scene.run(t=3.0, rtol=1e-12).final.reversed()
     back = there.run(t=there.t0 + 3.0, rtol=1e-12).final
     assert np.allclose(back.particles.position, ONE.position, rtol=0, atol=1e-10)
-    irreversible = vv.LinearDrag(1.0), vv.QuadraticDrag(1.0), vv.Damper(0, 1, 1.0), vv.DrivenForce([1.0, 0, 0], 1.0)
+    drags = vv.LinearDrag(1.0), vv.QuadraticDrag(1.0), vv.Drag(1.0, 1.0, 1.0)
+    irreversible = *drags, vv.Damper(0, 1, 1.0), vv.DrivenForce([1.0, 0, 0], 1.0)
     for force in irreversible:
         with pytest.raises(vv.InvalidInput, match="cannot be reversed"):
             vv.Scene(ONE, force).reversed()
-    resting = vv.LinearDrag(1.0), vv.QuadraticDrag(1.0), vv.UniformMagneticField([0.0, 0.0, 1.0]), vv.Harmonic(1.0)
+    resting = *drags, vv.UniformMagneticField([0.0, 0.0, 1.0]), vv.Harmonic(1.0)
     for force in (*resting, vv.RotatingFrame([0.0, 0.0, 1.0])):
         with pytest.raises(vv.InvalidInput, match="boosted"):
             vv.Scene(ONE, force).in_frame(velocity=[1.0, 0.0, 0.0])

@@ -98,7 +98,7 @@ def test_units_of_powers_of_two_change_no_bit() -> None:
     ("function", "given", "argument", "words"),
     [
         (3.5, {}, "function", "got float"),
-        (lambda r: 1.0, {}, "function", "one value for each distance"),
+        (lambda r: 1.0, {}, "function", "one value for each r"),
         (lambda r: 1j * r, {}, "function", "complex128"),
         (lambda r: 1.0 / (r - 2.0), {}, "function", "got inf at r = 2"),
         (lambda r: np.abs(r - 1.5), {}, "function", "pieces it is met to"),

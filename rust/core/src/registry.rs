@@ -4,8 +4,8 @@ use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
-    ForceDeclaration, central_field, coulomb as charges, damper, driven_force, harmonic, linear_drag, oblate,
-    pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring, uniform_electric_field,
+    ForceDeclaration, central_field, coulomb as charges, damper, drag, driven_force, harmonic, linear_drag,
+    oblate, pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring, uniform_electric_field,
     uniform_field, uniform_magnetic_field,
 };
 use crate::ode::Method;
@@ -129,6 +129,8 @@ pub static FORCES: &[&ForceDeclaration] = &[
     &harmonic::DECLARATION,
     &linear_drag::DECLARATION,
     &quadratic_drag::DECLARATION,
+    &drag::named::DECLARATION,
+    &drag::sampled::DECLARATION,
     &uniform_electric_field::DECLARATION,
     &uniform_magnetic_field::DECLARATION,
     &driven_force::DECLARATION,

@@ -10,6 +10,7 @@ mod arrays;
 mod diagnostic;
 mod drag;
 mod errors;
+mod fitted;
 mod gate;
 mod info;
 mod orbits;
@@ -32,6 +33,8 @@ mod _core {
     #[pymodule_export]
     use crate::drag::{drag_crossover_speed, drag_quadratic, drag_reynolds_number, drag_stokes, drag_throw};
     #[pymodule_export]
+    use crate::fitted::{fitted, tabulated_drag};
+    #[pymodule_export]
     use crate::info::info;
     #[pymodule_export]
     use crate::orbits::{
@@ -40,7 +43,7 @@ mod _core {
     };
     #[pymodule_export]
     use crate::registry::{
-        check_potential, dimensions, fitted, forces, methods, potential, potentials, screening_length,
+        check_potential, dimensions, forces, methods, potential, potentials, screening_length,
     };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};

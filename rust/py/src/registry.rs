@@ -2,9 +2,8 @@
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
-use crate::gate::{compute, compute_attached};
-use crate::solve_ivp::Raised;
-use numpy::{PyArray1, PyArrayDyn, PyReadonlyArrayDyn};
+use crate::gate::compute;
+use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
@@ -12,7 +11,6 @@ use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::memory::reserved;
 use visviva_core::numerics::double_double::DoubleDouble;
-use visviva_core::potentials::fit::fit;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
@@ -202,32 +200,6 @@ type Values<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Distances between two looks at whether somebody asks to stop.
 const AT_A_TIME: usize = 1024;
-
-/// A function of the distance as polynomials in pieces: where they meet, their coefficients and the largest error found.
-/// `sample` gives the values at an array of distances.
-#[pyfunction]
-pub(crate) fn fitted<'py>(
-    py: Python<'py>,
-    sample: &Bound<'py, PyAny>,
-    between: (f64, f64),
-    tolerance: f64,
-) -> PyResult<(Values<'py>, Values<'py>, f64)> {
-    let exception = Raised::default();
-    let outcome = compute_attached(py, |_| {
-        let mut values = |r: &[f64]| {
-            let asked =
-                |values: Bound<'py, PyAny>| copied("function", &values.extract::<Column<'_>>()?, [None]);
-            Ok(exception.kept(sample.call1((PyArray1::from_slice(py, r),)).and_then(asked))?.0)
-        };
-        fit(&mut values, [between.0, between.1], tolerance)
-    });
-    if let Some(exception) = exception.exception() {
-        return Err(exception);
-    }
-    let made = outcome?.whole(py)?;
-    let (breaks, terms) = (made.breaks.len(), made.coefficients.len());
-    Ok((moved(py, made.breaks, &[breaks])?, moved(py, made.coefficients, &[terms])?, made.error))
-}
 
 /// The screening length between two nuclei, in Bohr radii.
 #[pyfunction]

@@ -12,6 +12,7 @@ pub mod central_field;
 pub mod context;
 pub mod coulomb;
 pub mod damper;
+pub mod drag;
 pub mod driven_force;
 pub mod gravity;
 pub mod harmonic;

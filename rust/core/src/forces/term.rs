@@ -201,6 +201,10 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn domain(&self) -> Option<(f64, f64)> {
         None
     }
+    /// The speed of a body up to which it is, in the scene's units, if not at any.
+    fn speed_limit(&self, _particle: usize) -> Option<f64> {
+        None
+    }
     /// A length below which it has no structure, or zero.
     fn length(&self) -> f64 {
         0.0

@@ -44,6 +44,18 @@ pub struct Fit {
     pub error: f64,
 }
 
+/// How messages name what a function is of, and what its errors are relative to.
+#[derive(Clone, Copy, Debug)]
+pub struct Quantities {
+    /// The argument.
+    pub argument: &'static str,
+    /// The size of the function.
+    pub size: &'static str,
+}
+
+/// Of a potential.
+pub const POTENTIAL: Quantities = Quantities { argument: "r", size: "|V| + |r dV/dr|" };
+
 /// The values of a function at distances.
 pub type Sample<'a> = dyn FnMut(&[f64]) -> Result<Vec<f64>> + 'a;
 
@@ -70,21 +82,23 @@ impl Piece {
 /// # Errors
 /// By name: a range or a tolerance that is none, values that are not finite, a function that is not smooth enough, what
 /// the function raises.
-pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64) -> Result<Fit> {
+pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64, quantities: Quantities) -> Result<Fit> {
+    let Quantities { argument, size } = quantities;
     let [low, high] = range;
     if !(low >= 0.0 && low.is_finite()) {
-        return Err(Error::invalid("r_min", format!("expected a finite distance, got {}", number(low))));
+        let message = format!("expected a finite number of at least 0, got {}", number(low));
+        return Err(Error::invalid(&format!("{argument}_min"), message));
     }
     if !(high > low && (high - low) > NARROW * high && high.is_finite()) {
-        let message =
-            format!("expected a finite distance beyond r_min = {}, got {}", number(low), number(high));
-        return Err(Error::invalid("r_max", message));
+        let (low, high) = (number(low), number(high));
+        let message = format!("expected a finite number beyond {argument}_min = {low}, got {high}");
+        return Err(Error::invalid(&format!("{argument}_max"), message));
     }
     if !TOLERANCES.contains(&tolerance) {
         let message = format!("expected a relative tolerance from 1e-12 to 1e-4, got {}", number(tolerance));
         return Err(Error::invalid("tolerance", message));
     }
-    let mut pieces = made(sample, &[range])?;
+    let mut pieces = made(sample, &[range], argument)?;
     for piece in &mut pieces {
         piece.octave = piece.largest();
     }
@@ -108,7 +122,7 @@ pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64) -> Result<F
             return Err(Error::invalid(
                 "function",
                 format!(
-                    "expected a smooth one: with {} pieces it is met to {} of |V| + |r dV/dr| at worst, from r = {} to {}, \
+                    "expected a smooth one: with {} pieces it is met to {} of {size} at worst, from {argument} = {} to {}, \
                      and not to tolerance = {}; raise that, or begin or end before an edge of the function",
                     pieces.len(),
                     number(*worst.1),
@@ -119,7 +133,7 @@ pub fn fit(sample: &mut Sample<'_>, range: [f64; 2], tolerance: f64) -> Result<F
             ));
         }
         let halves: Vec<[f64; 2]> = split.iter().flat_map(|&at| halved(pieces[at].ends)).collect();
-        let mut new = made(sample, &halves)?;
+        let mut new = made(sample, &halves, argument)?;
         for (piece, &from) in new.chunks_mut(2).zip(&split) {
             let octave = pieces[from].octave;
             let long = is_long(pieces[from].ends);
@@ -167,7 +181,7 @@ fn check(at: usize) -> f64 {
 }
 
 /// Pieces from one question to the function.
-fn made(sample: &mut Sample<'_>, ranges: &[[f64; 2]]) -> Result<Vec<Piece>> {
+fn made(sample: &mut Sample<'_>, ranges: &[[f64; 2]], argument: &str) -> Result<Vec<Piece>> {
     let mut r = Vec::with_capacity(ranges.len() * (1 + CHECKS) * TERMS);
     for &range in ranges {
         r.push(range[1]);
@@ -181,7 +195,10 @@ fn made(sample: &mut Sample<'_>, ranges: &[[f64; 2]]) -> Result<Vec<Piece>> {
     }
     if let Some(at) = values.iter().position(|v| !v.is_finite()) {
         let (v, r) = (number(values[at]), number(r[at]));
-        return Err(Error::invalid("function", format!("expected finite values, got {v} at r = {r}")));
+        return Err(Error::invalid(
+            "function",
+            format!("expected finite values, got {v} at {argument} = {r}"),
+        ));
     }
     let of = |(values, &ends): (&[f64], &[f64; 2])| {
         let (nodes, checks) = values.split_at(TERMS);
@@ -253,23 +270,28 @@ fn joined(pieces: &[Piece]) -> Vec<[f64; TERMS]> {
         };
         let (low, from) = lack(-1.0, piece.values[0], before);
         let (high, to) = lack(1.0, piece.values[1], after);
-        let mut p = piece.own;
-        // In (1 + t)/2: its powers, multiplied out.
-        let mut power = [0.0; TERMS];
-        power[0] = 1.0;
-        for c in quintic(2.0, [low, high], from, to) {
-            for (p, part) in p.iter_mut().zip(power) {
-                *p += c * part;
-            }
-            let mut next = power.map(|x| 0.5 * x);
-            for k in 0..TERMS - 1 {
-                next[k + 1] += 0.5 * power[k];
-            }
-            power = next;
-        }
-        p
+        centered(piece.own, quintic(2.0, [low, high], from, to))
     };
     pieces.iter().enumerate().map(joined).collect()
+}
+
+/// The sum of a polynomial of t, from −1 to 1, and of one whose variable is (1 + t)/2.
+pub(crate) fn centered(own: [f64; TERMS], of_unit_interval: [f64; 6]) -> [f64; TERMS] {
+    let mut p = own;
+    // The powers of (1 + t)/2, multiplied out.
+    let mut power = [0.0; TERMS];
+    power[0] = 1.0;
+    for c in of_unit_interval {
+        for (p, part) in p.iter_mut().zip(power) {
+            *p += c * part;
+        }
+        let mut next = power.map(|x| 0.5 * x);
+        for k in 0..TERMS - 1 {
+            next[k + 1] += 0.5 * power[k];
+        }
+        power = next;
+    }
+    p
 }
 
 /// The largest relative difference in a piece.

@@ -8,7 +8,7 @@ const COLUMNS: usize = 2;
 
 /// V(r) = Σ cₖ tᵏ with t = (r − origin)·inverse, `N` = 2 + number of coefficients.
 #[derive(Clone, Debug)]
-pub(super) struct Piecewise<const N: usize> {
+pub(crate) struct Piecewise<const N: usize> {
     rows: Rows<N>,
     first: f64,
     last: f64,
@@ -17,17 +17,17 @@ pub(super) struct Piecewise<const N: usize> {
 impl<const N: usize> Piecewise<N> {
     /// From the places where pieces begin, which ascend, the end of the last, and the pieces:
     /// origin, inverse of the unit of t, coefficients.
-    pub(super) fn new(starts: Vec<f64>, last: f64, rows: Vec<[f64; N]>) -> Self {
+    pub(crate) fn new(starts: Vec<f64>, last: f64, rows: Vec<[f64; N]>) -> Self {
         let first = starts.first().copied().unwrap_or(last);
         Self { rows: Rows::new(starts, rows), first, last }
     }
     /// The range.
-    pub(super) fn domain(&self) -> (f64, f64) {
+    pub(crate) fn domain(&self) -> (f64, f64) {
         (self.first, self.last)
     }
     /// The derivative of that order with respect to r; NaN beyond the range.
     #[inline(always)]
-    pub(super) fn derivative<S: Analytic>(&self, r: S, order: usize) -> S {
+    pub(crate) fn derivative<S: Analytic>(&self, r: S, order: usize) -> S {
         let row = r.columns(&self.rows);
         let t = (r - row[0]) * row[1];
         let mut sum = S::zero();

@@ -7,12 +7,15 @@ use crate::error::{Error, Result};
 use crate::words::number;
 
 /// Coefficients of each piece.
-pub(super) const TERMS: usize = 14;
+pub(crate) const TERMS: usize = 14;
+
+/// Polynomials between breaks, in a variable that goes from −1 to 1 in each piece.
+pub(crate) type Polynomials = Piecewise<{ TERMS + 2 }>;
 
 /// Polynomials in pieces.
 #[derive(Clone, Debug)]
 pub struct PiecewisePolynomial {
-    curve: Piecewise<{ TERMS + 2 }>,
+    curve: Polynomials,
 }
 
 /// What it declares about itself.
@@ -48,14 +51,18 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     },
 };
 
-fn check(breaks: &[f64], coefficients: &[f64]) -> Result<()> {
+/// Refuses what are no pieces.
+///
+/// # Errors
+/// By name.
+pub(crate) fn check(breaks: &[f64], coefficients: &[f64]) -> Result<()> {
     if breaks.len() < 2 {
-        return Err(Error::invalid("breaks", format!("expected at least 2 distances, got {}", breaks.len())));
+        return Err(Error::invalid("breaks", format!("expected at least 2, got {}", breaks.len())));
     }
     let fine = |pair: &[f64]| pair[1] > pair[0] && (2.0 / (pair[1] - pair[0])).is_finite();
     if let Some(at) = breaks.windows(2).position(|pair| !fine(pair)) {
         let (here, next) = (number(breaks[at]), number(breaks[at + 1]));
-        let message = format!("expected ascending distances, got {here} and then {next}");
+        let message = format!("expected ascending numbers, got {here} and then {next}");
         return Err(Error::invalid("breaks", message));
     }
     let expected = TERMS * (breaks.len() - 1);
@@ -66,21 +73,25 @@ fn check(breaks: &[f64], coefficients: &[f64]) -> Result<()> {
     Ok(())
 }
 
+/// From what was checked.
+pub(crate) fn polynomials(breaks: &[f64], coefficients: &[f64]) -> Polynomials {
+    let row = |(ends, own): (&[f64], &[f64])| {
+        let mut row = [0.0; TERMS + 2];
+        (row[0], row[1]) = (0.5 * (ends[0] + ends[1]), 2.0 / (ends[1] - ends[0]));
+        row[2..].copy_from_slice(own);
+        row
+    };
+    let rows: Vec<_> = breaks.windows(2).zip(coefficients.chunks_exact(TERMS)).map(row).collect();
+    let (last, starts) = breaks.split_last().map_or((0.0, &[][..]), |(last, starts)| (*last, starts));
+    Piecewise::new(starts.to_vec(), last, rows)
+}
+
 impl Formula for PiecewisePolynomial {
     const DECLARATION: &'static PotentialDeclaration = &DECLARATION;
     const SINGULAR: bool = false;
 
     fn new(values: &[Value]) -> Self {
-        let (breaks, coefficients) = (values[0].table(), values[1].table());
-        let row = |(ends, own): (&[f64], &[f64])| {
-            let mut row = [0.0; TERMS + 2];
-            (row[0], row[1]) = (0.5 * (ends[0] + ends[1]), 2.0 / (ends[1] - ends[0]));
-            row[2..].copy_from_slice(own);
-            row
-        };
-        let rows: Vec<_> = breaks.windows(2).zip(coefficients.chunks_exact(TERMS)).map(row).collect();
-        let (last, starts) = breaks.split_last().map_or((0.0, &[][..]), |(last, starts)| (*last, starts));
-        Self { curve: Piecewise::new(starts.to_vec(), last, rows) }
+        Self { curve: polynomials(values[0].table(), values[1].table()) }
     }
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())

@@ -75,7 +75,7 @@ fn check(r: &[f64], v: &[f64]) -> Result<()> {
 }
 
 /// Origin, inverse of the length and coefficients of each interval, and of the last point.
-fn pieces(r: &[f64], v: &[f64]) -> Vec<[f64; 8]> {
+pub(crate) fn pieces(r: &[f64], v: &[f64]) -> Vec<[f64; 8]> {
     // In units near one, as fifth powers and differences of fourth order are taken.
     let largest = |values: &[f64]| exponent(values.iter().fold(0.0, |m: f64, x| m.max(x.abs())));
     let (length, energy) = (largest(r), largest(v));

@@ -48,7 +48,8 @@ fn table(seeds: &[f64; 4]) -> Vec<Value> {
 /// What is made of a smooth function from 0.6 to 3.2.
 fn fitted(seeds: &[f64; 4]) -> Vec<Value> {
     let v = |r: &f64| seeds[0] / r + seeds[1] * Exponential::exp(-r * seeds[2].abs()) + seeds[3];
-    let made = fit::fit(&mut |r: &[f64]| Ok(r.iter().map(v).collect()), [0.6, 3.2], 1e-12).unwrap();
+    let made =
+        fit::fit(&mut |r: &[f64]| Ok(r.iter().map(v).collect()), [0.6, 3.2], 1e-12, fit::POTENTIAL).unwrap();
     vec![Value::Table(made.breaks.into()), Value::Table(made.coefficients.into()), Value::Number(made.error)]
 }
 

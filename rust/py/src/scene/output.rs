@@ -196,8 +196,8 @@ fn failure(outcome: &Outcome) -> Option<Error> {
             time,
         }),
         Ending::OutsideDomain => Some(Error::Convergence {
-            message: "bodies came to a distance at which a potential of the scene is not known: it is a table that \
-                      ends there (give it more points, or end the run before it)"
+            message: "bodies came to a distance, or to a speed, at which a force of the scene is not known: it is a table \
+                      that ends there, or a law (give it more points, or end the run before it)"
                 .to_owned(),
             time,
         }),

@@ -2,7 +2,7 @@ use super::*;
 use crate::numerics::elementary::Exponential;
 
 fn of(function: impl Fn(f64) -> f64, range: [f64; 2], tolerance: f64) -> Result<Fit> {
-    fit(&mut |r: &[f64]| Ok(r.iter().map(|&r| function(r)).collect()), range, tolerance)
+    fit(&mut |r: &[f64]| Ok(r.iter().map(|&r| function(r)).collect()), range, tolerance, POTENTIAL)
 }
 
 fn piece(fit: &Fit, at: usize) -> [f64; TERMS] {

@@ -23,7 +23,7 @@ pub enum Ending {
     NoStep,
     /// The state became infinite or undefined.
     NotFinite,
-    /// Bodies came to a distance at which a potential between or about them is not known.
+    /// Bodies came to a distance, or to a speed, at which a force on them is not known.
     OutsideDomain,
     /// The most steps allowed were taken.
     TooManySteps,

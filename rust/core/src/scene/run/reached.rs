@@ -70,11 +70,14 @@ pub(super) fn gather(
     Ok(())
 }
 
-/// Whether what became undefined did so by leaving the distances at which a potential is known: it is no number there.
+/// Whether what became undefined did so by leaving the distances or the speeds at which a force is known: it is no number there.
 fn left_a_domain(scene: &Scene, report: &Report) -> bool {
     let undefined = || report.states.iter().flatten().flatten().any(|x| x.is_nan());
     report.ending == Ending::NotFinite
-        && scene.forces.iter().any(|force| force.domain().is_some())
+        && scene.forces.iter().any(|force| {
+            force.domain().is_some()
+                || report.unit.bodies.iter().any(|&body| force.speed_limit(body).is_some())
+        })
         && undefined()
 }
 

@@ -13,7 +13,7 @@ const CLOSE: f64 = 1e-6;
 /// … or so close that an orbit there is over in so many of the shortest steps that the time can tell.
 const STEPS: f64 = 1e6;
 
-/// Steps that fall to zero at an end of what is known of a potential stop nearer to it than this share of its distance.
+/// Steps that fall to zero at an end of what is known of a force stop nearer to it than this share of the distance or speed.
 const AT_THE_END: f64 = 1e-6;
 
 /// Whether bodies at those places are at a distance where a potential ends.
@@ -34,6 +34,15 @@ fn at_an_end(job: &Job<'_>, places: &[[f64; 3]]) -> bool {
             None => (0..places.len())
                 .any(|i| (i + 1..places.len()).any(|j| ending(distance(places[i], places[j])))),
         }
+    })
+}
+
+/// Whether a body of a unit is as fast as a force is known.
+fn at_a_speed_limit(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize) -> bool {
+    unit.unit.bodies.iter().enumerate().any(|(slot, &body)| {
+        let speed = distance(unit.pick(slot, state.v(), lane), [0.0; 3]);
+        let limits = job.plan.forces.iter().filter_map(|force| force.speed_limit(body));
+        limits.into_iter().any(|limit| speed >= (1.0 - AT_THE_END) * job.plan.units.take(limit, [1, 0, -1]))
     })
 }
 
@@ -75,7 +84,7 @@ pub(super) fn why(
             }
         }
     }
-    if at_an_end(job, &places) {
+    if at_an_end(job, &places) || at_a_speed_limit(job, unit, state, lane) {
         return Ending::OutsideDomain;
     }
     let (length, speed) = unit.size;
