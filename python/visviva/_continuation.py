@@ -31,14 +31,15 @@ def left_behind(start: _core._Scene, result: dict[str, Any]) -> _core._Continuat
     # A run that goes on with another keeps where that one began.
     before = start["continuation"] if shared["goes_on"] else None
     begun: Any = start if before is None else before
+    position, velocity = (last.get(f"begun_{name}", begun[name]) for name in ("position", "velocity"))
     return {
         "form": shared["form"],
         "method": shared["method"],
         "dt": shared["dt"],
         "t0": shared["t0"],
         "node": int(nodes[0]),
-        "position": begun["position"],
-        "velocity": begun["velocity"],
+        "position": position,
+        "velocity": velocity,
         "held": last["held"],
     }
 

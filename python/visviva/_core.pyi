@@ -15,6 +15,7 @@ class _Scene(TypedDict):
     mass: NDArray[np.float64]
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    radius: NDArray[np.float64] | None
     forces: list[dict[str, Any]]
     own_forces: _OwnForces | None
     t0: float
@@ -45,6 +46,8 @@ class _Request(_Scene):
     max_steps: int | None
     record: list[str]
     events: list[dict[str, Any]]
+    collisions: str | None
+    restitution: float | None
 
 class _Problem(TypedDict):
     """An initial value problem; events with their direction and the number of the zero that ends the run."""

@@ -57,6 +57,19 @@ _EVENTS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "events/velocity": ("f8", ("K", "N", 3)),
     "events/member": ("i8", ("K",)),
 }
+# Of spheres, and of a run with collisions (C lines).
+_RADIUS: dict[str, tuple[str, tuple[str | int, ...]]] = {"radius": ("f8", ("B", "N"))}
+_COLLISIONS: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "collisions/t": ("f8", ("C",)),
+    "collisions/first": ("i8", ("C",)),
+    "collisions/second": ("i8", ("C",)),
+    "collisions/speed": ("f8", ("C",)),
+    "collisions/position": ("f8", ("C", 3)),
+    "collisions/energy_lost": ("f8", ("C",)),
+    "collisions/survivor": ("i8", ("C",)),
+    "collisions/member": ("i8", ("C",)),
+    "final/mass": ("f8", ("B", "N")),
+}
 # Of a run that left something behind for another, and of one that went on with what another left: K blocks, S places.
 _HELD: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "final/held": ("f8", ("B", "blocks", "places", 3)),
@@ -216,12 +229,16 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
         which = arrays["events/which"]
         if ((which < 0) | (which >= looked_for)).any():
             raise Damaged("the file has an event that was not looked for")
+    if "radius" in arrays:
+        _check_all(_RADIUS, arrays, lengths)
+    if any(name.startswith("collisions/") for name in arrays):
+        _check_collisions(arrays, lengths)
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if group == "columns" and member:
             axes = ("B", "T", *_COLUMNS.get(member, array.shape[2:]))
             _check_array(name, array, "f8", axes, lengths)
-        elif name not in _ARRAYS and name not in _EVENTS:
+        elif name not in _ARRAYS | _EVENTS | _RADIUS | _COLLISIONS:
             # Another version may keep more of each copy.
             if group not in GROUPS or not member:
                 raise Damaged(f"the file has an array {name!r} that this version does not know")
@@ -231,6 +248,18 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
     known = {int(status) for status in Status}
     if not known.issuperset(arrays["status"].tolist()):
         raise Damaged("the file has a status that this version does not know")
+
+
+def _check_collisions(arrays: dict[str, NDArray[Any]], lengths: dict[str, int]) -> None:
+    _check_all(_COLLISIONS, arrays, lengths)
+    copies, first, second = (arrays[f"collisions/{name}"] for name in ("member", "first", "second"))
+    survivor = arrays["collisions/survivor"]
+    if ((copies < 0) | (copies >= lengths["B"])).any():
+        raise Damaged("the file has a collision of a copy that there is not")
+    if ((first < 0) | (second <= first) | (second >= lengths["N"])).any():
+        raise Damaged("the file has a collision of bodies that there are not")
+    if ((survivor != -1) & (survivor != first) & (survivor != second)).any():
+        raise Damaged("the file has a merger of which another body is left")
 
 
 def _check_all(

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from math import fsum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva._mergers import by_era
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.invariants import conserved, internal_motion, kept_by_forces, of_scene, reference_point
@@ -21,6 +22,7 @@ from visviva.invariants import conserved, internal_motion, kept_by_forces, of_sc
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.scene import Scene
     from visviva.trajectory import Trajectory
 
 __all__ = ["Conservation", "Drift"]
@@ -172,9 +174,12 @@ def _drift(name: str, t: NDArray[np.float64], change: NDArray[np.float64], scale
 def _virial(trajectory: Trajectory, closed: bool) -> float:
     if not {"position", "velocity"} <= set(trajectory.recorded) or len(trajectory.t) < 2:
         return float("nan")
-    scene, position, velocity = trajectory.scene, trajectory.position, trajectory.velocity
-    sums = conserved(scene, position, velocity, np.zeros(3), ["kinetic_energy", "virial"])
-    kinetic = internal_motion(scene, position, velocity)["kinetic_energy"] if closed else sums["kinetic_energy"]
+
+    def told(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64] | None) -> Any:
+        return conserved(scene, position, velocity, np.zeros(3), ["kinetic_energy", "virial"])
+
+    sums = by_era(trajectory, told)
+    kinetic = by_era(trajectory, internal_motion)["kinetic_energy"] if closed else sums["kinetic_energy"]
     weights = np.abs(np.diff(trajectory.t))
 
     def mean(values: NDArray[np.float64]) -> float:

@@ -17,7 +17,7 @@ from visviva._keywords import frozen, known_keywords
 from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.particles import Particles, read_only
+from visviva.particles import Particles, radius_array, read_only
 from visviva.recorded import Recorded
 from visviva.runnable import Runnable
 from visviva.status import Status
@@ -47,6 +47,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         The forces, the time, and whatever the copies share.
     mass : ndarray, shape (B, N)
     position, velocity : ndarray, shape (B, N, 3)
+    radius : ndarray, shape (B, N)
     forces : tuple of tuple of Force
         Those of each copy.
 
@@ -61,7 +62,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     (2, (2, 2, 3), False)
     """
 
-    __slots__ = ("_keywords", "forces", "mass", "position", "scene", "velocity")
+    __slots__ = ("_keywords", "forces", "mass", "position", "radius", "scene", "velocity")
 
     _is_ensemble = True
 
@@ -69,6 +70,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     mass: NDArray[np.float64]
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    radius: NDArray[np.float64]
     forces: tuple[tuple[Force, ...], ...]
 
     def __init__(
@@ -78,9 +80,10 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
+        radius: ArrayLike | None = None,
         parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
     ) -> None:
-        own = {"mass": scene.particles.mass, "position": scene.particles.position, "velocity": scene.particles.velocity}
+        own = {name: getattr(scene.particles, name) for name in ("mass", "position", "velocity", "radius")}
         given = {
             name: read_only(float_array(name, value, ("B", *own[name].shape)), value)
             for name, value in (("position", position), ("velocity", velocity))
@@ -88,10 +91,13 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         }
         if mass is not None:
             given["mass"] = read_only(mass_array(mass, ("B", *own["mass"].shape)), mass)
+        if radius is not None:
+            each = float_array("radius", radius, ("B", *own["radius"].shape))
+            given["radius"] = read_only(radius_array(each, each.shape), radius)
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
         if not given and own_forces is None:
             raise InvalidInput(
-                "position", "give position, velocity, mass or parameters with a leading axis over the copies"
+                "position", "give position, velocity, mass, radius or parameters with a leading axis over the copies"
             )
         lengths = {name: array.shape[0] for name, array in given.items()}
         if own_forces is not None:
@@ -110,6 +116,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             "mass": full["mass"],
             "position": full["position"],
             "velocity": full["velocity"],
+            "radius": full["radius"] if full["radius"].any() else None,
             "forces": scene._keywords["forces"],
             "own_forces": None,
             "t0": scene.t0,
@@ -138,13 +145,14 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __getitem__(self, index: int | slice) -> Scene | EnsembleScene:
         chosen = _chosen(index, len(self))
         mass, position, velocity = self.mass[chosen], self.position[chosen], self.velocity[chosen]
+        radius = self.radius[chosen]
         continuation = of_copies(self._keywords["continuation"], _rows(chosen))
         if isinstance(chosen, slice):
-            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity)
+            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius)
             return attached(some._own(self.forces[chosen]), continuation)
         from visviva.scene import Scene
 
-        bodies = Particles(mass, position, velocity, self.scene.particles.names)
+        bodies = Particles(mass, position, velocity, self.scene.particles.names, radius)
         return attached(Scene(bodies, *self.forces[chosen], t0=self.scene.t0), continuation)
 
     if not TYPE_CHECKING:
@@ -165,7 +173,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
-        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces)
+        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, self.radius)
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -229,8 +237,9 @@ class EnsembleTrajectory(Recorded):
         for group in ("columns", "final", "per_trajectory"):
             result[group] = {name: values[rows] for name, values in self._result[group].items()}
         result["status"] = self.status[rows]
-        if "events" in self._result:
-            result["events"] = _of_copies(self._result["events"], range(len(self))[rows])
+        for table in ("events", "collisions"):
+            if table in self._result:
+                result[table] = _of_copies(self._result[table], range(len(self))[rows])
         own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
         result["stats"] = {**result["stats"], **own}
         if isinstance(chosen, slice):
@@ -292,7 +301,10 @@ class EnsembleTrajectory(Recorded):
             )
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
-        copies = EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=self.ensemble.mass)
+        mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
+        copies = EnsembleScene(
+            shared, position=last["position"], velocity=last["velocity"], mass=mass, radius=radius
+        )
         return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
 
 
@@ -329,6 +341,7 @@ def _rebuild(
     mass: NDArray[np.float64],
     continuation: _core._Continuation | None = None,
     forces: tuple[tuple[Force, ...], ...] | None = None,
+    radius: NDArray[np.float64] | None = None,
 ) -> EnsembleScene:
-    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass)
+    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius)
     return attached(copies if forces is None else copies._own(forces), continuation)

@@ -2,7 +2,7 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header, as are the
+``per_trajectory/<name>``, ``radius`` of spheres, ``collisions/<name>``, and ``events/<name>`` of a run with events, whose definitions are in the header, as are the
 names of bodies. What a run left behind for another to go on with is in ``final/held`` and ``final/node``; what the run
 itself went on with in ``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
@@ -80,6 +80,9 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
     arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
     arrays |= {f"events/{name}": array for name, array in result.get("events", {}).items()}
+    arrays |= {f"collisions/{name}": array for name, array in result.get("collisions", {}).items()}
+    if start["radius"] is not None:
+        arrays["radius"] = start["radius"]
     if start["continuation"] is not None:
         before = dict(start["continuation"])
         header["start_continuation"] = {name: before.pop(name) for name in (*SHARED, "node")}
@@ -154,6 +157,8 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
         result["continuation"] = header["continuation"]
     if any(name.startswith("events/") for name in arrays):
         result |= {"events": {}, "looked_for": header.get("events", [])}
+    if any(name.startswith("collisions/") for name in arrays):
+        result["collisions"] = {}
     before: Any = header.get("start_continuation")
     if before is not None:
         before |= {name: arrays.pop(f"final/start_{name}") for name in ("position", "velocity", "held")}
@@ -163,11 +168,14 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
             result[group][member] = array
     forces = [force_from_core(description) for description in header["forces"]]
     names = header.get("names")
-    first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0], names)
+    radius = arrays.get("radius", np.zeros(arrays["mass"].shape))
+    first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0], names, radius[0])
     scene = Scene(first, *forces, t0=header["t0"])
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
-        copies = EnsembleScene(scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"])
+        copies = EnsembleScene(
+            scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"], radius=radius
+        )
         if header.get("own_forces") is not None:
             sets, of_copy = header["own_forces"]
             own = [tuple(force_from_core(description) for description in forces) for forces in sets]
@@ -176,6 +184,7 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     else:
         run = Trajectory(attached(scene, before), result)
     _ = run.stats, run.plan, run.status, "events" in result and run.events
+    _ = "collisions" in result and run.collisions
     return run
 
 

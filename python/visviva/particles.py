@@ -1,4 +1,4 @@
-"""The bodies of a scene: masses, positions and velocities, checked once and never changed."""
+"""The bodies of a scene: masses, positions, velocities and radii, checked once and never changed."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ __all__ = ["Particles"]
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Particles:
-    """Point particles.
+    """Point particles, or spheres.
 
     Parameters
     ----------
@@ -39,6 +39,9 @@ class Particles:
     names : sequence of str, optional
         A name for each body, all different. Runs, files, pictures and whatever is made from the particles keep them;
         forces, events and results take them in place of indices: ``out["Jupiter"]``.
+    radius : array_like, a number or shape (N,), optional
+        Radii, not negative; 0, the default, is a point. They matter to ``run(collisions=…)`` alone: a point touches
+        bodies that have a radius, and never another point.
 
     The arrays are copied and the copies are read-only float64. Units are the caller's own, one consistent system for
     the whole scene. Indexing with names, indices, a slice or a mask gives the particles of some of the bodies.
@@ -46,7 +49,7 @@ class Particles:
     Raises
     ------
     visviva.InvalidInput
-        For a wrong shape, complex or object arrays, NaN or infinity, a negative mass, or names that are not one for
+        For a wrong shape, complex or object arrays, NaN or infinity, a negative mass or radius, or names that are not one for
         each body.
 
     Examples
@@ -63,6 +66,7 @@ class Particles:
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     names: tuple[str, ...]
+    radius: NDArray[np.float64]
 
     def __init__(
         self,
@@ -70,6 +74,7 @@ class Particles:
         position: ArrayLike,
         velocity: ArrayLike | None = None,
         names: Sequence[str] | None = None,
+        radius: ArrayLike = 0.0,
     ) -> None:
         sizes: Sizes = {}
         object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
@@ -78,6 +83,7 @@ class Particles:
             velocity = np.zeros(self.position.shape)
         object.__setattr__(self, "velocity", read_only(float_array("velocity", velocity, ("N", 3), sizes), velocity))
         object.__setattr__(self, "names", checked_names(names, len(self.mass)))
+        object.__setattr__(self, "radius", read_only(radius_array(radius, self.mass.shape, sizes), radius))
 
     def __len__(self) -> int:
         return len(self.mass)
@@ -85,7 +91,9 @@ class Particles:
     def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> Particles:
         chosen = body_indices("bodies", bodies, self.names, len(self))
         names = [self.names[body] for body in chosen] if self.names else None
-        return Particles(self.mass[chosen], self.position[chosen], self.velocity[chosen], names)
+        return Particles(
+            self.mass[chosen], self.position[chosen], self.velocity[chosen], names, self.radius[chosen]
+        )
 
     def __iter__(self) -> Iterator[Particles]:
         return (self[body] for body in range(len(self)))
@@ -103,19 +111,20 @@ class Particles:
             np.array_equal(self.mass, other.mass)
             and np.array_equal(self.position, other.position)
             and np.array_equal(self.velocity, other.velocity)
+            and np.array_equal(self.radius, other.radius)
             and self.names == other.names
         )
 
     def __hash__(self) -> int:
         # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
-        return hash((self.names, *((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity))))
+        return hash((self.names, *((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity, self.radius))))
 
     def __reduce__(self) -> tuple[type[Particles], tuple[Any, ...]]:
-        return Particles, (self.mass, self.position, self.velocity, self.names)
+        return Particles, (self.mass, self.position, self.velocity, self.names, self.radius)
 
     def _changed(self, **changes: ArrayLike) -> Particles:
         """The same bodies with other numbers."""
-        own = {"mass": self.mass, "position": self.position, "velocity": self.velocity}
+        own = {"mass": self.mass, "position": self.position, "velocity": self.velocity, "radius": self.radius}
         return Particles(**(own | changes), names=self.names)
 
     @classmethod
@@ -286,6 +295,7 @@ class Particles:
                 "mass": self.mass * mass,
                 "position": self.position * length,
                 "velocity": self.velocity * (length / time),
+                "radius": self.radius * length,
             }
         return self._changed(**{name: in_range(name, getattr(self, name), values) for name, values in new.items()})
 
@@ -304,6 +314,16 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
         raise InvalidInput("mass", "the total mass is zero, so there is no centre of mass; give one body a mass")
     products = (values.reshape(values.shape[0], -1).T * weights).tolist()
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
+
+
+def radius_array(value: ArrayLike, shape: tuple[int, ...], sizes: Sizes | None = None) -> NDArray[np.float64]:
+    """Radii of this shape: one for all, or one for each body."""
+    from visviva.errors import InvalidInput
+
+    given = float_array("radius", value, () if np.ndim(value) == 0 else ("N",) if len(shape) == 1 else shape, sizes)
+    if (given < 0.0).any():
+        raise InvalidInput("radius", f"expected radii of at least 0, got {float(given.min())}; 0 is a point")
+    return given if given.shape == shape else np.full(shape, float(given))
 
 
 def read_only(array: NDArray[np.float64], given: object = None) -> NDArray[np.float64]:

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.body import BodyMotion
+    from visviva.collision_table import CollisionTable
     from visviva.events import EventTable
     from visviva.orbits import Elements
     from visviva.runnable import Runnable
@@ -233,8 +234,11 @@ class Recorded(ABC):
         >>> out.elements(["Jupiter", "Saturn"], about="Sun").semi_major_axis.round(2).tolist()
         [[5.2, 9.54], [5.2, 9.58]]
         """
+        from visviva._mergers import merged
         from visviva._osculating import elements_of
 
+        if merged(self):
+            raise InvalidInput("elements", "bodies merged on the way, and their masses changed; use out.final.elements")
         return elements_of(self._start, self.position, self.velocity, bodies, about, G)
 
     @property
@@ -258,6 +262,23 @@ class Recorded(ABC):
         # Files of before they were kept have none.
         definitions = tuple(map(from_description, self._result.get("looked_for", ())))
         return EventTable._from_core(self._result["events"], definitions)
+
+    @property
+    def collisions(self) -> CollisionTable:
+        """The collisions of spheres.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If none were asked for.
+        """
+        if "collisions" not in self._result:
+            raise InvalidInput(
+                "collisions", 'spheres passed through each other; run again with collisions="bounce", "merge" or "stop"'
+            )
+        from visviva.collision_table import CollisionTable
+
+        return CollisionTable._from_core(self._result["collisions"])
 
     @property
     def stats(self) -> Stats:

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from visviva._progress import Progress
     from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import ColumnName, EventFunction, MethodName
+    from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName
 
 __all__ = ["PlanRequest", "RunRequest", "asked_by", "execute"]
 
@@ -96,6 +96,8 @@ class PlanRequest:
     max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
     record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
     events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
+    collisions: CollisionRule | None = field(default=None, metadata=_told(_or_none(_word)))
+    restitution: float | None = field(default=None, metadata=_told(_or_none(number)))
 
     def to_core(self, prepared: _core._Scene, names: tuple[str, ...]) -> _core._Request:
         """What ``_core.run`` and ``_core.plan`` both take, of a scene of bodies with these names."""

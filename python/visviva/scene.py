@@ -101,6 +101,7 @@ class Scene(Runnable[Trajectory], Framed):
             "mass": particles.mass[None],
             "position": particles.position[None],
             "velocity": particles.velocity[None],
+            "radius": particles.radius[None] if particles.radius.any() else None,
             "forces": [force._to_core() for force in forces],
             "own_forces": None,
             "t0": t0,
@@ -136,6 +137,7 @@ class Scene(Runnable[Trajectory], Framed):
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
+        radius: ArrayLike | None = None,
         parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
     ) -> EnsembleScene:
         """Many copies of the scene that differ in their states, or in the parameters of their forces.
@@ -146,6 +148,8 @@ class Scene(Runnable[Trajectory], Framed):
             One state per copy; what is not given is the scene's own in every copy.
         mass : array_like, shape (B, N), optional
             Masses per copy.
+        radius : array_like, shape (B, N), optional
+            Radii per copy.
         parameters : dict of dict, optional
             For some forces of the scene (each given itself, by its place among them or by the name of its class),
             values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
@@ -177,7 +181,9 @@ class Scene(Runnable[Trajectory], Framed):
         """
         from visviva.ensemble import EnsembleScene
 
-        return EnsembleScene(self, position=position, velocity=velocity, mass=mass, parameters=parameters)
+        return EnsembleScene(
+            self, position=position, velocity=velocity, mass=mass, radius=radius, parameters=parameters
+        )
 
     def advise(self, t: ArrayLike, *, accuracy: float, of: Literal["energy", "position"] = "energy") -> Advice:
         """Which method and which step would hold an error, by a trial of the first stretch of the run.

@@ -9,6 +9,7 @@ class Status(IntEnum):
     """How a trajectory ended: `STOPPED` is by a terminal event, which is no failure.
 
     `OUTSIDE_DOMAIN`: bodies came to a distance or a speed at which a force is not known, as beyond a table.
+    `RESTING`: spheres that bounce came to rest on each other, in ever smaller bounces or pressed together.
 
     Examples
     --------
@@ -24,3 +25,4 @@ class Status(IntEnum):
     TOO_MANY_STEPS = 4
     STOPPED = 5
     OUTSIDE_DOMAIN = 6
+    RESTING = 7

@@ -104,6 +104,7 @@ class Trajectory(Recorded):
         raise InvalidInput("record", f"{name} was not recorded; run again with {name!r} in record")
 
     def _derive(self, name: str, about: NDArray[np.float64] | None = None) -> NDArray[np.float64]:
+        from visviva._mergers import by_era
         from visviva.invariants import conserved
 
         needs = ("position", "velocity") if _DERIVED[name] else ("position",)
@@ -114,8 +115,12 @@ class Trajectory(Recorded):
                 f"{name} was not recorded and cannot be computed without {' and '.join(missing)}; "
                 f"run again with {name!r} or {', '.join(map(repr, needs))} in record",
             )
-        velocity = self.velocity if "velocity" in needs else None
-        return conserved(self.scene, self.position, velocity, np.zeros(3) if about is None else about, [name])[name]
+        point = np.zeros(3) if about is None else about
+
+        def told(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64] | None) -> Any:
+            return conserved(scene, position, velocity, point, [name])
+
+        return by_era(self, told, velocity="velocity" in needs)[name]
 
     @property
     def status(self) -> Status:
@@ -141,6 +146,9 @@ class Trajectory(Recorded):
         """
         last = self._result["final"]
         scene = self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+        if "mass" in last:
+            own = {name: last[name][0] for name in ("mass", "radius") if name in last}
+            scene = scene._like(scene.particles._changed(**own), scene.forces, scene.t0)
         return attached(scene, left_behind(self.scene._keywords, self._result))
 
     def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
@@ -162,11 +170,12 @@ class Trajectory(Recorded):
         >>> out.angular_momentum_about([1.0, 0.0, 0.0]).shape
         (2, 3)
         """
+        from visviva._mergers import by_era
         from visviva.invariants import internal_motion, reference_point
 
         point = reference_point(about)
         if point is None:
-            return internal_motion(self.scene, self.position, self.velocity)["angular_momentum"]
+            return by_era(self, internal_motion)["angular_momentum"]
         return self._derive("angular_momentum", point)
 
     def conservation(self, about: ArrayLike | str | None = None) -> Conservation:

@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from visviva._progress import Progress, Report
 
-__all__ = ["ColumnName", "EventFunction", "MethodName", "Progress", "Report", "SolverName"]
+__all__ = ["CollisionRule", "ColumnName", "EventFunction", "MethodName", "Progress", "Report", "SolverName"]
 
 EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], Any]
 """A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
+
+CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
+"""What spheres do that touch."""
 
 # written by tools/write_names.py: begin
 MethodName: TypeAlias = Literal[

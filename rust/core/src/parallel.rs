@@ -34,6 +34,8 @@ pub struct Control {
     cancelled: Flag,
     done: AtomicU64,
     total: AtomicU64,
+    /// Whether only what is counted as a whole is counted.
+    whole: AtomicBool,
 }
 
 impl Control {
@@ -45,8 +47,20 @@ impl Control {
     pub fn set_total(&self, total: u64) {
         self.total.store(total, Ordering::Relaxed);
     }
+    /// From now on only [`count`](Self::count) counts, up to `total`: the parts of what is done do not know the whole.
+    pub fn count_whole(&self, total: u64) {
+        self.whole.store(true, Ordering::Relaxed);
+        self.set_total(total);
+    }
+    /// Counts so many units of a whole.
+    pub fn count(&self, done: u64) {
+        let _: u64 = self.done.fetch_add(done, Ordering::Relaxed);
+    }
     /// Says how much more there is to do, where work is begun part by part.
     pub fn add_total(&self, total: u64) {
+        if self.whole.load(Ordering::Relaxed) {
+            return;
+        }
         let _: u64 = self.total.fetch_add(total, Ordering::Relaxed);
     }
     /// Asks every thread to stop at its next tick.
@@ -116,7 +130,9 @@ impl<'a> Ticker<'a> {
     /// Counts `done` more units of progress.
     #[inline]
     pub fn advance(&mut self, done: u64) {
-        let _: u64 = self.control.done.fetch_add(done, Ordering::Relaxed);
+        if !self.control.whole.load(Ordering::Relaxed) {
+            self.control.count(done);
+        }
     }
 
     /// Reads the clock, adapts the stride, and calls the monitor when it is due.

@@ -136,6 +136,10 @@ impl ForceTerm for Coulomb {
     fn names_bodies(&self) -> bool {
         self.charge.len() > 1
     }
+    fn tells_bodies_apart(&self) -> bool {
+        true
+    }
+
     fn conserves(&self) -> Conserves {
         Conserves::EVERYTHING
     }

@@ -58,6 +58,10 @@ impl ForceTerm for QuadraticDrag {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
     }
+    fn tells_bodies_apart(&self) -> bool {
+        self.coefficient.len() > 1
+    }
+
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let ratio = context.per_body(|system, slot| {
             let coefficient = context.units.take(self.coefficient(system.bodies[slot]), COEFFICIENT);

@@ -169,6 +169,11 @@ pub trait ForceTerm: Debug + Send + Sync {
     fn names_bodies(&self) -> bool {
         matches!(self.coupling(), Coupling::Listed(_))
     }
+    /// Whether a body that is put together of two would not feel it as both did: it names bodies, or has numbers for each
+    /// or charges.
+    fn tells_bodies_apart(&self) -> bool {
+        self.names_bodies()
+    }
     /// What it leaves constant.
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING

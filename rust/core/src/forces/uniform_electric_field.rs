@@ -98,6 +98,10 @@ impl ForceTerm for UniformElectricField {
     fn names_bodies(&self) -> bool {
         self.charge.len() > 1
     }
+    fn tells_bodies_apart(&self) -> bool {
+        true
+    }
+
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }

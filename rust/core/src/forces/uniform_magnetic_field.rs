@@ -94,6 +94,10 @@ impl ForceTerm for UniformMagneticField {
     fn needs(&self) -> Needs {
         Needs { rotation: true, ..Needs::default() }
     }
+    fn tells_bodies_apart(&self) -> bool {
+        true
+    }
+
     fn conserves(&self) -> Conserves {
         Conserves { energy: true, ..Conserves::NOTHING }
     }

@@ -29,6 +29,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
         max_steps: None,
         record: Vec::new(),
         events: Vec::new(),
+        collisions: None,
         threads,
     };
     let mut plan = Plan::new(scene, &request, ticker)?;

@@ -97,6 +97,20 @@ impl<'a> Places<'a> {
 }
 
 impl Held {
+    /// What one copy holds.
+    pub fn of_copy(&self, copy: usize) -> Self {
+        let numbers = self.numbers[self.at(copy, 0, 0)..self.at(copy + 1, 0, 0)].to_vec();
+        Self { numbers, ..*self }
+    }
+
+    /// The same of one copy whose bodies are these: each in the place where it was.
+    pub fn of_bodies(&self, places: &[usize]) -> Self {
+        let point = |block, &place: &usize| &self.numbers[self.at(0, block, place)..][..3];
+        let numbers =
+            (0..self.blocks).flat_map(|block| places.iter().flat_map(move |place| point(block, place)));
+        Self { numbers: numbers.copied().collect(), slots: places.len(), ..*self }
+    }
+
     /// Room for what copies of a scene hold that run by these plans; `None` if it would be too much.
     ///
     /// # Errors
@@ -157,6 +171,7 @@ impl Continuation {
             mass: scene.mass.clone(),
             position: from.position.clone(),
             velocity: from.velocity.clone(),
+            radius: scene.radius.clone(),
             forces: scene.forces.clone(),
             own_forces: scene.own_forces.clone(),
             t0: from.t0,

@@ -7,6 +7,7 @@
 
 mod sight;
 
+pub use super::collisions::Spheres;
 pub use sight::{Moving, Sight, apart};
 
 use super::Scene;
@@ -61,6 +62,8 @@ pub enum What {
     },
     /// The energy of all bodies has this value.
     Energy(f64),
+    /// Spheres come to touch, any two of them.
+    Contact(Arc<Spheres>),
     /// Somebody else's function is zero.
     Function(Arc<Function>),
 }
@@ -72,6 +75,7 @@ impl fmt::Debug for What {
             Self::Plane { body, point, normal } => write!(formatter, "Plane({body}, {point:?}, {normal:?})"),
             Self::Apsis { body, about } => write!(formatter, "Apsis({body}, {about:?})"),
             Self::Energy(value) => write!(formatter, "Energy({value:?})"),
+            Self::Contact(_) => write!(formatter, "Contact"),
             Self::Function(_) => write!(formatter, "Function"),
         }
     }
@@ -129,7 +133,7 @@ impl Event {
             What::Distance { bodies: (i, j), .. } => Some(vec![*i, *j]),
             What::Plane { body, .. } | What::Apsis { body, about: Focus::Point(_) } => Some(vec![*body]),
             What::Apsis { body, about: Focus::Body(other) } => Some(vec![*body, *other]),
-            What::Energy(_) | What::Function(_) => None,
+            What::Energy(_) | What::Contact(_) | What::Function(_) => None,
         }
     }
 
@@ -162,7 +166,7 @@ impl Event {
         let origin = if self.asks_where() { view.origin.at(view.elapsed) } else { Moved::NOWHERE };
         let mut sight = self.sight_of(view.bodies, places, &origin);
         match &self.what {
-            What::Distance { .. } | What::Plane { .. } | What::Apsis { .. } => {}
+            What::Distance { .. } | What::Plane { .. } | What::Apsis { .. } | What::Contact(_) => {}
             What::Energy(level) => sight.value = energy(view, around, ticker)? - level,
             What::Function(function) => sight.value = call(&**function, view, around)?,
         }
@@ -178,7 +182,7 @@ impl Event {
                 What::Plane { point, .. } => size(*point) + size(sight.distance),
                 What::Apsis { .. } => size(sight.distance) * size(sight.velocity),
                 What::Energy(level) => level.abs(),
-                What::Function(_) => 0.0,
+                What::Contact(_) | What::Function(_) => 0.0,
             }
     }
 

@@ -5,6 +5,7 @@
 
 pub mod acceleration;
 pub mod closed_form;
+pub mod collisions;
 pub mod columns;
 pub mod continuation;
 pub mod events;
@@ -51,6 +52,8 @@ pub struct Scene {
     pub forces: Vec<Arc<dyn ForceTerm>>,
     /// The forces of each copy, if they differ.
     pub own_forces: Option<OwnForces>,
+    /// Radii, as the masses; none if all bodies are points.
+    pub radius: Vec<f64>,
     /// The time of this state.
     pub t0: f64,
     /// How a run with fixed steps came to this state, if one did.
@@ -71,6 +74,11 @@ impl Scene {
         &self.velocity[copy * self.particles..(copy + 1) * self.particles]
     }
 
+    /// The radii of a copy; none if all bodies are points.
+    pub fn radii(&self, copy: usize) -> &[f64] {
+        self.radius.get(copy * self.particles..(copy + 1) * self.particles).unwrap_or_default()
+    }
+
     /// The forces of a copy.
     pub fn forces_of(&self, copy: usize) -> &[Arc<dyn ForceTerm>] {
         self.own_forces.as_ref().map_or(&self.forces, |own| &own.sets[own.of_copy[copy]])
@@ -89,7 +97,12 @@ impl Scene {
     /// each other without softening, a particle on a singular center, a massless particle where its mass is needed.
     pub fn validate(&self) -> Result<()> {
         let count = self.copies * self.particles;
-        if self.mass.len() != count || self.position.len() != count || self.velocity.len() != count {
+        let radii = self.radius.len();
+        if (radii != 0 && radii != count)
+            || self.mass.len() != count
+            || self.position.len() != count
+            || self.velocity.len() != count
+        {
             return Err(Error::Internal("the arrays of a scene differ in length".to_owned()));
         }
         for (index, &mass) in self.mass.iter().enumerate() {
@@ -98,6 +111,15 @@ impl Scene {
                 return Err(Error::invalid(
                     "mass",
                     format!("expected finite masses of at least 0, got {name} = {}", number(mass)),
+                ));
+            }
+        }
+        for (index, &radius) in self.radius.iter().enumerate() {
+            if !(radius >= 0.0 && radius.is_finite()) {
+                let name = self.bodies().name("radius", index);
+                return Err(Error::invalid(
+                    "radius",
+                    format!("expected finite radii of at least 0, got {name} = {}", number(radius)),
                 ));
             }
         }

@@ -11,7 +11,8 @@ pub use solutions::{Solutions, member};
 
 use super::Scene;
 use super::closed_form::rows_per_chunk;
-use super::events::Event;
+use super::collisions::Collisions;
+use super::events::{Event, What};
 use super::frame::{Frame, Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
@@ -75,6 +76,12 @@ pub struct Plan {
     pub layout: Layout,
     /// Whether massless bodies follow the steps of the massive ones, each with steps of its own.
     pub guided: bool,
+    /// What spheres do that touch, if that is asked for.
+    pub collisions: Option<Collisions>,
+    /// Whether any body has a radius.
+    pub spheres: bool,
+    /// Whether spheres that touch are looked for, and all bodies therefore on the same steps.
+    pub touching: bool,
     /// Threads over units, and inside one force evaluation.
     pub threads: (usize, usize),
     /// Output times between the start and the end.
@@ -106,7 +113,9 @@ impl Plan {
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
         check_method(method, &forces)?;
-        let groups = Groups::of(scene.particles, &forces);
+        // Spheres may touch whichever they are: all of them are on one step.
+        let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
+        let groups = if touching { Groups::All } else { Groups::of(scene.particles, &forces) };
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
             Groups::Listed(groups) => {
@@ -129,10 +138,12 @@ impl Plan {
         let alike = count - forces.len();
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
+            && !touching
             && serves(method, active.len());
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {
             Groups::Single => true,
+            Groups::All if touching => false,
             Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
@@ -157,6 +168,9 @@ impl Plan {
             relative,
             layout,
             guided: false,
+            collisions: request.collisions,
+            spheres: scene.radius.iter().any(|&radius| radius > 0.0),
+            touching,
             threads: (1, 1),
             outputs_between: outputs_between(scene, request),
             events: request.events.clone().into(),
@@ -214,6 +228,7 @@ impl Plan {
     /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
     pub fn passive_apart(&self) -> bool {
         self.groups == Groups::All
+            && !self.touching
             && (self.method.adaptive() || self.relative)
             && !self.active.is_empty()
             && !self.passive.is_empty()

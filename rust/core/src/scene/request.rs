@@ -1,6 +1,7 @@
 //! What is asked of a scene: times, method, tolerances, columns; checked before anything runs.
 
 use super::Scene;
+use super::collisions::Collisions;
 use super::events::{self, Event};
 use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
@@ -40,6 +41,8 @@ pub struct Request {
     pub record: Vec<String>,
     /// What is looked for on the way.
     pub events: Vec<Event>,
+    /// What spheres do that touch; `None` lets them pass through each other.
+    pub collisions: Option<Collisions>,
     /// Threads.
     pub threads: usize,
 }

@@ -9,6 +9,7 @@ mod resolved;
 
 use super::Scene;
 use super::closed_form;
+use super::collisions;
 use super::columns::{Columns, Missing, Wanted};
 use super::continuation::{Continuation, Held};
 use super::integrate::{self, Counts, Ending, Job};
@@ -20,6 +21,7 @@ use crate::memory;
 use crate::parallel::Ticker;
 use begun::Begun;
 pub use begun::plan;
+pub(super) use begun::plan_through;
 use derived::derive;
 pub use events::Events;
 use reached::gather;
@@ -59,6 +61,19 @@ pub struct Kept {
     pub held: Held,
 }
 
+/// What collisions have made of a scene.
+#[derive(Clone, Debug)]
+pub struct Collided {
+    /// The collisions.
+    pub table: collisions::Table,
+    /// The masses at the end.
+    pub mass: Vec<f64>,
+    /// The radii at the end.
+    pub radius: Vec<f64>,
+    /// The states from which what is kept was run, if that is not the start.
+    pub begun: Option<Reached>,
+}
+
 /// Everything a run gives.
 #[derive(Clone, Debug)]
 pub struct Output {
@@ -74,6 +89,8 @@ pub struct Output {
     pub kept: Option<Kept>,
     /// The events found.
     pub events: Events,
+    /// The collisions of spheres and what is left of them, if they were asked for.
+    pub collisions: Option<Collided>,
     /// Of a scene of one copy, what is still to be made NaN where the rows beyond the last common one are wanted at all:
     /// the pages of millions of them may never have been touched.
     pub missing: Vec<Missing>,
@@ -115,6 +132,17 @@ impl Part<'_> {
 /// Bad input, and output that there is no memory for, before anything runs; errors of the library itself. How each copy
 /// ended is in the output.
 pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
+    match collisions::wanted(scene, request) {
+        Some(rule) => collisions::run(scene, request, rule, ticker),
+        None => run_through(scene, request, ticker),
+    }
+}
+
+/// Runs a scene whose spheres pass through each other, or end the run where they touch if the request has that event.
+///
+/// # Errors
+/// As [`run`].
+pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Output> {
     let begun = Begun::of(scene, request, ticker)?;
     let parts = begun.parts(scene);
     let plan = &begun.plan;
@@ -158,7 +186,13 @@ pub fn run(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<
     }
     events.sort(plan.direction);
     let plan = begun.plan;
-    Ok(Output { plan, columns, outcomes, reached, kept, events, missing })
+    let collisions = request.collisions.map(|_| Collided {
+        table: collisions::Table::default(),
+        mass: scene.mass.clone(),
+        radius: scene.radius.clone(),
+        begun: None,
+    });
+    Ok(Output { plan, columns, outcomes, reached, kept, events, collisions, missing })
 }
 
 /// Refuses what there is no memory for: the columns, the times of each thread, the states reached.
@@ -260,7 +294,7 @@ fn check_units(part: &Part<'_>) -> Result<()> {
 
 impl Outcome {
     /// Of a copy that comes to the end at no cost.
-    fn finished(request: &Request) -> Self {
+    pub(super) fn finished(request: &Request) -> Self {
         let times = &request.times;
         Self {
             ending: Ending::Finished,

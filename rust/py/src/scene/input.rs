@@ -12,6 +12,7 @@ use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
 use visviva_core::parallel::thread_count;
+use visviva_core::scene::collisions::Collisions;
 use visviva_core::scene::continuation::{Continuation, Held};
 use visviva_core::scene::request::Request;
 use visviva_core::scene::{OwnForces, Scene};
@@ -25,6 +26,7 @@ pub(crate) struct Asked<'py> {
     mass: Array<'py>,
     position: Array<'py>,
     velocity: Array<'py>,
+    radius: Option<Array<'py>>,
     forces: Bound<'py, PyList>,
     own_forces: Option<(Vec<Bound<'py, PyList>>, Vec<usize>)>,
     t0: f64,
@@ -39,6 +41,8 @@ pub(crate) struct Asked<'py> {
     max_steps: Option<i64>,
     record: Vec<String>,
     events: Vec<Bound<'py, PyDict>>,
+    collisions: Option<String>,
+    restitution: Option<f64>,
 }
 
 /// How a run came to the scene.
@@ -94,9 +98,21 @@ impl Asked<'_> {
         let shape = [Some(copies), Some(particles), Some(3)];
         let position = points(&copied("position", &self.position, shape)?.0);
         let velocity = points(&copied("velocity", &self.velocity, shape)?.0);
+        let radius = match &self.radius {
+            Some(radius) => copied("radius", radius, [Some(copies), Some(particles)])?.0,
+            None => Vec::new(),
+        };
         let (t0, forces) = (self.t0, forces(&self.forces)?);
         let threads = thread_count(threads).map_err(|error| raised(py, error))?;
         let (times, _) = copied("t", &self.times, [None])?;
+        let collisions = match (&self.collisions, self.restitution) {
+            (None, None) => None,
+            // What is given for nothing is refused like any name.
+            (name, part) => {
+                let name = name.as_deref().unwrap_or("stop");
+                Some(Collisions::named(name, part).map_err(|error| raised(py, error))?)
+            }
+        };
         let raised = Raised::default();
         let events = events(&self.events, particles, &raised)?;
         let Self { method, dt, rtol, atol, max_step, max_steps, record, .. } = self;
@@ -105,8 +121,8 @@ impl Asked<'_> {
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
         let own_forces = self.own_forces.map(|own| own_forces(&own, copies)).transpose()?;
         let scene =
-            Scene { copies, particles, mass, position, velocity, forces, own_forces, t0, continuation };
-        let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, threads };
+            Scene { copies, particles, mass, position, velocity, forces, own_forces, radius, t0, continuation };
+        let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, collisions, threads };
         Ok((scene, request, raised))
     }
 }
@@ -132,6 +148,7 @@ pub(super) fn snapshot(
         velocity,
         forces: forces(specs)?,
         own_forces: None,
+        radius: Vec::new(),
         t0: 0.0,
         continuation: None,
     })

@@ -6,6 +6,7 @@ use pyo3::types::PyDict;
 use visviva_core::Error;
 use visviva_core::numerics::simd::tier;
 use visviva_core::scene::Scene;
+use visviva_core::scene::collisions::{Collision, Table};
 use visviva_core::scene::columns::Derived;
 use visviva_core::scene::continuation::FORM;
 use visviva_core::scene::integrate::Ending;
@@ -97,6 +98,20 @@ pub(super) fn output_dict<'py>(
         dict.set_item("events", events)?;
     }
 
+    let last = PyDict::new(py);
+    if let Some(collided) = output.collisions {
+        dict.set_item("collisions", collisions_dict(py, &collided.table)?)?;
+        last.set_item("mass", moved(py, collided.mass, &[copies, particles])?)?;
+        if !collided.radius.is_empty() {
+            last.set_item("radius", moved(py, collided.radius, &[copies, particles])?)?;
+        }
+        if let Some(begun) = collided.begun {
+            let shape = [copies, particles, 3];
+            last.set_item("begun_position", moved(py, begun.position.into_flattened(), &shape)?)?;
+            last.set_item("begun_velocity", moved(py, begun.velocity.into_flattened(), &shape)?)?;
+        }
+    }
+
     let (totals, each) = (PyDict::new(py), PyDict::new(py));
     type Count = fn(&Outcome) -> u64;
     let counts: [(&str, Count); 3] = [
@@ -116,7 +131,6 @@ pub(super) fn output_dict<'py>(
     dict.set_item("per_trajectory", each)?;
 
     let flat = |points: Vec<[f64; 3]>| moved(py, points.into_flattened(), &[copies, particles, 3]);
-    let last = PyDict::new(py);
     last.set_item(
         "t",
         moved(py, outcomes.iter().map(|outcome| outcome.time).collect::<Vec<f64>>(), &[copies])?,
@@ -157,6 +171,24 @@ pub(super) fn output_dict<'py>(
     Ok(dict)
 }
 
+/// The collisions, column by column.
+fn collisions_dict<'py>(py: Python<'py>, table: &Table) -> PyResult<Bound<'py, PyDict>> {
+    let lines = &table.lines;
+    let shape = [lines.len(), 3];
+    let numbers = |of: fn(&Collision) -> f64| moved(py, lines.iter().map(of).collect(), &shape[..1]);
+    let whole = |of: fn(&Collision) -> i64| moved(py, lines.iter().map(of).collect(), &shape[..1]);
+    let dict = PyDict::new(py);
+    dict.set_item("t", numbers(|line| line.t)?)?;
+    dict.set_item("first", whole(|line| line.bodies.0 as i64)?)?;
+    dict.set_item("second", whole(|line| line.bodies.1 as i64)?)?;
+    dict.set_item("speed", numbers(|line| line.speed)?)?;
+    dict.set_item("position", moved(py, lines.iter().flat_map(|line| line.position).collect(), &shape)?)?;
+    dict.set_item("energy_lost", numbers(|line| line.energy_lost)?)?;
+    dict.set_item("survivor", whole(|line| line.survivor.map_or(-1, |body| body as i64))?)?;
+    dict.set_item("member", whole(|line| line.copy as i64)?)?;
+    Ok(dict)
+}
+
 /// Whether a copy came to a node other than the first.
 fn on_a_node(node: u64) -> bool {
     node > 0 && node < u64::MAX
@@ -171,6 +203,7 @@ fn status(ending: &Ending) -> i8 {
         Ending::TooManySteps => 4,
         Ending::Stopped => 5,
         Ending::OutsideDomain => 6,
+        Ending::Resting { .. } => 7,
     }
 }
 
@@ -199,6 +232,13 @@ fn failure(outcome: &Outcome) -> Option<Error> {
             message: "bodies came to a distance, or to a speed, at which a force of the scene is not known: it is a table \
                       that ends there, or a law (give it more points, or end the run before it)"
                 .to_owned(),
+            time,
+        }),
+        Ending::Resting { bodies: (i, j) } => Some(Error::Convergence {
+            message: format!(
+                "bodies {i} and {j} came to rest on each other: spheres that bounce know no lasting contact (end the run \
+                 before it, or let a soft repulsion hold them apart)"
+            ),
             time,
         }),
         Ending::TooManySteps => {

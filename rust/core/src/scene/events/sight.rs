@@ -176,7 +176,7 @@ impl Event {
                 }
                 Some([dot(v0, v0) + dot(x0, a0), dot(v1, v1) + dot(x1, a1)])
             }
-            What::Energy(_) | What::Function(_) => None,
+            What::Energy(_) | What::Contact(_) | What::Function(_) => None,
         }
     }
 }

@@ -9,10 +9,12 @@ mod abreast;
 mod along;
 mod bodies;
 mod clear;
+mod contacts;
 mod inside;
 mod search;
 
-use super::super::events::{Event, Moving, Sight, Surroundings, View};
+use super::super::events::{Event, Moving, Sight, Surroundings, View, What};
+use super::super::frame::Moved;
 use super::super::unit::Prepared;
 use super::{Ending, Job, Report};
 use crate::error::Result;
@@ -24,6 +26,7 @@ pub(super) use abreast::Abreast;
 pub(super) use along::Along;
 use bodies::Bodies;
 use clear::{cubic, keeps_clear, keeps_clear_after_all};
+use contacts::{Contacts, Pair};
 use search::Search;
 
 /// A zero that was found.
@@ -35,6 +38,8 @@ pub struct Found {
     pub t: f64,
     /// Positions and velocities of the bodies of the unit.
     pub states: Vec<[[f64; 3]; 2]>,
+    /// The spheres that touch, if it is that.
+    pub spheres: Option<(usize, usize)>,
 }
 
 /// A step of a unit, in the plan's units, and what may be asked about its inside.
@@ -78,6 +83,9 @@ pub(super) struct Watch<'a> {
     /// Their places among all events, and those of their bodies among the ones that are looked at.
     events: Vec<(usize, Vec<usize>)>,
     bodies: Bodies,
+    /// The spheres that may touch, and the pairs that may do so in the step at hand, which follow the events.
+    contacts: Option<Contacts>,
+    pairs: Vec<Pair>,
     massive: bool,
     /// Bodies and what the events see of them at the last node, and room for those at the next one and inside a step.
     before: Vec<Moving>,
@@ -113,6 +121,7 @@ impl<'a> Watch<'a> {
         let (plan, scene) = (job.plan, job.scene);
         let mut slots: Vec<usize> = Vec::new();
         let mut events = Vec::with_capacity(unit.unit.events.len());
+        let mut spheres = None;
         for &index in &*unit.unit.events {
             let looked_at = plan.events[index].bodies(&plan.groups, scene.particles, &plan.active);
             let places = looked_at.iter().filter_map(|body| {
@@ -122,12 +131,18 @@ impl<'a> Watch<'a> {
                     slots.len() - 1
                 }))
             });
-            events.push((index, places.collect()));
+            let places: Vec<usize> = places.collect();
+            match &plan.events[index].what {
+                What::Contact(radii) => spheres = Some((index, radii)),
+                _ => events.push((index, places)),
+            }
         }
         let nowhere = vec![Moving::default(); slots.len()];
         let mut watch = Self {
             job,
             bodies: Bodies::new(job, unit, &slots, (state, lane)),
+            contacts: None,
+            pairs: Vec::new(),
             massive: unit.unit.bodies.len() < scene.particles,
             before: nowhere.clone(),
             after: nowhere.clone(),
@@ -142,6 +157,8 @@ impl<'a> Watch<'a> {
             events,
         };
         watch.bodies.read(state, &mut watch.before);
+        watch.contacts = spheres
+            .map(|(index, spheres)| Contacts::new(index, spheres, &watch.bodies.indices, &watch.before));
         for event in 0..watch.events.len() {
             let mut sight = watch.sight(unit, event, (&watch.before, job.begun()), ticker)?;
             // What starts at zero has not come there.
@@ -154,9 +171,53 @@ impl<'a> Watch<'a> {
     }
 
     #[inline]
-    fn event(&self, event: usize) -> (&'a Event, &[usize]) {
+    fn event(&self, event: usize) -> (&Event, &[usize]) {
+        match self.events.get(event) {
+            Some((index, places)) => (&self.job.plan.events[*index], places),
+            None => {
+                let pair = &self.pairs[event - self.events.len()];
+                (&pair.event, &pair.places)
+            }
+        }
+    }
+
+    /// What is added to the value of an event.
+    fn shift(&self, event: usize) -> f64 {
+        event.checked_sub(self.events.len()).map_or(0.0, |pair| self.pairs[pair].shift)
+    }
+
+    /// One of those that were asked for.
+    fn own_event(&self, event: usize) -> (&'a Event, &[usize]) {
         let (index, places) = &self.events[event];
         (&self.job.plan.events[*index], places)
+    }
+
+    /// Whether spheres are looked for on every step.
+    fn looks_at_all(&self) -> bool {
+        self.contacts.is_some()
+    }
+
+    /// Adds the pairs of spheres that may touch in a step `h`.
+    fn suspect_spheres(&mut self, h: f64) {
+        let Some(contacts) = &mut self.contacts else { return };
+        for pair in contacts.pairs(&self.before, &self.after, h) {
+            let [start, end] = [&self.before, &self.after]
+                .map(|bodies| pair.event.sight_of(bodies, &pair.places, &Moved::NOWHERE));
+            let ends = [&start, &end];
+            let clear = pair.event.rates(ends, h).is_some_and(|rates| {
+                let cubic = cubic(ends.map(|end| end.value + pair.shift), rates, h);
+                keeps_clear(cubic) || keeps_clear_after_all(cubic)
+            });
+            if !clear {
+                self.suspects.push(self.events.len() + self.pairs.len());
+                self.pairs.push(pair);
+                self.sights.push(start);
+                self.next.push(end);
+            }
+        }
+        if self.pairs.is_empty() {
+            contacts.go_on(&self.after);
+        }
     }
 
     /// What an event sees of these bodies after this time.
@@ -206,6 +267,7 @@ impl<'a> Watch<'a> {
             }
             self.next[event] = sight;
         }
+        self.suspect_spheres(h);
         let suspected = !self.suspects.is_empty();
         if !suspected {
             self.go_on();
@@ -251,8 +313,9 @@ impl<'a> Watch<'a> {
         self.ask(step, ticker)?;
         let mut zeros: Vec<(f64, usize)> = Vec::new();
         for event in core::mem::take(&mut self.suspects) {
-            let ends = [self.sights[event].value, self.next[event].value];
-            let mut search = Search { watch: self, unit, event, span, ends };
+            let shift = self.shift(event);
+            let ends = [self.sights[event].value + shift, self.next[event].value + shift];
+            let mut search = Search { watch: self, unit, event, span, ends, shift };
             zeros.extend(search.zeros(step, ticker)?.into_iter().map(|theta| (theta, event)));
         }
         zeros.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -265,12 +328,29 @@ impl<'a> Watch<'a> {
                 let entry = unit.read(slot, state, lane, elapsed);
                 [entry.position, entry.velocity]
             });
-            self.found.push(Found { which: self.events[event].0, t, states: states.collect() });
+            let states = states.collect();
+            let Some(&(which, _)) = self.events.get(event) else {
+                let spheres = match self.event(event).0.what {
+                    What::Distance { bodies, .. } => Some(bodies),
+                    _ => None,
+                };
+                let which = self.contacts.as_ref().map_or(usize::MAX, |contacts| contacts.which);
+                self.found.push(Found { which, t, states, spheres });
+                self.stopped = true;
+                break;
+            };
+            self.found.push(Found { which, t, states, spheres: None });
             self.counts[event] += 1;
             if self.event(event).0.last.is_some_and(|last| self.counts[event] >= last) {
                 self.stopped = true;
                 break;
             }
+        }
+        if let (Some(contacts), false) = (&mut self.contacts, self.pairs.is_empty()) {
+            contacts.go_on(&self.after);
+            self.pairs.clear();
+            self.sights.truncate(self.events.len());
+            self.next.truncate(self.events.len());
         }
         self.go_on();
         Ok(())

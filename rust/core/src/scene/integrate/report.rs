@@ -29,8 +29,13 @@ pub enum Ending {
     TooManySteps,
     /// The caller asked to stop.
     Interrupted,
-    /// An event ended the run.
+    /// An event ended the run, or spheres that touched.
     Stopped,
+    /// Spheres came to rest on each other.
+    Resting {
+        /// Which.
+        bodies: (usize, usize),
+    },
 }
 
 /// What an integration cost.

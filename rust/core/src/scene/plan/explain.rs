@@ -60,13 +60,18 @@ impl Plan {
             };
             row("SIMD lanes", self.lanes().to_owned(), reason.to_owned());
             let (over, inside) = self.threads;
-            if !self.events.is_empty() {
+            let events = self.asked_events();
+            if let (Some(rule), true) = (self.collisions, self.touching) {
+                let why = "spheres are looked for on every step; all bodies are on the same steps, which begin anew there";
+                row("collisions", rule.to_string(), why.to_owned());
+            }
+            if events > 0 {
                 let where_found = if self.watches_apart() {
                     "on the steps of the bodies looked at, which are also integrated together where they are not coupled"
                 } else {
                     "on the steps of the bodies looked at"
                 };
-                row("events", self.events.len().to_string(), where_found.to_owned());
+                row("events", events.to_string(), where_found.to_owned());
             }
             row(
                 "threads",
@@ -77,6 +82,11 @@ impl Plan {
             row("threads", self.threads.0.to_string(), "over ensemble members and output times".to_owned());
         }
         rows
+    }
+
+    /// The events that were asked for, without that of spheres that touch.
+    fn asked_events(&self) -> usize {
+        self.events.len() - usize::from(self.touching)
     }
 
     fn describe_pairs(&self) -> String {
@@ -153,9 +163,14 @@ impl Plan {
             if self.method.adaptive() && self.outputs_between == 0 {
                 skip("dense output", "no time before the end is asked for".to_owned());
             }
-            if self.events.is_empty() {
+            if self.asked_events() == 0 {
                 skip("event location", "no events are asked for".to_owned());
             }
+        }
+        match self.collisions {
+            None if self.spheres => skip("collisions", "not asked for: spheres pass through each other".to_owned()),
+            Some(_) if !self.touching => skip("collisions", "no two bodies can touch".to_owned()),
+            _ => {}
         }
         for column in columns() {
             if !self.record.iter().any(|name| name == column) {
@@ -167,6 +182,7 @@ impl Plan {
 
     fn describe_solution(&self) -> (String, String) {
         let integration = match self.method.scheme {
+            Scheme::Embedded(_) if self.touching => "spheres that touch are looked for step by step",
             Scheme::Embedded(_) if !self.events.is_empty() => "events are looked for step by step",
             Scheme::Embedded(_) => "no closed form applies, or a method was named",
             _ => "the method was named",

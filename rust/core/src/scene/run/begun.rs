@@ -1,5 +1,6 @@
 //! From what a run begins: the scene as it is, or the beginning of an earlier run, which it goes on with.
 
+use super::super::collisions;
 use super::super::continuation::Continuation;
 use super::super::integrate::Report;
 use super::super::plan::Plan;
@@ -15,6 +16,21 @@ use crate::parallel::Ticker;
 /// # Errors
 /// As [`Plan::new`].
 pub fn plan(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Plan> {
+    match collisions::wanted(scene, request) {
+        Some(rule) => collisions::plan(scene, request, rule, ticker),
+        None => plan_through(scene, request, ticker),
+    }
+}
+
+/// The plan of a run in which spheres pass through each other, or end it where they touch.
+///
+/// # Errors
+/// As [`Plan::new`].
+pub(in super::super) fn plan_through(
+    scene: &Scene,
+    request: &Request,
+    ticker: &mut Ticker<'_>,
+) -> Result<Plan> {
     match (&scene.continuation, &scene.own_forces) {
         (None, None) => Plan::new(scene, request, ticker),
         _ => Ok(Begun::of(scene, request, ticker)?.plan),

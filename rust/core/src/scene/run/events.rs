@@ -11,6 +11,8 @@ struct Line {
     t: f64,
     /// Where its states begin.
     states: usize,
+    /// The spheres that touch, if it is that.
+    spheres: Option<(usize, usize)>,
 }
 
 /// The events of a run.
@@ -36,7 +38,13 @@ impl Events {
                 for (&state, &body) in found.states.iter().zip(&*report.unit.bodies) {
                     self.states[states + body] = state;
                 }
-                self.lines.push(Line { copy, which: found.which, t: found.t, states });
+                self.lines.push(Line {
+                    copy,
+                    which: found.which,
+                    t: found.t,
+                    states,
+                    spheres: found.spheres,
+                });
             }
         }
     }
@@ -47,6 +55,20 @@ impl Events {
             let later = (direction * a.t).total_cmp(&(direction * b.t));
             a.copy.cmp(&b.copy).then(later).then(a.which.cmp(&b.which))
         });
+    }
+
+    /// The spheres that touched last, if that is what ended the run.
+    pub fn contact(&self) -> Option<(usize, usize)> {
+        self.lines.last().and_then(|line| line.spheres)
+    }
+
+    /// Adds events of another table, which are called otherwise there, of bodies that are `places` of it each.
+    pub fn extend(&mut self, other: &Self, copy: usize, names: &[usize], places: &[usize]) {
+        for line in other.lines.iter().filter(|line| line.spheres.is_none()) {
+            let states = self.states.len();
+            self.states.extend(places.iter().map(|place| other.states[line.states + place]));
+            self.lines.push(Line { copy, which: names[line.which], states, ..*line });
+        }
     }
 
     /// How many there are.

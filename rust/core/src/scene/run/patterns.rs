@@ -51,6 +51,7 @@ pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
         velocity: pick(|scene, copy| scene.velocities(copy)),
         forces: scene.forces_of(members.first().copied().unwrap_or(0)).to_vec(),
         own_forces: None,
+        radius: members.iter().flat_map(|&copy| scene.radii(copy)).copied().collect(),
         t0: scene.t0,
         continuation: None,
     }

@@ -35,9 +35,12 @@ struct Seen<'a> {
 impl<'a> Abreast<'a> {
     /// For units like the one under this watch, if what their events see can be told side by side.
     pub(in super::super) fn of(watch: &Watch<'a>) -> Option<Self> {
+        if watch.looks_at_all() {
+            return None;
+        }
         let mut events = Vec::with_capacity(watch.events.len());
         for index in 0..watch.events.len() {
-            let (event, bodies) = watch.event(index);
+            let (event, bodies) = watch.own_event(index);
             let (&first, &last) = (bodies.first()?, bodies.last()?);
             if !event.has_rates() {
                 return None;

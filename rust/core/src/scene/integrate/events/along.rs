@@ -55,9 +55,12 @@ impl Seen<'_> {
 impl<'a> Along<'a> {
     /// Of a unit under this watch, if what its events see follows from how its bodies move.
     pub(in super::super) fn of(watch: &Watch<'a>, step: f64) -> Option<Self> {
+        if watch.looks_at_all() {
+            return None;
+        }
         let mut events = Vec::with_capacity(watch.events.len());
         for index in 0..watch.events.len() {
-            let (event, bodies) = watch.event(index);
+            let (event, bodies) = watch.own_event(index);
             if !event.has_rates() {
                 return None;
             }

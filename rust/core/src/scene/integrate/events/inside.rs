@@ -20,12 +20,14 @@ impl Watch<'_> {
         Ok(())
     }
 
-    /// Places the bodies inside the step: on the polynomial, or on the cubics through both ends if there is none.
-    pub(super) fn place(&mut self, components: usize, span: Span, theta: f64) {
+    /// Places the bodies of an event inside the step: on the polynomial, or on the cubics through both ends if there is none.
+    pub(super) fn place(&mut self, event: usize, components: usize, span: Span, theta: f64) {
         let h = scale(span.to - span.from, self.job.plan.units.time);
         let rest = 1.0 - theta;
         let count = self.terms.len() / (self.before.len() * components).max(1);
-        for (body, (before, after)) in self.before.iter().zip(&self.after).enumerate() {
+        for index in 0..self.event(event).1.len() {
+            let body = self.event(event).1[index];
+            let (before, after) = (&self.before[body], &self.after[body]);
             let mut moving = *before;
             for c in 0..components {
                 let (start, end) = (before.velocity[c], after.velocity[c]);

@@ -34,6 +34,8 @@ pub(super) struct Search<'s, 'a> {
     pub(super) event: usize,
     pub(super) span: Span,
     pub(super) ends: [f64; 2],
+    /// What is added to the value of the event.
+    pub(super) shift: f64,
 }
 
 /// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
@@ -227,13 +229,15 @@ impl Search<'_, '_> {
 
     /// On the polynomial, or on the cubics where there is none.
     fn sight_between(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
-        self.watch.place(self.unit.shape.components, self.span, theta);
+        self.watch.place(self.event, self.unit.shape.components, self.span, theta);
         self.sight_inside(theta, ticker)
     }
 
     fn sight_inside(&self, theta: f64, ticker: &mut Ticker<'_>) -> Result<Sight> {
         let bodies = (&self.watch.inside[..], self.span.at(theta));
-        self.watch.sight(self.unit, self.event, bodies, ticker)
+        let mut sight = self.watch.sight(self.unit, self.event, bodies, ticker)?;
+        sight.value += self.shift;
+        Ok(sight)
     }
 }
 

@@ -1,0 +1,70 @@
+"""Runs in which bodies merge: which bodies there are at which times, with which masses.
+
+The one idea: between two mergers the bodies that are left are a scene like any, and whatever is told of states is told of
+those of one such era after another. A run without mergers is one era.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator
+
+    from numpy.typing import NDArray
+
+    from visviva.scene import Scene
+    from visviva.trajectory import Trajectory
+
+__all__ = ["by_era", "eras", "merged"]
+
+
+def merged(run: Any) -> bool:
+    """Whether bodies of a run have merged."""
+    return bool((run._result.get("collisions", {"survivor": np.zeros(0)})["survivor"] >= 0).any())
+
+
+def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
+    """Rows, the scene of the bodies that are there, and which of those of the run they are; None for all of them."""
+    from visviva.particles import Particles
+
+    if not merged(run):
+        yield slice(0, len(run.t)), run.scene, None
+        return
+    bodies, table = run.scene.particles, run._result["collisions"]
+    mass, left = bodies.mass.copy(), np.ones(len(bodies), dtype=bool)
+    # A row at the time of a merger is of before.
+    ends = [*np.searchsorted(run.t, table["t"], side="right").tolist(), len(run.t)]
+    start = 0
+    for line, end in enumerate(ends):
+        if end > start:
+            there = np.flatnonzero(left)
+            position, velocity = bodies.position[there], bodies.velocity[there]
+            particles = Particles(mass[there], position, velocity)
+            yield slice(start, end), run.scene._like(particles, run.scene.forces, run.scene.t0), there.tolist()
+            start = end
+        if line < len(table["t"]):
+            first, second = int(table["first"][line]), int(table["second"][line])
+            survivor = int(table["survivor"][line])
+            gone = first + second - survivor
+            mass[survivor] += mass[gone]
+            mass[gone], left[gone] = 0.0, False
+
+
+def by_era(
+    run: Trajectory,
+    tell: Callable[[Scene, NDArray[np.float64], Any], dict[str, NDArray[np.float64]]],
+    *,
+    velocity: bool = True,
+) -> dict[str, NDArray[np.float64]]:
+    """What `tell` says of the states of each era, put together."""
+    told = []
+    for rows, scene, there in eras(run):
+        position, moving = run.position[rows], run.velocity[rows] if velocity else None
+        if there is not None:
+            position = np.ascontiguousarray(position[:, there])
+            moving = None if moving is None else np.ascontiguousarray(moving[:, there])
+        told.append(tell(scene, position, moving))
+    return told[0] if len(told) == 1 else {name: np.concatenate([each[name] for each in told]) for name in told[0]}

@@ -1,0 +1,123 @@
+//! Collisions of spheres: what is asked for, which touch, and what becomes of them.
+//!
+//! The one idea: a run with collisions is a chain of runs. Each ends where two spheres come to touch, as with a terminal
+//! event (`integrate/events/contacts.rs` finds the place); then they merge, bounce or stop, and the next one begins there.
+
+mod impact;
+mod run;
+mod sweep;
+mod table;
+
+pub use impact::Impact;
+pub use run::{plan, run};
+pub use sweep::swept;
+pub use table::{Collision, Table};
+
+use super::Scene;
+use super::events::{Event, What};
+use super::request::Request;
+use crate::error::{Error, Result};
+use crate::words::{number, unknown};
+use core::fmt;
+use std::sync::Arc;
+
+/// By how much (d/R)² - 1 of spheres in contact may fall before they touch again: 64 roundings.
+pub const TOUCH: f64 = 1.0 / (1_u64 << 46) as f64;
+
+/// Below what (d/R)² - 1 spheres are in contact, for all that the time at which they came there can tell.
+const CONTACT: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// What spheres do that touch.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Collisions {
+    /// They become one.
+    Merge,
+    /// They part with this part of the speed with which they met along the line of their centers.
+    Bounce(f64),
+    /// The run ends.
+    Stop,
+}
+
+impl fmt::Display for Collisions {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Merge => write!(formatter, "merge"),
+            Self::Bounce(restitution) => write!(formatter, "bounce with restitution {}", number(*restitution)),
+            Self::Stop => write!(formatter, "stop"),
+        }
+    }
+}
+
+/// Spheres, for a run to look for those that touch.
+#[derive(Clone, Debug, Default)]
+pub struct Spheres {
+    /// The radius of each body.
+    pub radius: Vec<f64>,
+    /// Pairs that are in contact at the start.
+    pub touching: Vec<(usize, usize)>,
+}
+
+impl Collisions {
+    /// By name.
+    ///
+    /// # Errors
+    /// An unknown name, or a coefficient of restitution that is none or belongs to no bounce.
+    pub fn named(name: &str, restitution: Option<f64>) -> Result<Self> {
+        let refused = |expected: &str, got: f64| {
+            Err(Error::invalid("restitution", format!("expected {expected}, got {}", number(got))))
+        };
+        match (name, restitution) {
+            ("bounce", Some(part)) if !(0.0..=1.0).contains(&part) => refused("a number from 0 to 1", part),
+            ("bounce", part) => Ok(Self::Bounce(part.unwrap_or(1.0))),
+            ("merge" | "stop", Some(part)) => refused("None without collisions=\"bounce\"", part),
+            ("merge", None) => Ok(Self::Merge),
+            ("stop", None) => Ok(Self::Stop),
+            _ => Err(unknown("collisions", name, ["merge", "bounce", "stop"].into_iter())),
+        }
+    }
+
+    /// Refuses what has no meaning: what was lost does not come back backwards in time, and a merged body has no place in
+    /// the lists of a force.
+    fn check(self, scene: &Scene, direction: f64) -> Result<()> {
+        let refused = |message: &str| Err(Error::invalid("collisions", message));
+        match self {
+            Self::Merge if direction < 0.0 => {
+                return refused(
+                    "a merger cannot be undone: expected a run forward in time, or collisions=\"stop\"",
+                );
+            }
+            Self::Bounce(part) if part < 1.0 && direction < 0.0 => {
+                return refused(
+                    "what a bounce has lost does not come back: expected a run forward in time, or restitution=1",
+                );
+            }
+            _ => {}
+        }
+        let mut sets = scene.own_forces.iter().flat_map(|own| &own.sets).flatten().chain(&scene.forces);
+        if self == Self::Merge
+            && let Some(force) = sets.find(|force| force.tells_bodies_apart())
+        {
+            let class = force.declaration().class_name;
+            let advice = "expected \"bounce\" or \"stop\", or forces that are the same for all bodies";
+            return refused(&format!(
+                "{class} names bodies or has charges of its own, which a merger does not know to put together; {advice}"
+            ));
+        }
+        Ok(())
+    }
+}
+
+/// The event of a contact.
+pub(super) fn contact(radius: Vec<f64>, touching: Vec<(usize, usize)>) -> Event {
+    Event { what: What::Contact(Arc::new(Spheres { radius, touching })), direction: 0.0, last: Some(1) }
+}
+
+/// Whether any two bodies of a copy may touch.
+fn may_touch(scene: &Scene, copy: usize) -> bool {
+    scene.particles > 1 && scene.radii(copy).iter().any(|&radius| radius > 0.0)
+}
+
+/// What collisions are asked for and may happen.
+pub fn wanted(scene: &Scene, request: &Request) -> Option<Collisions> {
+    request.collisions.filter(|_| (0..scene.copies).any(|copy| may_touch(scene, copy)))
+}

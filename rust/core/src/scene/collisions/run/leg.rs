@@ -1,0 +1,107 @@
+//! One leg of a run with collisions: the bodies that are left, as a scene, and what is asked of it.
+
+use super::super::{Impact, contact};
+use crate::error::Result;
+use crate::scene::Scene;
+use crate::scene::events::{Event, Focus, Function, What};
+use std::sync::Arc;
+
+/// The bodies of a leg.
+pub(super) struct Leg {
+    /// Those that are there, by their indices.
+    pub(super) bodies: Vec<usize>,
+    /// Which of them each body of the scene is, or is a part of.
+    pub(super) places: Vec<usize>,
+}
+
+impl Leg {
+    pub(super) fn of(impact: &Impact) -> Self {
+        let bodies: Vec<usize> = (0..impact.host.len()).filter(|&body| impact.host[body] == body).collect();
+        let mut places = vec![0; impact.host.len()];
+        for (place, &body) in bodies.iter().enumerate() {
+            places[body] = place;
+        }
+        let places = impact.host.iter().map(|&host| places[host]).collect();
+        Self { bodies, places }
+    }
+
+    /// The scene at this time.
+    pub(super) fn scene(&self, whole: &Scene, copy: usize, impact: &Impact, t0: f64) -> Scene {
+        let pick = |of: &[[f64; 3]]| self.bodies.iter().map(|&body| of[body]).collect();
+        Scene {
+            copies: 1,
+            particles: self.bodies.len(),
+            mass: self.bodies.iter().map(|&body| impact.mass[body]).collect(),
+            position: pick(&impact.position),
+            velocity: pick(&impact.velocity),
+            forces: whole.forces_of(copy).to_vec(),
+            own_forces: None,
+            radius: self.bodies.iter().map(|&body| impact.radius[body]).collect(),
+            t0,
+            continuation: None,
+        }
+    }
+
+    /// The events that are still to be looked for, and which of those that were asked for they are; that of a contact
+    /// follows.
+    pub(super) fn events(
+        &self,
+        asked: &[Event],
+        found: &[u64],
+        scene: &Scene,
+        touching: &[(usize, usize)],
+    ) -> (Vec<Event>, Vec<usize>) {
+        let (mut events, mut names) = (Vec::new(), Vec::new());
+        for (index, event) in asked.iter().enumerate() {
+            if let Some(what) = self.what(&event.what) {
+                let last = event.last.map(|last| last.saturating_sub(found[index]));
+                events.push(Event { what, direction: event.direction, last });
+                names.push(index);
+            }
+        }
+        if super::may_touch(scene, 0) {
+            let touching = touching.iter().map(|&(i, j)| (self.places[i], self.places[j])).collect();
+            events.push(contact(scene.radius.clone(), touching));
+        }
+        (events, names)
+    }
+
+    /// What is looked at, of the bodies that are there; none of two that have become one.
+    fn what(&self, what: &What) -> Option<What> {
+        let place = |body: &usize| self.places[*body];
+        Some(match what {
+            What::Distance { bodies: (i, j), length } => {
+                let bodies = (place(i), place(j));
+                if bodies.0 == bodies.1 {
+                    return None;
+                }
+                What::Distance { bodies, length: *length }
+            }
+            What::Plane { body, point, normal } => {
+                What::Plane { body: place(body), point: *point, normal: *normal }
+            }
+            What::Apsis { body, about: Focus::Body(other) } => {
+                if place(body) == place(other) {
+                    return None;
+                }
+                What::Apsis { body: place(body), about: Focus::Body(place(other)) }
+            }
+            What::Apsis { body, about } => What::Apsis { body: place(body), about: about.clone() },
+            What::Function(function) if self.bodies.len() < self.places.len() => {
+                What::Function(self.with_all(Arc::clone(function)))
+            }
+            What::Energy(_) | What::Contact(_) | What::Function(_) => what.clone(),
+        })
+    }
+
+    /// A function that is called with the bodies that are parts of others, too.
+    fn with_all(&self, function: Arc<Function>) -> Arc<Function> {
+        let places = self.places.clone();
+        Arc::new(move |t, position: &[f64], velocity: &[f64]| -> Result<f64> {
+            let all = |of: &[f64]| -> Vec<f64> {
+                places.iter().flat_map(|&place| of[3 * place..3 * place + 3].iter().copied()).collect()
+            };
+            function(t, &all(position), &all(velocity))
+        })
+    }
+}

@@ -1,0 +1,321 @@
+//! One copy on its way through its collisions: leg after leg, each to the next contact or to the end.
+
+use super::super::{Collision, Collisions, Impact};
+use super::leg::Leg;
+use super::start::{bodies_of, part_of};
+use super::wanted;
+use crate::error::{Error, Result};
+use crate::parallel::Ticker;
+use crate::scene::Scene;
+use crate::scene::columns::Columns;
+use crate::scene::integrate::Ending;
+use crate::scene::request::Request;
+use crate::scene::room::give_back;
+use crate::scene::run::{Events, Kept, Outcome, Output, Reached, run_through};
+use std::collections::BTreeMap;
+
+/// Spheres rest on each other that part by less than this part of their radii,
+const REST: f64 = 1.0 / (1_u64 << 40) as f64;
+
+/// so many times in succession.
+const RESTS: u32 = 16;
+
+/// Impulses at one time after which bodies are pressed together, for each pair in contact.
+const IMPULSES: usize = 1000;
+
+/// How two spheres met last.
+#[derive(Clone, Copy)]
+struct Met {
+    t: f64,
+    /// How fast they parted.
+    speed: f64,
+    rests: u32,
+}
+
+/// A copy, and what has been done of its run.
+pub(super) struct Member {
+    pub(super) bodies: Impact,
+    pub(super) columns: Columns,
+    pub(super) outcome: Outcome,
+    pub(super) events: Events,
+    pub(super) lines: Vec<Collision>,
+    pub(super) kept: Option<Kept>,
+    /// The node that the last leg went on from.
+    pub(super) from: u64,
+    /// Where the last leg began.
+    pub(super) begun: Reached,
+    copy: usize,
+    rule: Collisions,
+    met: BTreeMap<(usize, usize), Met>,
+    /// How often each event was found.
+    found: Vec<u64>,
+}
+
+impl Member {
+    /// Runs a copy.
+    pub(super) fn run(
+        scene: &Scene,
+        request: &Request,
+        (rule, copy): (Collisions, usize),
+        direction: f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        let bodies = bodies_of(scene, copy, rule, direction);
+        let mut member = Self {
+            begun: bodies.states(),
+            bodies,
+            columns: Columns::default(),
+            outcome: Outcome { rows: 0, time: scene.t0, ..Outcome::finished(request) },
+            events: Events::default(),
+            lines: Vec::new(),
+            kept: None,
+            from: 0,
+            copy,
+            rule,
+            met: BTreeMap::new(),
+            found: vec![0; request.events.len()],
+        };
+        let mut touching = member.bodies.touching();
+        if touching.iter().any(|&pair| member.bodies.approach(pair).is_some()) {
+            // The rows of the start are of before.
+            let at_start = request.times.iter().take_while(|&&t| t == scene.t0).count();
+            if at_start > 0 {
+                let nothing = Request { events: Vec::new(), ..request.clone() };
+                let _ = member.leg(scene, &nothing, (at_start, None), ticker)?;
+            }
+            if !member.collide(None) {
+                return Ok(member);
+            }
+            touching = member.bodies.touching();
+        }
+        let end = request.times.len();
+        loop {
+            let Some(pair) = member.leg(scene, request, (end, Some(&touching)), ticker)? else {
+                return Ok(member);
+            };
+            // Who has nothing more to record is where the collision has put it.
+            if !member.collide(Some(pair)) || member.outcome.rows == end {
+                return Ok(member);
+            }
+            touching = member.bodies.touching();
+            // Spheres that graze each other may be told apart already.
+            if member.bodies.is_whole(pair) && !touching.contains(&pair) {
+                touching.push(pair);
+            }
+        }
+    }
+
+    /// Runs on to the next contact, or to the end; the spheres that touch there. None are looked for without those that
+    /// touch at the start.
+    fn leg(
+        &mut self,
+        whole: &Scene,
+        request: &Request,
+        (end, touching): (usize, Option<&[(usize, usize)]>),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Option<(usize, usize)>> {
+        let leg = Leg::of(&self.bodies);
+        let mut scene = leg.scene(whole, self.copy, &self.bodies, self.outcome.time);
+        if self.lines.is_empty() && self.outcome.rows == 0 {
+            scene.continuation =
+                whole.continuation.as_ref().map(|from| part_of(from, whole, self.copy, &leg));
+        }
+        let (events, names) = match touching {
+            Some(touching) => leg.events(&request.events, &self.found, &scene, touching),
+            None => (Vec::new(), Vec::new()),
+        };
+        let max_steps = request.max_steps.map(|most| most.saturating_sub_unsigned(self.outcome.counts.steps));
+        if max_steps.is_some_and(|most| most < 1) && self.outcome.counts.steps > 0 {
+            self.outcome.ending = Ending::TooManySteps;
+            return Ok(None);
+        }
+        let asked = Request {
+            times: request.times[self.outcome.rows..end].to_vec(),
+            events,
+            max_steps,
+            threads: if whole.copies > 1 { 1 } else { request.threads },
+            collisions: None,
+            ..request.clone()
+        };
+        let (done, total) = ticker.control().progress();
+        let output = run_through(&scene, &asked, ticker)?;
+        if whole.copies == 1 {
+            // What a leg leaves to be done is counted with the next one.
+            ticker.control().set_total(total + ticker.control().progress().0 - done);
+        }
+        self.take(whole, request, &leg, &names, output)
+    }
+
+    /// Takes in what a leg gives; the spheres that touch at its end.
+    fn take(
+        &mut self,
+        whole: &Scene,
+        request: &Request,
+        leg: &Leg,
+        names: &[usize],
+        mut output: Output,
+    ) -> Result<Option<(usize, usize)>> {
+        let Some(outcome) = output.outcomes.pop() else {
+            return Err(Error::Internal("a run without an outcome".to_owned()));
+        };
+        self.begun = self.bodies.states();
+        for (place, &body) in leg.bodies.iter().enumerate() {
+            self.bodies.position[body] = output.reached.position[place];
+            self.bodies.velocity[body] = output.reached.velocity[place];
+        }
+        self.bodies.follow();
+        for (_, which, _) in output.events.lines() {
+            if let Some(&name) = names.get(which) {
+                self.found[name] += 1;
+            }
+        }
+        self.events.extend(&output.events, self.copy, names, &leg.places);
+        let rows = self.outcome.rows;
+        self.outcome.rows += outcome.rows;
+        self.outcome.time = outcome.time;
+        self.outcome.add(&outcome);
+        let at_once = leg.bodies.len() == whole.particles && outcome.rows == request.times.len();
+        if rows == 0 && at_once {
+            self.columns = output.columns;
+        } else {
+            if self.columns.times == 0 {
+                self.columns = Columns::new(1, request.times.len(), whole.particles, &wanted(request))?;
+            }
+            record(&mut self.columns, &output.columns, (rows, outcome.rows), leg);
+            give_back(output.columns.position);
+            give_back(output.columns.velocity);
+        }
+        self.from = output.plan.from;
+        self.kept = output.kept.map(|kept| Kept { held: kept.held.of_bodies(&leg.places), ..kept });
+        if outcome.ending == Ending::Stopped
+            && let Some((i, j)) = output.events.contact()
+        {
+            let (i, j) = (leg.bodies[i], leg.bodies[j]);
+            return Ok(Some((i.min(j), i.max(j))));
+        }
+        self.outcome.ending = match outcome.ending {
+            Ending::CloseEncounter { bodies: (i, j), distance } => {
+                Ending::CloseEncounter { bodies: (leg.bodies[i], leg.bodies[j]), distance }
+            }
+            other => other,
+        };
+        Ok(None)
+    }
+
+    /// Settles a contact, and all others at the same time; whether the run goes on.
+    fn collide(&mut self, pair: Option<(usize, usize)>) -> bool {
+        // What was held at a node is of before.
+        self.kept = None;
+        self.from = 0;
+        let goes_on = match self.rule {
+            Collisions::Stop => self.stop(pair),
+            Collisions::Bounce(restitution) => self.bounce(pair, restitution),
+            Collisions::Merge => self.merge(pair),
+        };
+        self.begun = self.bodies.states();
+        goes_on
+    }
+
+    fn put(&mut self, collision: Collision) {
+        self.lines.push(Collision { copy: self.copy, ..collision });
+    }
+
+    fn stop(&mut self, pair: Option<(usize, usize)>) -> bool {
+        let first = || {
+            let touching = self.bodies.touching().into_iter();
+            touching.filter(|&pair| self.bodies.approach(pair).is_some()).min()
+        };
+        if let Some(pair) = pair.or_else(first) {
+            self.put(self.bodies.touch(pair, self.outcome.time));
+        }
+        self.outcome.ending = Ending::Stopped;
+        false
+    }
+
+    fn bounce(&mut self, pair: Option<(usize, usize)>, restitution: f64) -> bool {
+        let t = self.outcome.time;
+        let touching = self.bodies.touching();
+        if let Some(pair) = pair {
+            let (collision, speed) = self.bodies.bounce(pair, restitution, t);
+            self.put(collision);
+            if self.rests(pair, collision.speed, speed) {
+                self.outcome.ending = Ending::Resting { bodies: pair };
+                return false;
+            }
+        }
+        for _ in 0..IMPULSES * (1 + touching.len()) {
+            let speeds = touching.iter().filter_map(|&pair| Some((self.bodies.approach(pair)?, pair)));
+            // The fastest first, of equal ones the first.
+            let fastest = speeds.max_by(|a, b| a.0.total_cmp(&b.0).then(b.1.cmp(&a.1)));
+            let Some((_, pair)) = fastest else { return true };
+            let (collision, speed) = self.bodies.bounce(pair, restitution, t);
+            self.put(collision);
+            let rests = self.met.get(&pair).map_or(0, |met| met.rests);
+            let _ = self.met.insert(pair, Met { t, speed, rests });
+        }
+        let bodies = touching.first().copied().unwrap_or_default();
+        self.outcome.ending = Ending::Resting { bodies };
+        false
+    }
+
+    /// Takes note of a bounce; whether the two have come to rest on each other.
+    fn rests(&mut self, pair: (usize, usize), met_with: f64, parted_with: f64) -> bool {
+        let t = self.outcome.time;
+        let sum = self.bodies.radius[pair.0] + self.bodies.radius[pair.1];
+        let rests = self.met.get(&pair).map_or(0, |met| {
+            // What rises and falls freely comes that far, from the speed and the time that it takes.
+            let apart = 0.25 * met.speed.max(met_with) * (t - met.t).abs();
+            if apart <= REST * sum { met.rests + 1 } else { 0 }
+        });
+        let _ = self.met.insert(pair, Met { t, speed: parted_with, rests });
+        rests >= RESTS
+    }
+
+    fn merge(&mut self, pair: Option<(usize, usize)>) -> bool {
+        let t = self.outcome.time;
+        let mut next = pair;
+        loop {
+            if let Some(pair) = next {
+                let collision = self.bodies.merge(pair, t);
+                self.put(collision);
+            }
+            // A body that has grown may have reached others.
+            let bodies = &self.bodies;
+            let touches = |&&(i, j): &&(usize, usize)| {
+                bodies.gap(i, j) < -bodies.contact(i, j) || bodies.approach((i, j)).is_some()
+            };
+            next = bodies.touching().iter().find(touches).copied();
+            if next.is_none() {
+                return true;
+            }
+        }
+    }
+}
+
+impl Outcome {
+    /// Adds the cost and the doubts of a leg.
+    fn add(&mut self, leg: &Self) {
+        self.counts += leg.counts;
+        self.energy_error = self.energy_error.max(leg.energy_error);
+    }
+}
+
+/// Copies rows of a leg to their places: from this one on, so many.
+fn record(all: &mut Columns, of_leg: &Columns, (from, rows): (usize, usize), leg: &Leg) {
+    let particles = leg.places.len();
+    for (into, own) in [(&mut all.position, &of_leg.position), (&mut all.velocity, &of_leg.velocity)] {
+        if into.is_empty() {
+            continue;
+        }
+        let own = own.chunks_exact(3 * leg.bodies.len());
+        for (into, own) in into.chunks_exact_mut(3 * particles).skip(from).zip(own).take(rows) {
+            for (point, place) in into.chunks_exact_mut(3).zip(&leg.places) {
+                point.copy_from_slice(&own[3 * place..3 * place + 3]);
+            }
+        }
+    }
+    for (into, own) in all.derived.iter_mut().zip(&of_leg.derived) {
+        let width = own.column.width;
+        into.values[from * width..(from + rows) * width].copy_from_slice(&own.values[..rows * width]);
+    }
+}

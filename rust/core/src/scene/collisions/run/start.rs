@@ -1,0 +1,76 @@
+//! The start of a copy: which of its bodies are parts of others, which spheres overlap, what it goes on with.
+
+use super::super::{Collisions, Impact};
+use super::leg::Leg;
+use crate::error::{Error, Result};
+use crate::scene::continuation::{Continuation, Held};
+use crate::scene::{Scene, distance};
+use crate::words::number;
+use std::collections::HashMap;
+
+/// The bodies of a copy.
+pub(super) fn bodies_of(scene: &Scene, copy: usize, rule: Collisions, direction: f64) -> Impact {
+    let (mass, radius) = (scene.masses(copy), scene.radii(copy));
+    let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
+    let radius = if radius.is_empty() { vec![0.0; scene.particles] } else { radius.to_vec() };
+    let mut host: Vec<usize> = (0..scene.particles).collect();
+    if rule == Collisions::Merge {
+        // What an earlier run has merged: nothing by itself, in the place of another and moving with it.
+        let key = |body: usize| [position[body], velocity[body]].map(|x| x.map(|x| (x + 0.0).to_bits()));
+        let whole = |body: usize| mass[body] > 0.0 || radius[body] > 0.0;
+        let there: HashMap<_, usize> =
+            (0..scene.particles).filter(|&body| whole(body)).map(|body| (key(body), body)).collect();
+        for (body, host) in host.iter_mut().enumerate().filter(|(body, _)| !whole(*body)) {
+            *host = there.get(&key(body)).copied().unwrap_or(body);
+        }
+    }
+    let (mass, position, velocity) = (mass.to_vec(), position.to_vec(), velocity.to_vec());
+    Impact { mass, radius, position, velocity, host, direction }
+}
+
+/// A copy without those of its bodies that are parts of others, if some are.
+pub(super) fn whole_of(scene: &Scene, copy: usize, rule: Collisions) -> Option<Scene> {
+    let bodies = bodies_of(scene, copy, rule, 1.0);
+    let leg = Leg::of(&bodies);
+    (leg.bodies.len() < scene.particles).then(|| leg.scene(scene, copy, &bodies, scene.t0))
+}
+
+/// Refuses spheres that overlap at the start.
+///
+/// # Errors
+/// By their indices, with how far they do.
+pub(super) fn check_overlaps(scene: &Scene, copy: usize, rule: Collisions) -> Result<()> {
+    let bodies = bodies_of(scene, copy, rule, 1.0);
+    let overlap = |&&(i, j): &&(usize, usize)| bodies.gap(i, j) < -bodies.contact(i, j);
+    let touching = bodies.touching();
+    let Some(&(i, j)) = touching.iter().find(overlap) else { return Ok(()) };
+    let sum = bodies.radius[i] + bodies.radius[j];
+    let apart = distance(bodies.position[i], bodies.position[j]);
+    let whose = if scene.copies > 1 { format!(" of copy {copy}") } else { String::new() };
+    Err(Error::invalid(
+        "radius",
+        format!(
+            "bodies {i} and {j}{whose} overlap by {} at the start: they are {} apart, and their radii add up to {}; \
+             move them apart, or make them smaller",
+            number(sum - apart),
+            number(apart),
+            number(sum)
+        ),
+    ))
+}
+
+/// Of what a scene goes on with, that of the bodies of a leg.
+pub(super) fn part_of(from: &Continuation, whole: &Scene, copy: usize, leg: &Leg) -> Continuation {
+    let own = copy * whole.particles;
+    let pick = |of: &[[f64; 3]]| leg.bodies.iter().filter_map(|body| of.get(own + body).copied()).collect();
+    let fits = from.held.numbers.len() == 3 * whole.copies * from.held.blocks * from.held.slots
+        && from.held.slots >= whole.particles;
+    let held = if fits { from.held.of_copy(copy).of_bodies(&leg.bodies) } else { Held::default() };
+    Continuation {
+        method: from.method.clone(),
+        position: pick(&from.position),
+        velocity: pick(&from.velocity),
+        held,
+        ..*from
+    }
+}
