@@ -42,7 +42,9 @@ impl fmt::Display for Collisions {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Merge => write!(formatter, "merge"),
-            Self::Bounce(restitution) => write!(formatter, "bounce with restitution {}", number(*restitution)),
+            Self::Bounce(restitution) => {
+                write!(formatter, "bounce with restitution {}", number(*restitution))
+            }
             Self::Stop => write!(formatter, "stop"),
         }
     }

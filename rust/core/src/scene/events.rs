@@ -8,6 +8,7 @@
 mod sight;
 
 pub use super::collisions::Spheres;
+pub(crate) use sight::dot;
 pub use sight::{Moving, Sight, apart};
 
 use super::Scene;
@@ -19,7 +20,7 @@ use crate::forces::bodies::PreciseBodies;
 use crate::parallel::Ticker;
 use crate::words::{number, numbers};
 use core::fmt;
-use sight::dot;
+
 use std::sync::Arc;
 
 /// A function of time, positions and velocities, the numbers of one body after those of another.

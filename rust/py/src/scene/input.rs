@@ -120,9 +120,31 @@ impl Asked<'_> {
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
         let own_forces = self.own_forces.map(|own| own_forces(&own, copies)).transpose()?;
-        let scene =
-            Scene { copies, particles, mass, position, velocity, forces, own_forces, radius, t0, continuation };
-        let request = Request { times, method, dt, rtol, atol, max_step, max_steps, record, events, collisions, threads };
+        let scene = Scene {
+            copies,
+            particles,
+            mass,
+            position,
+            velocity,
+            forces,
+            own_forces,
+            radius,
+            t0,
+            continuation,
+        };
+        let request = Request {
+            times,
+            method,
+            dt,
+            rtol,
+            atol,
+            max_step,
+            max_steps,
+            record,
+            events,
+            collisions,
+            threads,
+        };
         Ok((scene, request, raised))
     }
 }

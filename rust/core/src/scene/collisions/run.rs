@@ -99,9 +99,6 @@ pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tick
         output.columns.finish(&core::mem::take(&mut output.missing));
     }
     let begun = (!goes_on && held.is_some()).then_some(begun);
-    if let Some(kept) = &held {
-        output.plan.t0 = kept.t0;
-    }
     output.kept = held;
     output.collisions = Some(Collided { table, mass, radius, begun });
     Ok(output)

@@ -64,7 +64,7 @@ impl<S: Real> Sight<S> {
 // No closures here: vectors of a SIMD tier come by.
 
 #[inline(always)]
-pub(super) fn dot<S: Real>(a: [S; 3], b: [S; 3]) -> S {
+pub(crate) fn dot<S: Real>(a: [S; 3], b: [S; 3]) -> S {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 

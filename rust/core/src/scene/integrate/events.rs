@@ -120,16 +120,24 @@ impl<'a> Watch<'a> {
         }
         let (plan, scene) = (job.plan, job.scene);
         let mut slots: Vec<usize> = Vec::new();
+        // Where each body of the scene is in the unit, and each of those among the ones that are looked at.
+        let nowhere = usize::MAX;
+        let (mut slot_of, mut place_of) =
+            (vec![nowhere; scene.particles], vec![nowhere; unit.unit.bodies.len()]);
+        for (slot, &body) in unit.unit.bodies.iter().enumerate() {
+            slot_of[body] = slot;
+        }
         let mut events = Vec::with_capacity(unit.unit.events.len());
         let mut spheres = None;
         for &index in &*unit.unit.events {
             let looked_at = plan.events[index].bodies(&plan.groups, scene.particles, &plan.active);
             let places = looked_at.iter().filter_map(|body| {
-                let slot = unit.unit.bodies.iter().position(|own| own == body)?;
-                Some(slots.iter().position(|&known| known == slot).unwrap_or_else(|| {
+                let slot = slot_of.get(*body).copied().filter(|&slot| slot != nowhere)?;
+                if place_of[slot] == nowhere {
+                    place_of[slot] = slots.len();
                     slots.push(slot);
-                    slots.len() - 1
-                }))
+                }
+                Some(place_of[slot])
             });
             let places: Vec<usize> = places.collect();
             match &plan.events[index].what {
@@ -137,16 +145,16 @@ impl<'a> Watch<'a> {
                 _ => events.push((index, places)),
             }
         }
-        let nowhere = vec![Moving::default(); slots.len()];
+        let at_rest = vec![Moving::default(); slots.len()];
         let mut watch = Self {
             job,
             bodies: Bodies::new(job, unit, &slots, (state, lane)),
             contacts: None,
             pairs: Vec::new(),
             massive: unit.unit.bodies.len() < scene.particles,
-            before: nowhere.clone(),
-            after: nowhere.clone(),
-            inside: nowhere,
+            before: at_rest.clone(),
+            after: at_rest.clone(),
+            inside: at_rest,
             sights: vec![Sight::default(); events.len()],
             next: vec![Sight::default(); events.len()],
             suspects: Vec::new(),

@@ -168,7 +168,9 @@ impl Plan {
             }
         }
         match self.collisions {
-            None if self.spheres => skip("collisions", "not asked for: spheres pass through each other".to_owned()),
+            None if self.spheres => {
+                skip("collisions", "not asked for: spheres pass through each other".to_owned())
+            }
             Some(_) if !self.touching => skip("collisions", "no two bodies can touch".to_owned()),
             _ => {}
         }

@@ -1,7 +1,7 @@
 //! The zeros of one event in one step: the function is sampled along it; where it changes its sign, or comes near zero and
 //! turns, the zero is located on the solution itself.
 
-use super::super::super::events::Sight;
+use super::super::super::events::{Sight, What, dot};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, cubic_at, is_straight};
 use super::{Interpolant, Span, Watch};
@@ -19,6 +19,9 @@ const SECTIONS: usize = 40;
 
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
+
+/// Steps of the last kind, which find it to round-off if the motion is uniform.
+const POLISHES: usize = 3;
 
 /// How far a function may bend away from the cubic in the middle of a step through which it goes almost straight, as a part
 /// of its way: not by enough to turn.
@@ -58,18 +61,32 @@ impl Search<'_, '_> {
             }
             return Ok(zeros);
         }
-        let mut points = vec![(0.0, self.ends[0])];
+        let [start, end] =
+            [&self.watch.sights[self.event], &self.watch.next[self.event]].map(|sight| self.rate(sight));
+        let (mut points, mut rates) = (vec![(0.0, self.ends[0])], vec![start]);
         for theta in SAMPLES {
-            points.push((theta, self.sight_between(theta, ticker)?.value));
+            let sight = self.sight_between(theta, ticker)?;
+            points.push((theta, sight.value));
+            rates.push(self.rate(&sight));
         }
         points.push((1.0, self.ends[1]));
+        rates.push(end);
         let mut brackets: Vec<Bracket> = Vec::new();
         for pair in points.windows(2) {
             if crosses(pair[0].1, pair[1].1) {
                 brackets.push([pair[0], pair[1]]);
             }
         }
-        for three in points.windows(3) {
+        for (pair, rates) in points.windows(2).zip(rates.windows(2)) {
+            if let (&[a, b], &[Some(from), Some(to)]) = (pair, rates)
+                && a.1 * b.1 > 0.0
+                && a.1.signum() * from < 0.0
+                && a.1.signum() * to > 0.0
+            {
+                brackets.extend(self.nearest(a, b, step, ticker)?);
+            }
+        }
+        for three in points.windows(3).filter(|_| end.is_none()) {
             if let &[left, middle, right] = three
                 && turns(left.1, middle.1, right.1)
             {
@@ -90,7 +107,8 @@ impl Search<'_, '_> {
         for bracket in brackets {
             let Some([a, b]) = self.settled(bracket, step, ticker)? else { continue };
             if counts(a.1) {
-                zeros.push(zero([a, b], |theta| self.value_at(theta, step, ticker))?);
+                let theta = zero([a, b], |theta| self.value_at(theta, step, ticker))?;
+                zeros.push(self.polished(theta, [a.0, b.0], step, ticker)?);
             }
         }
         // Brackets that the solution does not confirm lead to one zero.
@@ -103,7 +121,7 @@ impl Search<'_, '_> {
     /// ends of the step and its middle.
     fn straight(&mut self, ticker: &mut Ticker<'_>) -> Result<Option<(f64, f64)>> {
         let watch = &*self.watch;
-        let h = scale(self.span.to - self.span.from, watch.job.plan.units.time);
+        let h = self.length();
         let Some(rates) =
             watch.event(self.event).0.rates([&watch.sights[self.event], &watch.next[self.event]], h)
         else {
@@ -158,6 +176,81 @@ impl Search<'_, '_> {
             theta = next;
         }
         zero(whole, |theta| self.value_at(theta, step, ticker))
+    }
+
+    /// The rate of a distance, up to a factor above zero; of nothing else.
+    fn rate(&self, sight: &Sight) -> Option<f64> {
+        let is_distance = matches!(self.watch.event(self.event).0.what, What::Distance { .. });
+        let along = self.span.to - self.span.from;
+        is_distance.then(|| along.signum() * dot(sight.distance, sight.velocity))
+    }
+
+    /// Where a distance that comes to an extremum between two points of the same sign passes zero there: two brackets, or
+    /// none. The extremum is where the rate changes its sign, however short the approach is.
+    fn nearest(
+        &mut self,
+        a: (f64, f64),
+        b: (f64, f64),
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<Bracket>> {
+        let sign = a.1.signum();
+        let rates = [self.rate_at(a.0, step, ticker)?, self.rate_at(b.0, step, ticker)?];
+        if sign * rates[0] >= 0.0 || sign * rates[1] <= 0.0 {
+            return Ok(Vec::new());
+        }
+        let ends = [(a.0, rates[0]), (b.0, rates[1])];
+        let mut theta = zero(ends, |theta| self.rate_at(theta, step, ticker))?;
+        for _ in 0..POLISHES {
+            let sight = self.sight_at(theta, step, ticker)?;
+            if sight.value * sign <= 0.0 {
+                return Ok(vec![[a, (theta, sight.value)], [(theta, sight.value), b]]);
+            }
+            // As if the bodies moved uniformly there: a short approach on a long step is not lost to the rounding of its place.
+            let way = self.length() * dot(sight.velocity, sight.velocity);
+            let next = theta - dot(sight.distance, sight.velocity) / way;
+            if !(a.0 < next && next < b.0) {
+                break;
+            }
+            theta = next;
+        }
+        Ok(Vec::new())
+    }
+
+    /// The length of the step.
+    fn length(&self) -> f64 {
+        scale(self.span.to - self.span.from, self.watch.job.plan.units.time)
+    }
+
+    fn rate_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let sight = self.sight_at(theta, step, ticker)?;
+        Ok(self.rate(&sight).unwrap_or_default())
+    }
+
+    /// A zero of a distance as exactly as the time from the start of the step allows, where the step is long beside the
+    /// approach: as if the bodies moved uniformly there.
+    fn polished(
+        &mut self,
+        mut theta: f64,
+        bracket: [f64; 2],
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let h = self.length();
+        for _ in 0..POLISHES {
+            let sight = self.sight_at(theta, step, ticker)?;
+            let Some(_) = self.rate(&sight) else { break };
+            let rounding = self.watch.event(self.event).0.rounding(&sight);
+            let (a, b) =
+                (h * h * dot(sight.velocity, sight.velocity), h * dot(sight.distance, sight.velocity));
+            let square = b * b - a * sight.value;
+            let next = theta - sight.value / (b + b.signum() * square.max(0.0).sqrt());
+            if sight.value.abs() <= rounding || !(bracket[0] <= next && next <= bracket[1]) {
+                break;
+            }
+            theta = next;
+        }
+        Ok(theta)
     }
 
     /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
