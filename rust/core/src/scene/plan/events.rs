@@ -10,6 +10,11 @@ use std::sync::Arc;
 impl Plan {
     /// Gives each event to one of the kinds of units, or to one more.
     pub(super) fn watch(&self, kinds: &mut Vec<Unit>) {
+        if let (true, [all]) = (self.touching, &mut kinds[..]) {
+            // One unit has all bodies.
+            all.events = (0..self.events.len()).collect();
+            return;
+        }
         let own = kinds.len();
         for (index, event) in self.events.iter().enumerate() {
             let looked_at = event.bodies(&self.groups, self.particles, &self.active);
