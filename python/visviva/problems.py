@@ -39,6 +39,7 @@ __all__ = [
     "arenstorf",
     "crossed_fields",
     "driven_oscillator",
+    "euler_collinear",
     "figure_eight",
     "kepler",
     "lagrange_triangle",
@@ -267,6 +268,66 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
         (reference(t_end, turned),),
         ((t_end, float(max(1.0, np.exp(2.0 * pi * turn * growth)))),),
         "Lagrange, Essai sur le probleme des trois corps (1772)",
+    )
+
+
+@known_keywords
+def euler_collinear(
+    masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float = 1.0, turn: float = 0.25
+) -> Problem:
+    """Three bodies that turn on a straight line, in the order given, as if on a rigid rod.
+
+    Parameters
+    ----------
+    masses : sequence of 3 floats, optional
+    separation : float, optional
+        Distance of the first two. That of the last two follows from Euler's equation of the fifth degree.
+    turn : float, optional
+        How far to turn, in full turns.
+
+    Notes
+    -----
+    Unstable for any masses: what is out of line grows by the factor that the conditioning tells.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.problems.euler_collinear(masses=(1.0, 5.0, 1.0)).scene.particles.position[:, 0].round(12).tolist()
+    [-1.0, 0.0, 1.0]
+    """
+    a, b, c = three = float_array("masses", masses, (3,))
+    separation, turn = positive("separation", separation, "length"), number("turn", turn)
+    if not (min(three) >= 0.0 and min(a + b, b + c) > 0.0):
+        expected = "masses of at least 0, of which two neighbors have not none"
+        raise InvalidInput("masses", f"expected {expected}, got {three.tolist()}")
+    # Of the distance of the last two over that of the first two: one change of sign, so one positive root.
+    quintic = [a + b, 3 * a + 2 * b, 3 * a + b, -b - 3 * c, -2 * b - 3 * c, -b - c]
+    roots = np.roots(quintic)
+    ratio = float(max(roots[np.abs(roots.imag) <= 1e-9 * np.abs(roots)].real))
+    slope = np.polyder(np.array(quintic))
+    for _ in range(3):  # what the companion matrix left
+        ratio -= float(np.polyval(quintic, ratio) / np.polyval(slope, ratio))
+    places = separation * np.array([0.0, 1.0, 1.0 + ratio])
+    line = np.stack([places, np.zeros(3), np.zeros(3)], axis=1)
+    position = line - Particles(masses, line).center_of_mass()[0]
+    # Of two bodies that move relative to each other: what pulls them together is ω² times their distance.
+    (r12, r23), r13 = np.diff(places), places[2]
+    rate = sqrt(((a + b) / r12**2 + c * (1 / r13**2 - 1 / r23**2)) / r12)
+    velocity = rate * np.stack([-position[:, 1], position[:, 0], np.zeros(3)], axis=1)
+    t_end = 2.0 * pi * turn / rate
+    cosine, sine = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
+    turned = position @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    # The third eigenvalue of the field's gradient, beside that of a displacement and of a stretch, in units of ω².
+    third = ((a + b) / r12**3 + (b + c) / r23**3 + (a + c) / r13**3) / rate**2 - 1.0
+    growth = sqrt((third - 2.0 + sqrt(9.0 * third**2 - 8.0 * third)) / 2.0)
+    return Problem(
+        "euler_collinear",
+        "three bodies turning on a straight line",
+        Scene(Particles(masses, position, velocity), Gravity(1.0)),
+        t_end,
+        (reference(t_end, turned),),
+        ((t_end, float(np.exp(2.0 * pi * abs(turn) * growth))),),
+        "Euler, De motu rectilineo trium corporum se mutuo attrahentium (1767)",
     )
 
 

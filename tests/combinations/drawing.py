@@ -218,3 +218,18 @@ def event(name: str, seed: int, scene: vv.Scene, span: float) -> vv.events.Event
         except vv.InvalidInput:
             return vv.events.energy(share, **how)
     raise NotImplementedError(f"tests/combinations/drawing.py cannot draw the event {name!r} yet")
+
+
+def _needs_mass(name: str) -> bool:
+    """Whether bodies without mass are refused by every force of that name."""
+    bodies = vv.Particles(np.zeros(3), 2.0 * np.eye(3))
+    for seed in range(6):
+        try:
+            vv.Scene(bodies, force(name, seed, 3, tame=True)).acceleration()
+        except vv.InvalidInput:
+            continue
+        return False
+    return True
+
+
+NEED_MASS = frozenset(name for name in FORCES if _needs_mass(name))
