@@ -1,7 +1,8 @@
 """What a field of force does and whether it may: work along paths, curl, and action against reaction.
 
 The one idea: a field is a function of places, whatever made it. `field` makes one of a force of a scene; everything
-else here takes any function ``F(r)`` of places of shape (K, 3).
+else that is written here takes any function ``F(r)`` of places of shape (K, 3). What motions and integrators tell of
+themselves is in `_audit_motions` and `_audit_methods`.
 """
 
 from __future__ import annotations
@@ -13,8 +14,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, positive
+from visviva._audit_methods import order, reversal, symplecticity
+from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._keywords import known_keywords
-from visviva.errors import ConvergenceError, InvalidInput
+from visviva._quadrature import line_integral
+from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
 from visviva.scene import Scene
@@ -26,10 +30,22 @@ if TYPE_CHECKING:
 
     _Field = Callable[[NDArray[np.float64]], ArrayLike]
 
-__all__ = ["Curl", "ThirdLaw", "curl", "field", "third_law", "work", "work_along"]
+__all__ = [
+    "Curl",
+    "ThirdLaw",
+    "curl",
+    "field",
+    "impulse",
+    "mass_ratio",
+    "order",
+    "reversal",
+    "rigidity",
+    "symplecticity",
+    "third_law",
+    "work",
+    "work_along",
+]
 
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(8)
-_MOST_PANELS = 2**14
 _NEAR = 2.0**-10
 """The step of differences, of the size of what is looked at: fourth order errs by 1e-12 there, rounding by as much."""
 _ROUNDING = 1e-8
@@ -127,47 +143,16 @@ def work(
     at = field(force) if isinstance(force, Force) else force
     rtol = positive("rtol", rtol)
     if callable(path):
-        return _integral(at, path, rtol)
+        return line_integral(at, path, rtol)
     corners = float_array("path", path, (None, 3))
     if len(corners) < 2:
         raise InvalidInput("path", f"expected two corners at least, got {len(corners)}")
-    pieces = (_integral(at, _line(a, b), rtol) for a, b in pairwise(corners))
+    pieces = (line_integral(at, _line(a, b), rtol) for a, b in pairwise(corners))
     return float(sum(pieces))
 
 
 def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     return lambda s: a + s[:, None] * (b - a)
-
-
-def _differentiation(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Derivatives at the nodes of the polynomial through values there: Berrut & Trefethen, SIAM Rev. 46 (2004) 501."""
-    apart = nodes[:, None] - nodes
-    np.fill_diagonal(apart, 1.0)
-    weights = 1.0 / apart.prod(axis=1)
-    matrix: NDArray[np.float64] = weights / weights[:, None] / apart
-    np.fill_diagonal(matrix, 0.0)
-    np.fill_diagonal(matrix, -matrix.sum(axis=1))
-    return matrix
-
-
-_DERIVATIVE = _differentiation(_NODES)
-
-
-def _integral(at: _Field, path: Callable[[NDArray[np.float64]], ArrayLike], rtol: float) -> float:
-    before, panels = np.inf, 4
-    while panels <= _MOST_PANELS:
-        s = (np.arange(panels)[:, None] + 0.5 * (_NODES + 1.0)) / panels
-        places = float_array("path", path(s.ravel()), (s.size, 3))
-        forces = float_array("force", at(places), places.shape)
-        # dr over half a piece, the unit of the nodes.
-        steps = np.einsum("ij,pjc->pic", _DERIVATIVE, places.reshape(panels, -1, 3))
-        rate = (forces.reshape(steps.shape) * steps).sum(axis=2)
-        sizes = np.linalg.norm(forces.reshape(steps.shape), axis=2) * np.linalg.norm(steps, axis=2)
-        total, size = float((rate @ _WEIGHTS).sum()), float((sizes @ _WEIGHTS).sum())
-        if abs(total - before) <= rtol * size:
-            return total
-        before, panels = total, 2 * panels
-    raise ConvergenceError(f"the work does not settle to {rtol:g} of it: the field jumps or is singular on the path")
 
 
 @known_keywords

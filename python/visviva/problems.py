@@ -272,9 +272,7 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
 
 
 @known_keywords
-def euler_collinear(
-    masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float = 1.0, turn: float = 0.25
-) -> Problem:
+def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float = 1.0, turn: float = 0.25) -> Problem:
     """Three bodies that turn on a straight line, in the order given, as if on a rigid rod.
 
     Parameters

@@ -14,6 +14,8 @@ ALL = [
     vv.problems.kepler(e=0.9, mass_ratio=1e-3),
     vv.problems.lagrange_triangle(),
     vv.problems.lagrange_triangle(masses=(1.0, 1e-3, 1e-4), side=1.5, turn=1.25),
+    vv.problems.euler_collinear(),
+    vv.problems.euler_collinear(masses=(3.0, 1e-9, 0.5), separation=2.0, turn=-0.3),
     vv.problems.arenstorf(),
     vv.problems.driven_oscillator(),
     vv.problems.crossed_fields(),
@@ -128,6 +130,8 @@ def test_kepler_elements() -> None:
         (lambda: vv.problems.kepler(mass_ratio=-1.0), "mass_ratio"),
         (lambda: vv.problems.figure_eight(periods=0), "periods"),
         (lambda: vv.problems.lagrange_triangle(masses=(1.0, 1.0)), "masses"),
+        (lambda: vv.problems.euler_collinear(masses=(0.0, 0.0, 1.0)), "masses"),
+        (lambda: vv.problems.euler_collinear(separation=0.0), "separation"),
         (lambda: vv.datasets.outer_solar_system("hairer"), "variant"),  # type: ignore[arg-type]
         (lambda: vv.problems.kepler().error(vv.problems.pleiades().scene), "final"),
     ],
@@ -144,3 +148,34 @@ def test_the_triangle_states_its_instability() -> None:
     assert equal == pytest.approx(np.exp(2 * np.pi / np.sqrt(2)), rel=1e-12)
     (_, stable), *_ = vv.problems.lagrange_triangle(masses=(1.0, 1e-2, 1e-3)).conditioning
     assert stable == 1.0
+
+
+@pytest.mark.parametrize("masses", [(1.0, 2.0, 3.0), (1.0, 5.0, 1.0), (0.0, 1.0, 1e-6), (1e3, 1e-9, 2.0)])
+def test_three_bodies_on_a_line_are_a_central_configuration(masses: tuple[float, float, float]) -> None:
+    """Every body is pulled to the center of mass in proportion to its distance, and for any masses the line breaks."""
+    problem = vv.problems.euler_collinear(masses, turn=1.0)
+    scene, rate = problem.scene, 2.0 * np.pi / problem.t_end
+    pull = scene.acceleration() + rate**2 * scene.particles.position
+    # Of the light body of the last, between pulls that nearly cancel.
+    assert np.abs(pull).max() < 1e-14 * np.abs(scene.acceleration()).max()
+    ((_, factor),) = problem.conditioning
+    assert factor > 1.0
+    places = scene.particles.position[:, 0]
+    assert places[0] < places[1] < places[2]
+    if masses == (0.0, 1.0, 1e-6):
+        # Lagrange's third point, about as far on the other side: Murray & Dermott, section 3.6, 1 − 7μ/12.
+        assert (places[1] - places[0]) / (places[2] - places[1]) == pytest.approx(1.0 - 7e-6 / 12, abs=1e-11)
+
+
+def test_a_line_of_three_breaks_as_fast_as_it_says() -> None:
+    """Disturbed along the line, the first of the bodies leaves it as e^(growth · t): seen over two spans of a run."""
+    problem = vv.problems.euler_collinear((1.0, 2.0, 3.0), turn=2.0)
+    moved = problem.scene.particles.position.copy()
+    moved[0] *= 1.0 + 1e-11
+    disturbed = problem.scene.with_state(moved, problem.scene.particles.velocity)
+    times = problem.t_end * np.array([0.25, 0.375, 0.5])
+    apart = [scene.run(t=times, method="verner98", rtol=2.5e-14).position for scene in (problem.scene, disturbed)]
+    growth = np.linalg.norm(apart[1] - apart[0], axis=(1, 2))
+    ((_, factor),) = problem.conditioning
+    assert growth[1] / growth[0] == pytest.approx(factor**0.125, rel=0.1)
+    assert growth[2] / growth[1] == pytest.approx(factor**0.125, rel=0.1)
