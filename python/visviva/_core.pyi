@@ -40,6 +40,7 @@ class _Request(_Scene):
     end_only: bool
     method: str
     dt: float | None
+    time_transformation: str | None
     rtol: float
     atol: float | None
     max_step: float | None

@@ -51,7 +51,7 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     if plan.evaluations_per_step * plan.pairs_per_evaluation > _PAIRS or not bodies or not copies:
         return None
     span = abs(float(asked["times"][-1]) - asked["t0"])
-    step = asked["dt"]
+    step = None if asked["time_transformation"] else asked["dt"]
     fraction = min(1.0, abs(step) / span if step is not None and span > 0.0 else 1.0 / 4096.0)
     while True:
         result, seconds = stretch(tried, fraction)

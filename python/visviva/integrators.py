@@ -36,6 +36,8 @@ class Method:
     symplectic, reversible, adaptive : bool
         Whether the map is symplectic, whether a step back undoes a step, whether it chooses its own
         steps.
+    time_transformation : bool
+        Whether its steps may be equal in another time than time itself: ``run(time_transformation=...)``.
     dense_order : int
         Order of the states between steps.
     reference : str
@@ -49,6 +51,7 @@ class Method:
     symplectic: bool
     reversible: bool
     adaptive: bool
+    time_transformation: bool
     dense_order: int
     reference: str
 

@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from visviva._progress import Progress
     from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName
+    from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName, TransformationName
 
 __all__ = ["PlanRequest", "RunRequest", "asked_by", "execute"]
 
@@ -66,6 +66,17 @@ def _words(name: str, value: object) -> list[str]:
     return [_word(name, word) for word in value]
 
 
+def _step(name: str, value: object) -> float:
+    if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
+        raise InvalidInput(
+            name,
+            "expected one number, the length of every step, got several: a symplectic method whose steps change from one "
+            "to the next is no symplectic map, and its energy drifts; give one dt and a time_transformation, which lets "
+            "steps change in time and keeps the map, or name an adaptive method such as dop853",
+        )
+    return number(name, value)
+
+
 def _or_none(check: Callable[[str, object], _Check]) -> Callable[[str, object], _Check | None]:
     return lambda name, value: None if value is None else check(name, value)
 
@@ -89,7 +100,8 @@ class PlanRequest:
 
     t: ArrayLike = field(kw_only=False)
     method: MethodName | Method = field(default="auto", metadata=_told(_method))
-    dt: float | None = field(default=None, metadata=_told(_or_none(number)))
+    dt: float | None = field(default=None, metadata=_told(_or_none(_step)))
+    time_transformation: TransformationName | None = field(default=None, metadata=_told(_or_none(_word)))
     rtol: float = field(default=1e-9, metadata=_told(number))
     atol: float | None = field(default=None, metadata=_told(_or_none(number)))
     max_step: float | None = field(default=None, metadata=_told(_or_none(number)))

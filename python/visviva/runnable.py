@@ -50,6 +50,16 @@ class Runnable(ABC, Generic[_Result]):
             runs.
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
+        time_transformation : {"potential_energy", "distance"}, optional
+            For the steps of a symplectic method to change without losing what it is for: they are equal not in time but in
+            another time s with dt/ds = 1/Ω, and `dt` is the first of them. ``"distance"`` has Ω = Σ 1/r over pairs of
+            bodies one of which has mass (softened, where the forces are) and over centers of fields; it is reversible
+            under any forces of positions (and time) [1]_. ``"potential_energy"`` has Ω = −V, for bodies with mass under
+            `Gravity` and attractive Coulomb `CentralField` alone; it is symplectic, and two bodies stay on their conic to
+            round-off and err in time only [2]_ [3]_. A close encounter then takes as many steps as a distant one. For
+            methods with ``Method.time_transformation``; anything else is refused. Made for few bodies: all of them share a
+            step, but a massless one, which goes in a time of its own as if it were alone with those that have mass. A
+            state at a time between steps costs four of them. Another run on from ``final`` begins with `dt` again.
         rtol : float, optional
             Relative tolerance of an adaptive method, at least 2.3e-14; a fixed-step method has no use for it.
         atol : float, optional
@@ -106,6 +116,12 @@ class Runnable(ABC, Generic[_Result]):
         visviva.AccuracyWarning
             Fixed steps resolved nothing: the energy at the end is off by more than a hundredth of kinetic +
             |potential|, or the step is longer than the run.
+
+        References
+        ----------
+        .. [1] S. Mikkola and S. Aarseth, Celest. Mech. Dyn. Astron. 84 (2002) 343.
+        .. [2] S. Mikkola and K. Tanikawa, Mon. Not. R. Astron. Soc. 310 (1999) 745.
+        .. [3] M. Preto and S. Tremaine, Astron. J. 118 (1999) 2532.
 
         Examples
         --------

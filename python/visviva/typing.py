@@ -1,7 +1,7 @@
 """Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
-has; a test compares.
+has; a test compares. `TransformationName` is what a time transformation watches.
 """
 
 from collections.abc import Callable
@@ -12,13 +12,24 @@ from numpy.typing import NDArray
 
 from visviva._progress import Progress, Report
 
-__all__ = ["CollisionRule", "ColumnName", "EventFunction", "MethodName", "Progress", "Report", "SolverName"]
+__all__ = [
+    "CollisionRule",
+    "ColumnName",
+    "EventFunction",
+    "MethodName",
+    "Progress",
+    "Report",
+    "SolverName",
+    "TransformationName",
+]
 
 EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], Any]
 """A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
 
 CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
 """What spheres do that touch."""
+
+TransformationName: TypeAlias = Literal["potential_energy", "distance"]
 
 # written by tools/write_names.py: begin
 MethodName: TypeAlias = Literal[

@@ -226,7 +226,7 @@ def a_run_goes_on_with_the_bits_of_the_whole(recipe: Recipe) -> None:
     """
     case = replace(recipe, terminal=0).case()
     step = case.how.get("dt")
-    if step is None:
+    if step is None or "time_transformation" in case.how:
         raise Refused("no fixed step")
     scene, sign = case.members()[0], -1.0 if recipe.backward else 1.0
     rng = np.random.default_rng(recipe.seed + 3)

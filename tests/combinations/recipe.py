@@ -52,6 +52,7 @@ class Recipe:
     wild_member: bool = False  # one member is far larger than the others
     steps: int = 12  # of a fixed-step method, in the span
     ragged: bool = False  # the end is not a node
+    transformation: str = ""  # what a time transformation watches, of a method that has them
     decades: int = 9  # the tolerance of an adaptive method, 10^-decades
     outputs: int = 0
     columns: tuple[str, ...] = ("position", "velocity")
@@ -167,6 +168,8 @@ def _case(recipe: Recipe) -> Case:
         how |= {"rtol": 10.0**-recipe.decades, "max_steps": MAX_STEPS}
     else:
         how["dt"] = step
+        if recipe.transformation and method.time_transformation:
+            how |= {"time_transformation": recipe.transformation, "max_steps": MAX_STEPS}
     if recipe.events:
         looked_for = [event(name, seed, scene, sign * end) for name, seed in recipe.events]
         how["events"] = (replace(looked_for[0], terminal=recipe.terminal), *looked_for[1:])
@@ -263,6 +266,7 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         wild_member=draw(_some((5, st.just(False)), (1, st.just(True)))),
         steps=draw(st.integers(1, 40)),
         ragged=draw(st.booleans()),
+        transformation=draw(_some((2, st.just("")), (1, st.sampled_from(["distance", "potential_energy"])))),
         decades=draw(st.integers(5, 12)),
         outputs=draw(st.integers(0, 6)),
         columns=tuple(draw(st.lists(st.sampled_from(COLUMNS), unique=True, min_size=1))),

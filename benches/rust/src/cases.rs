@@ -116,6 +116,7 @@ pub fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -
         times,
         method: method.to_owned(),
         dt,
+        time_transformation: None,
         rtol: 1e-13,
         atol: None,
         max_step: None,

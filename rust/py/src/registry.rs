@@ -28,6 +28,7 @@ pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         dict.set_item("symplectic", method.symplectic)?;
         dict.set_item("reversible", method.reversible)?;
         dict.set_item("adaptive", method.adaptive())?;
+        dict.set_item("time_transformation", method.transforms())?;
         dict.set_item("dense_order", method.dense_order)?;
         dict.set_item("reference", method.reference)?;
         let numbers = |row: &[DoubleDouble]| row.iter().map(|x| x.to_f64()).collect::<Vec<_>>();

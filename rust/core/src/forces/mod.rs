@@ -18,6 +18,7 @@ pub mod gravity;
 pub mod harmonic;
 pub mod linear_drag;
 pub mod links;
+pub mod monitor;
 pub mod oblate;
 pub mod pair_potential;
 pub mod post_newtonian;
@@ -39,6 +40,7 @@ use crate::ode::Method;
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
 use crate::ode::system::{Form, Needs, System};
+use crate::ode::transformation::Monitor;
 use crate::parallel::Ticker;
 use gravity::FewBodies;
 use gravity::closed::ClosedKernel;
@@ -95,13 +97,20 @@ pub struct Dynamics<S: Element> {
     closed: Option<FewBodies<S>>,
     needs: Needs,
     evaluations: u64,
+    monitor: Option<Box<dyn Monitor<S>>>,
 }
 
 impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
     pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
         let needs = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
-        Self { shape, forces, closed: None, needs, evaluations: 0 }
+        Self { shape, forces, closed: None, needs, evaluations: 0, monitor: None }
+    }
+
+    /// With what tells a time transformation how fast time goes.
+    #[must_use]
+    pub fn watched_by(self, monitor: Box<dyn Monitor<S>>) -> Self {
+        Self { monitor: Some(monitor), ..self }
     }
 }
 
@@ -176,6 +185,10 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
                 force.rotate(part, (&mut *v, &mut *rest));
             }
         }
+    }
+
+    fn monitor(&mut self) -> Option<&mut dyn Monitor<S>> {
+        self.monitor.as_deref_mut().map(|monitor| monitor as &mut dyn Monitor<S>)
     }
 
     fn special(&self, method: &'static Method, h: f64, state: &State<S>) -> Option<Box<dyn Stepper<S>>> {

@@ -257,10 +257,19 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         rows.try_for_each(|(index, row)| stages.evaluate_at(first + index, step, state, row, system, ticker))
     }
 
-    fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>) {
+    fn at(
+        &mut self,
+        outcome: &Settled<S>,
+        _: &mut dyn System<S>,
+        state: &State<S>,
+        theta: S,
+        into: &mut State<S>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         let Self { method, stages, between, weights, .. } = self;
         between.get_or_init(|| Between::new(method, stages.form())).weigh(theta, weights);
-        stages.state_at(weights, state, &h, into);
+        stages.state_at(weights, state, &outcome.h, into);
+        Ok(())
     }
 
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
@@ -315,6 +324,6 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     fn cost(&self) -> Cost {
         let stages = self.end_stage() as u64;
         let end = u64::from(self.end_in_estimate);
-        Cost { start: 2, tried: stages - 1 + end, kept: 1 - end, dense: self.method.dense_a.len() as u64 }
+        Cost { start: 2, tried: stages - 1 + end, kept: 1 - end, dense: self.method.dense_a.len() as u64, read: 0 }
     }
 }

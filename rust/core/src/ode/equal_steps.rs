@@ -102,7 +102,15 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
         Ok(())
     }
 
-    fn at(&mut self, state: &State<S>, _: S, theta: S, into: &mut State<S>) {
+    fn at(
+        &mut self,
+        _: &Settled<S>,
+        _: &mut dyn System<S>,
+        state: &State<S>,
+        theta: S,
+        into: &mut State<S>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         let len = self.stages.len();
         let (y, compensation) = into.all_mut();
         let (start, start_compensation) = state.all();
@@ -111,6 +119,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
             y[i] = start[i] + (start_compensation[i] + nested(terms.rev(), theta));
             compensation[i] = S::zero();
         }
+        Ok(())
     }
 
     fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
@@ -146,7 +155,7 @@ impl<S: Controlled> Trial<S> for EqualSteps<S> {
 
     fn cost(&self) -> Cost {
         let stages = self.end_stage() as u64;
-        Cost { start: 1, tried: stages, kept: 0, dense: stages - 1 }
+        Cost { start: 1, tried: stages, kept: 0, dense: stages - 1, read: 0 }
     }
 }
 

@@ -30,6 +30,8 @@ pub mod step_control;
 pub mod stepper;
 pub mod system;
 pub mod table;
+pub mod transformation;
+pub mod transformed;
 pub mod trial;
 
 use crate::numerics::double_double::DoubleDouble;

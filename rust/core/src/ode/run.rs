@@ -93,7 +93,7 @@ impl Step<'_, '_> {
         }
         self.ready()?;
         let theta = (t - self.from) / (self.to - self.from);
-        self.trial.at(self.state, self.outcome.h, theta, self.between);
+        self.trial.at(&self.outcome, self.system, self.state, theta, self.between, self.ticker)?;
         Ok(self.between.all().0)
     }
 

@@ -104,6 +104,24 @@ impl<S: Real> Clock<S> {
         (S::select(running, S::select(last, remaining, self.h), S::zero()), last)
     }
 
+    /// Moves on by a step that has taken so long (and what that leaves out), to the end at most; `forward` has the sign of time.
+    /// A step that time does not feel, or that goes back, is none.
+    pub(super) fn pass(&mut self, running: S::Mask, (taken, rest): (S, S), forward: S) -> Settled<S> {
+        let remaining = (self.end - self.elapsed) - self.error;
+        let last = remaining.abs().less_equal(taken.abs());
+        let h = S::select(running, S::select(last, remaining, taken), S::zero());
+        let from = self.elapsed;
+        let (elapsed, error) = two_sum(self.elapsed, (self.error + rest) + taken);
+        let smallest = (S::splat(SMALLEST_STEP) * from.abs()).max(S::splat(f64::MIN_POSITIVE));
+        let along = S::select(forward.less(S::zero()), -taken, taken);
+        let accepted = smallest.less(along).and(running);
+        self.h = S::select(accepted, taken, self.h);
+        self.elapsed = S::select(accepted, S::select(last, self.end, elapsed), self.elapsed);
+        self.error = S::select(accepted, S::select(last, S::zero(), error), self.error);
+        let (finished, stuck) = (accepted.and(last), accepted.not().and(running));
+        Settled { accepted, finished, stuck, from, h }
+    }
+
     /// Moves on by the step if its squared scaled error is at most 1, and chooses the next one.
     #[inline(always)]
     fn settle(&mut self, running: S::Mask, size2: S, rule: &Rule<S>) -> Settled<S> {

@@ -6,6 +6,7 @@
 use super::Method;
 use super::state::State;
 use super::stepper::Stepper;
+use super::transformation::Monitor;
 use crate::error::{Error, Result};
 use crate::numerics::element::{Element, PairMut};
 use crate::parallel::Ticker;
@@ -127,6 +128,10 @@ pub trait System<S: Element>: Send {
     /// A kernel that takes steps `h` of the method itself, faster than a force evaluation at a time.
     fn special(&self, method: &'static Method, h: f64, state: &State<S>) -> Option<Box<dyn Stepper<S>>> {
         let _ = (method, h, state);
+        None
+    }
+    /// What tells a time transformation how fast time goes, if the system was made for one.
+    fn monitor(&mut self) -> Option<&mut dyn Monitor<S>> {
         None
     }
 }

@@ -25,6 +25,8 @@ pub struct Cost {
     pub kept: u64,
     /// Its continuous extension, besides.
     pub dense: u64,
+    /// Each state that is read off it.
+    pub read: u64,
 }
 
 /// A method that chooses its own steps, at work on one state.
@@ -74,12 +76,25 @@ pub trait Trial<S: Controlled>: Send {
     ) -> Result<()>;
 
     /// The state at the fraction `theta` of the step, lane by lane; needs [`dense`](Self::dense).
-    fn at(&mut self, state: &State<S>, h: S, theta: S, into: &mut State<S>);
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    fn at(
+        &mut self,
+        outcome: &Settled<S>,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        theta: S,
+        into: &mut State<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()>;
 
     /// What the continuous extension is made of, once [`dense`](Self::dense) has readied it: a block of numbers (of a
     /// system of the second order: of the coordinates) for each of the [`terms`](Self::terms) `f` in
-    /// `y(t + θh) = y + θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`.
-    fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>);
+    /// `y(t + θh) = y + θ(f0 + (1-θ)(f1 + θ(f2 + (1-θ)(f3 + …))))`. Who reads states by steps has none.
+    fn extension(&self, state: &State<S>, h: S, into: &mut Vec<S>) {
+        let _ = (state, h, into);
+    }
 
     /// Of a system of the second order: the terms of the accelerations' weighted sums in one coordinate (times h²) and in its
     /// velocity (times h), in the basis of [`extension`](Self::extension). The coordinate moves by `θh` times its velocity,
@@ -89,7 +104,9 @@ pub trait Trial<S: Controlled>: Send {
     }
 
     /// How many terms the continuous extension has.
-    fn terms(&self) -> usize;
+    fn terms(&self) -> usize {
+        0
+    }
 
     /// Moves the accepted lanes to the end of their step.
     fn keep(&mut self, accepted: S::Mask, state: &mut State<S>);

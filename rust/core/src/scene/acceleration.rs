@@ -21,6 +21,7 @@ pub fn acceleration(scene: &Scene, threads: usize, ticker: &mut Ticker<'_>) -> R
     let request = Request {
         times: vec![scene.t0],
         method: "rk4".to_owned(),
+        time_transformation: None,
         // No step is taken; one that the time would round away is refused.
         dt: Some(scene.t0.abs().max(1.0)),
         rtol: 1e-9,

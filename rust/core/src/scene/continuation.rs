@@ -152,6 +152,9 @@ impl Continuation {
     pub fn start(scene: &Scene, request: &Request) -> Option<Scene> {
         let from = scene.continuation.as_ref()?;
         let (method, dt) = (registry::method(&request.method)?, request.dt?);
+        if request.time_transformation.is_some() {
+            return None;
+        }
         let end = request.times.last().copied()?;
         let points = scene.copies * scene.particles;
         let fits = from.form == FORM

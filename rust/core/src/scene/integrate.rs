@@ -115,6 +115,9 @@ pub fn run_units(job: &Job<'_>, units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Re
                 adaptive::run(job, guides, followers, inside, ticker)
             }
             (Some(chunk), Scheme::Embedded(_)) => adaptive::run(job, runs[chunk], &[], inside, ticker),
+            (Some(chunk), _) if job.plan.transformed.is_some() => {
+                adaptive::run(job, runs[chunk], &[], inside, ticker)
+            }
             (Some(chunk), _) => fixed::run(job, runs[chunk], inside, ticker),
         }
     })?;

@@ -4,6 +4,7 @@ mod coupling;
 mod events;
 mod explain;
 mod solutions;
+mod transformation;
 
 pub use coupling::Groups;
 pub use explain::Row;
@@ -24,6 +25,7 @@ use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
 use crate::ode::Method;
 use crate::ode::system::{Form, Needs};
+use crate::ode::transformation::Transformation;
 use crate::parallel::Ticker;
 use crate::registry::METHODS;
 use std::sync::Arc;
@@ -46,8 +48,10 @@ const FOLLOWERS_MAX: usize = 1024;
 pub struct Plan {
     /// The method of an integration.
     pub method: &'static Method,
-    /// The signed step of a fixed-step method.
+    /// The signed step of a fixed-step method, if it is the same in time.
     pub dt: Option<f64>,
+    /// What is watched where steps are equal in another time, and the signed step at the start.
+    pub transformed: Option<(Transformation, f64)>,
     /// +1 forward, -1 backward.
     pub direction: f64,
     /// How the motion of each ensemble member is found.
@@ -109,7 +113,7 @@ impl Plan {
     pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
         ticker.tick()?;
-        let Checked { method, automatic, direction, dt } = request.check(scene)?;
+        let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = effective_forces(scene);
         check_method(method, &forces)?;
@@ -140,10 +144,15 @@ impl Plan {
             && groups == Groups::All
             && !touching
             && serves(method, active.len());
+        if let Some((by, _)) = transformed {
+            transformation::check(by, &forces, (active.len(), passive.len()), groups == Groups::All)?;
+        }
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {
             Groups::Single => true,
             Groups::All if touching => false,
+            // Each massless body goes with the massive ones in a time of its own; they have no other bits for it.
+            Groups::All if transformed.is_some() => active.len() <= RING_MAX,
             Groups::All => relative || (scene.copies > 1 && scene.particles <= RING_MAX),
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
@@ -154,6 +163,7 @@ impl Plan {
         let mut plan = Self {
             method,
             dt,
+            transformed,
             direction,
             solutions,
             planar,
@@ -225,11 +235,16 @@ impl Plan {
         }
     }
 
+    /// Whether each unit takes its steps at times of its own.
+    pub fn has_own_times(&self) -> bool {
+        self.method.adaptive() || self.transformed.is_some()
+    }
+
     /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
     pub fn passive_apart(&self) -> bool {
         self.groups == Groups::All
             && !self.touching
-            && (self.method.adaptive() || self.relative)
+            && (self.has_own_times() || self.relative)
             && !self.active.is_empty()
             && !self.passive.is_empty()
     }
@@ -323,7 +338,8 @@ impl Plan {
                     kind(bodies, active, recorded, run.len())
                 };
                 let massive = kind(Arc::from(&self.active[..]), active, 0..active, 0);
-                let massless = self.passive.chunks(PASSIVE_PER_UNIT).map(with_active);
+                let together = if self.transformed.is_some() { 1 } else { PASSIVE_PER_UNIT };
+                let massless = self.passive.chunks(together).map(with_active);
                 core::iter::once(massive).chain(massless).collect()
             }
             Groups::All => {

@@ -5,7 +5,8 @@ use super::collisions::Collisions;
 use super::events::{self, Event};
 use crate::conservation::columns::{COLUMNS, Column};
 use crate::error::{Error, Result};
-use crate::ode::Method;
+use crate::ode::transformation::Transformation;
+use crate::ode::{Method, Scheme};
 use crate::registry;
 use crate::words::{number, unknown};
 
@@ -29,6 +30,8 @@ pub struct Request {
     pub method: String,
     /// The step of a fixed-step method.
     pub dt: Option<f64>,
+    /// What is watched for its steps to be equal in another time than time itself, by name.
+    pub time_transformation: Option<String>,
     /// Relative tolerance of an adaptive method.
     pub rtol: f64,
     /// Absolute tolerance; `None` is scale-free.
@@ -56,8 +59,10 @@ pub struct Checked {
     pub automatic: bool,
     /// +1 forward, -1 backward.
     pub direction: f64,
-    /// The signed step.
+    /// The signed step, if it is the same in time.
     pub dt: Option<f64>,
+    /// What is watched where it is the same in another time, and the signed step at the start.
+    pub transformed: Option<(Transformation, f64)>,
 }
 
 impl Request {
@@ -102,8 +107,49 @@ impl Request {
             }
             _ => {}
         }
+        let by = self.transformation(method, automatic)?;
         let dt = self.checked_step(scene, method, automatic, direction)?;
-        Ok(Checked { method, automatic, direction, dt })
+        let transformed = by.zip(dt);
+        Ok(Checked { method, automatic, direction, dt: dt.filter(|_| by.is_none()), transformed })
+    }
+
+    /// In what time the steps are to be equal.
+    fn transformation(&self, method: &Method, automatic: bool) -> Result<Option<Transformation>> {
+        let Some(name) = &self.time_transformation else { return Ok(None) };
+        let names = Transformation::ALL.iter().map(|by| by.name());
+        let by = Transformation::ALL.iter().find(|by| by.name() == name);
+        let by = *by.ok_or_else(|| unknown("time_transformation", name, names))?;
+        if self.collisions.is_some() {
+            // What goes on from a contact begins anew, with the step of a distance that is then the smallest.
+            let message = "expected None beside collisions, after which the step would no longer be that of the start; use \
+                           an adaptive method such as dop853";
+            return Err(Error::invalid("time_transformation", message));
+        }
+        if method.transforms() && !automatic {
+            return Ok(Some(by));
+        }
+        let why = if automatic || method.adaptive() {
+            "chooses its steps by an error estimate"
+        } else {
+            match method.scheme {
+                Scheme::NystromSplitting(_) => {
+                    "has its order only where drifts are linear in the velocities, which they are not in another time"
+                }
+                Scheme::Splitting(_) => "is not symmetric, and not reversible in any time",
+                Scheme::Boris(_) => "turns velocities, which has no such form",
+                _ => "is not made of kicks and drifts",
+            }
+        };
+        let others = registry::METHODS.iter().filter(|method| method.transforms()).map(|method| method.name);
+        Err(Error::invalid(
+            "time_transformation",
+            format!(
+                "{} {why}: a time transformation needs a method that is composed of leapfrogs or like them; expected one of {}, \
+                 with dt, or no time_transformation",
+                self.method,
+                others.collect::<Vec<_>>().join(", ")
+            ),
+        ))
     }
 
     /// What steers an adaptive method. `rtol` always has a value, so that a method without tolerances ignores it.
@@ -141,9 +187,15 @@ impl Request {
         for (argument, given) in [("atol", self.atol), ("max_step", self.max_step)] {
             match given {
                 Some(given) if !method.adaptive() => {
+                    let transforms = if method.symplectic {
+                        "; a symplectic method whose steps are chosen from one to the next is no symplectic map, and \
+                         its energy drifts: what keeps it where steps must change is time_transformation="
+                    } else {
+                        ""
+                    };
                     let message = format!(
                         "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
-                         out and choose dt, or name an adaptive method such as dop853",
+                         out and choose dt, or name an adaptive method such as dop853{transforms}",
                         method.name,
                         number(given)
                     );

@@ -35,6 +35,7 @@ pub(crate) struct Asked<'py> {
     end_only: bool,
     method: String,
     dt: Option<f64>,
+    time_transformation: Option<String>,
     rtol: f64,
     atol: Option<f64>,
     max_step: Option<f64>,
@@ -115,7 +116,7 @@ impl Asked<'_> {
         };
         let raised = Raised::default();
         let events = events(&self.events, particles, &raised)?;
-        let Self { method, dt, rtol, atol, max_step, max_steps, record, .. } = self;
+        let Self { method, dt, time_transformation, rtol, atol, max_step, max_steps, record, .. } = self;
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
@@ -136,6 +137,7 @@ impl Asked<'_> {
             times,
             method,
             dt,
+            time_transformation,
             rtol,
             atol,
             max_step,

@@ -163,7 +163,7 @@ pub(super) fn output_dict<'py>(
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());
     if let Some((copy, error)) = worst.max_by(|a, b| a.1.total_cmp(&b.1)) {
-        let step = output.plan.dt.map(f64::abs);
+        let step = output.plan.dt.or(output.plan.transformed.map(|(_, dt)| dt)).map(f64::abs);
         dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
     }
     let error = outcomes.first().filter(|_| !ensemble).and_then(failure);
@@ -218,7 +218,7 @@ fn failure(outcome: &Outcome) -> Option<Error> {
         Ending::NoStep => Some(Error::Convergence {
             message: "the step size fell to zero, and no bodies are close: the tolerances ask for more than a step can \
                       give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
-                      them, or set max_step)"
+                      them, or set max_step); under a time transformation, that dt is too long"
                 .to_owned(),
             time,
         }),

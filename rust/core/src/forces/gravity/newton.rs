@@ -16,7 +16,7 @@ use crate::words::numbers;
 use std::sync::Arc;
 
 /// The exponents of length, mass and time in the gravitational constant.
-const CONSTANT: [i32; 3] = [3, -1, -2];
+pub(in crate::forces) const CONSTANT: [i32; 3] = [3, -1, -2];
 
 /// What it declares about itself.
 pub static DECLARATION: ForceDeclaration = Declaration {

@@ -79,6 +79,47 @@ impl<S: Element> Pass<S> for Advance<'_, S> {
     }
 }
 
+/// `Σ a·b`, lane by lane.
+#[derive(Debug)]
+pub struct Product<'a, S> {
+    /// Some numbers.
+    pub a: &'a [S],
+    /// As many.
+    pub b: &'a [S],
+}
+
+impl<S: Element> Pass<S> for Product<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let (a, b) = (V::view(self.a), V::view(self.b));
+        let mut sum = V::zero();
+        for (&a, &b) in a.iter().zip(b) {
+            sum = a.multiply_add(b, sum);
+        }
+        sum.store()
+    }
+}
+
+/// Zero, or not a number where some number is not finite, lane by lane.
+#[derive(Debug)]
+pub struct Finite<'a, S> {
+    /// The numbers.
+    pub y: &'a [S],
+}
+
+impl<S: Element> Pass<S> for Finite<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let mut sum = V::zero();
+        for &y in V::view(self.y) {
+            sum += y * V::zero();
+        }
+        sum.store()
+    }
+}
+
 /// `if mask { from } else { into }`, element by element.
 pub fn replace<S: Element>(into: &mut [S], from: &[S], mask: S::Mask) {
     if mask.all() {

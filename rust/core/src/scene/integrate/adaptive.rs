@@ -23,10 +23,12 @@ use crate::forces::Dynamics;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::{Mask, Real};
+use crate::ode::Scheme;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
 use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::System;
+use crate::ode::transformed::Transformed;
 use crate::ode::trial::{Cost, Trial, trial};
 use crate::parallel::Ticker;
 use core::iter::Enumerate;
@@ -148,9 +150,15 @@ impl<'a> Run<'a> {
         }
         let system = forces.system();
         let max_step = Lanes::splat(scale(job.max_step, -plan.units.time));
-        let trial = trial(plan.method, system, &state, max_step)?;
         let end = Lanes::splat(outputs[outputs.len() - 1]);
         let together = layout == Layout::Packed;
+        let trial: Box<dyn Trial<Lanes>> = match (&plan.method.scheme, plan.transformed) {
+            (Scheme::Splitting(table), Some((by, dt))) => {
+                let dt = Lanes::splat(scale(dt, -plan.units.time));
+                Box::new(Transformed::new(table, by, dt, system, &state, together))
+            }
+            _ => trial(plan.method, system, &state, max_step)?,
+        };
         Ok(Self {
             job,
             threads: 1,
@@ -285,7 +293,7 @@ impl<'a> Run<'a> {
         let guiding = self.followers.is_some() && outcome.accepted.any();
         if guiding {
             self.trial.dense(&outcome, self.forces.system(), &self.state, ticker)?;
-            self.charge(outcome.accepted);
+            self.charge(outcome.accepted, self.cost.dense);
         }
         let dense = self.record(&outcome, guiding, ticker)?;
         if self.job.watched() {

@@ -64,6 +64,6 @@ impl Plan {
         let kinds = self.watched_kinds();
         let beside =
             |unit: &Unit| !unit.events.is_empty() && !unit.follows && unit.recorded.len() < unit.bodies.len();
-        kinds.len() > self.kinds().len() || (self.method.adaptive() && kinds.iter().any(beside))
+        kinds.len() > self.kinds().len() || (self.has_own_times() && kinds.iter().any(beside))
     }
 }

@@ -5,6 +5,7 @@ use super::super::request::columns;
 use super::{Groups, Plan};
 use crate::forces::term::Coupling;
 use crate::ode::Scheme;
+use crate::ode::transformation::Transformation;
 use core::fmt;
 
 /// A line of the plan.
@@ -32,11 +33,19 @@ impl Plan {
             row("sets of forces", self.sets_of_forces.to_string(), why.to_owned());
         }
         if self.solutions.integrates() {
-            let steps = match self.dt {
-                Some(dt) => format!("fixed step {dt}"),
-                None => "steps chosen by the error estimate".to_owned(),
+            let steps = match (self.dt, self.transformed) {
+                (Some(dt), _) => format!("fixed step {dt}"),
+                (None, Some((by, dt))) => format!("steps equal in the time of {}, {dt} at the start", by.name()),
+                (None, None) => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
+            if let Some((by, _)) = self.transformed {
+                let told = match by {
+                    Transformation::PotentialEnergy => "steps go as one over the potential energy: symplectic",
+                    Transformation::Distance => "steps go as one over the sum of inverse distances: reversible",
+                };
+                row("time transformation", by.name().to_owned(), told.to_owned());
+            }
             if self.from > 0 {
                 let why = "the scene ended a run with this method and step: its bits are those of one run";
                 row("start", format!("goes on from node {}", self.from), why.to_owned());

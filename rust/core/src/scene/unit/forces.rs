@@ -3,6 +3,7 @@
 use super::{Layout, Plan, Prepared};
 use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::gravity::newton::few_bodies;
+use crate::forces::monitor::InverseDistances;
 use crate::forces::{Dynamics, Force};
 use crate::numerics::lanes::Lanes;
 
@@ -44,5 +45,9 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
     if let (true, Some((constant, softening))) = (plan.relative, newtonian) {
         return Dynamics::closed(few_bodies(&context, constant, softening));
     }
-    Dynamics::new(shape, plan.forces.iter().map(|force| force.kernel(&context)).collect())
+    let dynamics = Dynamics::new(shape, plan.forces.iter().map(|force| force.kernel(&context)).collect());
+    match plan.transformed {
+        None => dynamics,
+        Some((by, _)) => dynamics.watched_by(Box::new(InverseDistances::new(by, &plan.forces, &context))),
+    }
 }

@@ -19,6 +19,8 @@ impl<'a> Run<'a> {
         // What the step costs this unit, whatever the other lanes do: the derivative at its end is only
         // taken when it is kept.
         slot.counts.evaluations += self.cost.tried;
+        // Who reads states by steps has read the end, too.
+        slot.counts.evaluations += if outcome.finished.lane(lane) { self.cost.read } else { 0 };
         if outcome.accepted.lane(lane) {
             slot.counts.steps += 1;
             slot.counts.evaluations += self.cost.kept;

@@ -21,6 +21,8 @@ struct Inside<'r> {
     terms: Vec<(usize, Vec<[Lanes; 2]>)>,
     outcome: &'r Settled<Lanes>,
     ready: bool,
+    /// How often a state was asked for.
+    reads: u64,
 }
 
 impl Inside<'_> {
@@ -36,7 +38,9 @@ impl Inside<'_> {
 impl Interpolant for Inside<'_> {
     fn at(&mut self, theta: f64, ticker: &mut Ticker<'_>) -> Result<&State<Lanes>> {
         self.ready(ticker)?;
-        self.trial.at(self.state, self.outcome.h, Lanes::splat(theta), self.between);
+        let theta = Lanes::splat(theta);
+        self.trial.at(self.outcome, self.system, self.state, theta, self.between, ticker)?;
+        self.reads += 1;
         Ok(self.between)
     }
 
@@ -107,12 +111,16 @@ impl Run<'_> {
             terms: Vec::new(),
             outcome,
             ready: dense.any(),
+            reads: 0,
         };
+        let read = self.cost.read;
         for (lane, slot) in slots.iter_mut().enumerate().filter(|&(lane, _)| suspects.lane(lane)) {
-            let Some(Slot { unit, watch: Some(watch), .. }) = slot else { continue };
+            let Some(Slot { unit, watch: Some(watch), counts, .. }) = slot else { continue };
+            inside.reads = 0;
             watch.look(unit, span(lane), (&after, lane), &mut inside, ticker)?;
+            counts.evaluations += read * inside.reads;
         }
-        self.charge(suspects.and(dense.not()));
+        self.charge(suspects.and(dense.not()), self.cost.dense);
         Ok(())
     }
 }

@@ -65,8 +65,9 @@ impl Run<'_> {
                     trial.dense(outcome, forces.system(), state, ticker)?;
                     ready = true;
                 }
-                trial.at(state, outcome.h, round.theta, between);
-                self.charge(round.inside.and(charged.not()));
+                trial.at(outcome, forces.system(), state, round.theta, between, ticker)?;
+                self.charge(round.inside.and(charged.not()), self.cost.dense);
+                self.charge(round.inside, self.cost.read);
                 charged = charged.or(round.inside);
             }
             self.write(&round, ticker)?;
@@ -116,9 +117,8 @@ impl Run<'_> {
         Ok(())
     }
 
-    /// Counts the evaluations of the continuous extension for the units that read it.
-    pub(super) fn charge(&mut self, lanes: Bits) {
-        let evaluations = self.cost.dense;
+    /// Counts evaluations of the continuous extension for the units that read it.
+    pub(super) fn charge(&mut self, lanes: Bits, evaluations: u64) {
         for (lane, slot) in self.slots.iter_mut().enumerate() {
             if let Some(slot) = slot {
                 slot.counts.evaluations += if lanes.lane(lane) { evaluations } else { 0 };
