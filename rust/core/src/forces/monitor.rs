@@ -99,9 +99,7 @@ impl Monitor<Lanes> for InverseDistances {
         let mut sum = Lanes::zero();
         for &pairs in &self.pairs {
             sum += match self.arrangement {
-                Arrangement::Batched => {
-                    Lanes::pass(Pairs { of: self, pairs, q, gradient: &mut *gradient })
-                }
+                Arrangement::Batched => Lanes::pass(Pairs { of: self, pairs, q, gradient: &mut *gradient }),
                 Arrangement::Packed => {
                     let both_ways = Lanes::pass(Others { of: self, pairs, q, gradient: &mut *gradient });
                     Lanes::splat(0.5) * both_ways.sum_of_lanes()

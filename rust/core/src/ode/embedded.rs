@@ -324,6 +324,12 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
     fn cost(&self) -> Cost {
         let stages = self.end_stage() as u64;
         let end = u64::from(self.end_in_estimate);
-        Cost { start: 2, tried: stages - 1 + end, kept: 1 - end, dense: self.method.dense_a.len() as u64, read: 0 }
+        Cost {
+            start: 2,
+            tried: stages - 1 + end,
+            kept: 1 - end,
+            dense: self.method.dense_a.len() as u64,
+            read: 0,
+        }
     }
 }

@@ -118,13 +118,7 @@ impl Moves {
         if self.together { product.sum_of_lanes() } else { product }
     }
 
-    fn kick<S: Controlled>(
-        &self,
-        share: (S, S),
-        time: Time,
-        state: &mut State<S>,
-        beside: &mut Beside<S>,
-    ) {
+    fn kick<S: Controlled>(&self, share: (S, S), time: Time, state: &mut State<S>, beside: &mut Beside<S>) {
         let step = match time {
             Time::Transformed => ((share.0 + share.1) / beside.omega, S::zero()),
             Time::Itself => share,
@@ -163,9 +157,7 @@ impl Moves {
             }
             let share = h.scaled_by(drift);
             let step = match time {
-                Time::Transformed => {
-                    ((share.0 + share.1) / self.weight(state, beside, system)?, S::zero())
-                }
+                Time::Transformed => ((share.0 + share.1) / self.weight(state, beside, system)?, S::zero()),
                 Time::Itself => share,
             };
             let (q, (v, _)) = state.halves_mut();
@@ -204,7 +196,7 @@ pub struct Transformed<S> {
 impl<S: Controlled> Transformed<S> {
     /// The method `table` with steps that are at first `dt` long, for lanes that go `together` or not.
     pub fn new(
-        table: &'static Splitting,
+        table: &Splitting,
         by: Transformation,
         dt: S,
         system: &dyn System<S>,
@@ -379,3 +371,6 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         Cost { start: u64::from(self.shared), tried, kept: 0, dense: 0, read: (SHADOWS + 1) * tried }
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -35,14 +35,20 @@ impl Plan {
         if self.solutions.integrates() {
             let steps = match (self.dt, self.transformed) {
                 (Some(dt), _) => format!("fixed step {dt}"),
-                (None, Some((by, dt))) => format!("steps equal in the time of {}, {dt} at the start", by.name()),
+                (None, Some((by, dt))) => {
+                    format!("steps equal in the time of {}, {dt} at the start", by.name())
+                }
                 (None, None) => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
             if let Some((by, _)) = self.transformed {
                 let told = match by {
-                    Transformation::PotentialEnergy => "steps go as one over the potential energy: symplectic",
-                    Transformation::Distance => "steps go as one over the sum of inverse distances: reversible",
+                    Transformation::PotentialEnergy => {
+                        "steps go as one over the potential energy: symplectic"
+                    }
+                    Transformation::Distance => {
+                        "steps go as one over the sum of inverse distances: reversible"
+                    }
                 };
                 row("time transformation", by.name().to_owned(), told.to_owned());
             }

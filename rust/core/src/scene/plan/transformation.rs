@@ -43,7 +43,8 @@ pub(super) fn check(
     }
     if coupled && passive > 0 {
         return refused(
-            "potential_energy does not see massless bodies, which have no energy; use distance, which does".to_owned(),
+            "potential_energy does not see massless bodies, which have no energy; use distance, which does"
+                .to_owned(),
         );
     }
     if coupled && active < 2 {
