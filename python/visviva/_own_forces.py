@@ -101,4 +101,6 @@ def described(copies: tuple[tuple[Force, ...], ...]) -> _core._OwnForces:
     """What the core and a file are told: each set of forces once, and which of them each copy has."""
     sets: dict[tuple[Force, ...], int] = {}
     of_copy = [sets.setdefault(forces, len(sets)) for forces in copies]
-    return [[force._to_core() for force in forces] for forces in sets], of_copy
+    # One description of each: to the core forces are the same if they are one object.
+    each = {force: force._to_core() for forces in sets for force in forces}
+    return [[each[force] for force in forces] for forces in sets], of_copy

@@ -153,7 +153,8 @@ class Scene(Runnable[Trajectory], Framed):
         parameters : dict of dict, optional
             For some forces of the scene (each given itself, by its place among them or by the name of its class),
             values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
-            with one set of parameters run together, others apart from them.
+            share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs: a term
+            that a value of 0 leaves out, a softening, an exponent, a table.
 
         Returns
         -------

@@ -9,6 +9,7 @@ those, too, are asked of it.
 
 from __future__ import annotations
 
+import inspect
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 COLUMNS = ("position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass")
+OWN = ("position", "velocity", "mass", "parameters", "numbers")
 MAX_STEPS = 1500
 
 
@@ -180,9 +182,9 @@ def _ensemble(recipe: Recipe, scene: vv.Scene) -> vv.EnsembleScene:
     rng = np.random.default_rng(recipe.seed + 2)
     count, bodies = recipe.members, len(scene.particles)
     given: dict[str, NDArray[np.float64]] = {}
-    parameters = _parameters(scene, count) if "parameters" in recipe.own else None
+    parameters = _parameters(scene, count, recipe.own) if {"parameters", "numbers"} & set(recipe.own) else None
     for name in recipe.own or ("position",):
-        if name == "parameters":
+        if name in ("parameters", "numbers"):
             continue
         value = getattr(scene.particles, name)
         noise = rng.uniform(-1.0, 1.0, (count, *value.shape)) / 64.0
@@ -199,20 +201,34 @@ def _ensemble(recipe: Recipe, scene: vv.Scene) -> vv.EnsembleScene:
     return scene.ensemble(**given, **({"parameters": parameters} if parameters else {}))
 
 
-def _parameters(scene: vv.Scene, count: int) -> dict[int, dict[str, list[Any]]]:
-    """Numbers and vectors of the forces, of three kinds among the members."""
+def _parameters(scene: vv.Scene, count: int, own: tuple[str, ...]) -> dict[int, dict[str, list[Any]]]:
+    """Of the forces: numbers and vectors, of three kinds among the members; numbers of bodies and links, and those of
+    potentials, each member's."""
+    kinds = {"number", "vector", "axial_vector", "point"} if "parameters" in own else set()
     factors = 1.0 + (np.arange(count) % 3) / 64.0
-    return {
-        place: {
-            parameter["name"]: (np.multiply.outer(factors, np.array(getattr(force, parameter["name"])))).tolist()
-            for parameter in declared(type(force))
-            if parameter["kind"] in ("number", "vector", "axial_vector", "point")
-        }
-        for place, force in enumerate(scene.forces)
-        if any(
-            parameter["kind"] in ("number", "vector", "axial_vector", "point") for parameter in declared(type(force))
-        )
-    }
+    each = 1.0 + np.arange(count) / 64.0
+    found: dict[int, dict[str, list[Any]]] = {}
+    for place, term in enumerate(scene.forces):
+        values = {}
+        for parameter in declared(type(term)):
+            value = getattr(term, parameter["name"])
+            if parameter["kind"] in kinds:
+                values[parameter["name"]] = np.multiply.outer(factors, np.array(value)).tolist()
+            elif parameter["kind"] == "numbers" and "numbers" in own:
+                values[parameter["name"]] = np.multiply.outer(each, np.array(value)).tolist()
+            elif parameter["kind"] == "potential" and "numbers" in own:
+                values[parameter["name"]] = [_with_strength(value, factor) for factor in each.tolist()]
+        if values:
+            found[place] = values
+    return found
+
+
+def _with_strength(potential: Any, factor: float) -> Any:
+    """It with the first of its parameters times a factor, if that is a number."""
+    name = inspect.signature(type(potential)).parameters
+    first = next(iter(name))
+    value = getattr(potential, first)
+    return potential if not isinstance(value, float) else replace(potential, **{first: value * factor})
 
 
 def _some(*weighted: tuple[int, st.SearchStrategy[Any]]) -> st.SearchStrategy[Any]:
@@ -259,9 +275,7 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         offset=draw(_some((3, st.just(0)), (1, st.integers(1, 9)))),
         units=draw(_some((3, st.just((0, 0, 0))), (1, st.tuples(powers, powers, powers)))),
         members=members,
-        own=tuple(
-            draw(st.lists(st.sampled_from(["position", "velocity", "mass", "parameters"]), unique=True, min_size=1))
-        ),
+        own=tuple(draw(st.lists(st.sampled_from(OWN), unique=True, min_size=1))),
         own_massless=draw(_some((3 * few, st.just(False)), (1, st.just(True)))),
         wild_member=draw(_some((5, st.just(False)), (1, st.just(True)))),
         steps=draw(st.integers(1, 40)),

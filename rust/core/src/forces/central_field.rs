@@ -1,7 +1,7 @@
 //! A fixed center: the force −dV/dr along the line to it, on every particle.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm, check_force, outside};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -52,12 +52,18 @@ impl ForceTerm for CentralField {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let potential = self.potential.scaled(context.units);
+        let center = |system: &System<'_>, c: usize| {
+            context.units.take(context.own(self, system).center[c], [1, 0, 0])
+        };
+        let centers = [0, 1, 2].map(|c| context.per_system(|system| center(system, c)));
         let field = Around {
             shape: context.shape,
-            center: context.units.take_vector(self.center, [1, 0, 0]),
+            center: (0..centers[0].len()).map(|block| [0, 1, 2].map(|c| centers[c][block])).collect(),
+            numbers: context.potentials(&*potential, |system| &context.own(self, system).potential),
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
         };
-        Box::new(Kernel { potential: self.potential.scaled(context.units), field })
+        Box::new(Kernel { potential, field })
     }
     fn potential_and_virial(
         &self,
@@ -121,6 +127,9 @@ impl ForceTerm for CentralField {
     }
     fn conserves(&self) -> Conserves {
         Conserves { momentum: false, angular_momentum: About::Point(self.center), spin: false, energy: true }
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        self.potential.in_every_lane()
     }
     fn keeps_plane(&self) -> bool {
         self.center[2] == 0.0

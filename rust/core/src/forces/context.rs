@@ -1,9 +1,13 @@
 //! What a kernel is made for: bodies in lanes, in the units of the integration.
 
+use super::ForceTerm;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::Real;
+use crate::potentials::{Numbers, Potential};
 use crate::units::Units;
+use core::any::Any;
+use std::sync::Arc;
 
 /// What the lanes are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,6 +25,8 @@ pub struct System<'a> {
     pub bodies: &'a [usize],
     /// Their masses, in the units of the integration.
     pub mass: &'a [f64],
+    /// The forces on them: kernels that are made for several systems look at each one's own.
+    pub forces: &'a [Arc<dyn ForceTerm>],
 }
 
 /// What a kernel is made for.
@@ -34,6 +40,8 @@ pub struct Context<'a> {
     pub active: usize,
     /// The systems: one if packed.
     pub systems: &'a [System<'a>],
+    /// The place of the force among those on each system.
+    pub term: usize,
     /// The units of the integration.
     pub units: Units,
     /// The time at the start of the run, in the scene's units.
@@ -59,7 +67,7 @@ pub(super) fn of_body(numbers: &[f64], particle: usize) -> f64 {
 impl<'a> Context<'a> {
     /// The first system, by whose make-up all go.
     pub fn first(&self) -> System<'a> {
-        self.systems.first().copied().unwrap_or(System { bodies: &[], mass: &[] })
+        self.systems.first().copied().unwrap_or(System { bodies: &[], mass: &[], forces: &[] })
     }
     /// Blocks of rows, each with the bodies of a system for every lane.
     pub fn blocks(&self) -> usize {
@@ -67,6 +75,40 @@ impl<'a> Context<'a> {
             Arrangement::Packed => 1,
             Arrangement::Batched => self.systems.len().div_ceil(WIDTH),
         }
+    }
+
+    /// The force on a system in the place of the one that makes a kernel for all.
+    pub fn own<'t, T: ForceTerm>(&self, term: &'t T, system: &System<'t>) -> &'t T {
+        let own = system.forces.get(self.term);
+        own.and_then(|own| (&**own as &dyn Any).downcast_ref()).unwrap_or(term)
+    }
+
+    /// A number of each system: in its lane of each block, or if packed in all lanes.
+    pub fn per_system(&self, of: impl Fn(&System<'a>) -> f64) -> Vec<Lanes> {
+        match self.arrangement {
+            Arrangement::Batched => self.in_rows(1, |system, _| of(system)),
+            Arrangement::Packed => vec![Lanes::splat(of(&self.first()))],
+        }
+    }
+
+    /// The numbers of the potentials of the systems' forces, block after block; `first` is that of the first, in the units
+    /// of the integration.
+    pub fn potentials(
+        &self,
+        first: &dyn Potential,
+        of: impl Fn(&System<'a>) -> &'a Arc<dyn Potential>,
+    ) -> Vec<Numbers<Lanes>> {
+        let same = of(&self.first());
+        let own = self.systems.iter().map(|system| match of(system) {
+            potential if Arc::ptr_eq(potential, same) => first.numbers(),
+            potential => potential.scaled(self.units).numbers(),
+        });
+        let own: Vec<Numbers<f64>> = own.collect();
+        let abreast = |eight: &[Numbers<f64>]| -> Numbers<Lanes> {
+            let of = |lane: usize, number: usize| eight[lane.min(eight.len() - 1)][number];
+            core::array::from_fn(|number| Lanes(core::array::from_fn(|lane| of(lane, number))))
+        };
+        own.chunks(WIDTH).map(abreast).collect()
     }
 
     /// A number of each body (of a system, by its place there) in its row and lane. Lanes without a body have zero,

@@ -4,7 +4,7 @@
 //! acceleration. So the order in which a body's terms are added is theirs ([`gravity`](super::gravity)).
 
 use super::bodies::PreciseBodies;
-use super::context::{Context, of_body};
+use super::context::{Context, System, of_body};
 use super::gravity::{energy, newton};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
@@ -52,7 +52,9 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     ],
     make: |values| match values {
         [charge, k, softening] => {
-            Ok(Arc::new(Coulomb { charge: charge.numbers(), k: k.number(), softening: softening.number() }))
+            let charge = charge.numbers();
+            let largest = charge.iter().fold(0.0, |most: f64, q| most.max(q.abs()));
+            Ok(Arc::new(Coulomb { charge, largest, k: k.number(), softening: softening.number() }))
         }
         _ => Err(Error::Internal("Coulomb takes three parameters".to_owned())),
     },
@@ -62,6 +64,8 @@ pub static DECLARATION: ForceDeclaration = Declaration {
 #[derive(Debug)]
 struct Coulomb {
     charge: Vec<f64>,
+    /// The largest without its sign.
+    largest: f64,
     k: f64,
     softening: f64,
 }
@@ -69,10 +73,6 @@ struct Coulomb {
 impl Coulomb {
     fn charge(&self, particle: usize) -> f64 {
         of_body(&self.charge, particle)
-    }
-    /// The largest without its sign.
-    fn largest(&self) -> f64 {
-        self.charge.iter().fold(0.0, |most: f64, q| most.max(q.abs()))
     }
 }
 
@@ -82,15 +82,20 @@ impl ForceTerm for Coulomb {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         // In units of the largest charge, whose square must not overflow.
-        let unit = exponent(self.largest());
-        let near = |particle: usize| scale(self.charge(particle), -unit);
-        let k = scale(self.k, 2 * unit - context.units.exponent(CONSTANT));
-        let factor = context.per_body(|system, slot| match near(system.bodies[slot]) {
+        let near = |system: &System<'_>, slot: usize| {
+            let own = context.own(self, system);
+            scale(own.charge(system.bodies[slot]), -exponent(own.largest))
+        };
+        let k = |system: &System<'_>| {
+            let own = context.own(self, system);
+            scale(own.k, 2 * exponent(own.largest) - context.units.exponent(CONSTANT))
+        };
+        let factor = context.per_body(|system, slot| match near(system, slot) {
             0.0 => 0.0,
-            charge => -k * charge / system.mass[slot],
+            charge => -k(system) * charge / system.mass[slot],
         });
         Box::new(Kernel {
-            field: newton::attraction(context, |system, slot| near(system.bodies[slot]), self.softening),
+            field: newton::attraction(context, near, self.softening),
             scratch: vec![Lanes::zero(); context.shape.len()],
             factor,
         })
@@ -151,7 +156,7 @@ impl ForceTerm for Coulomb {
     }
     /// In which the force of the largest charges at that distance moves the mass over it.
     fn unit_of_time(&self, length: i32, mass: i32) -> Option<i32> {
-        let largest = self.largest();
+        let largest = self.largest;
         let strong = self.k != 0.0 && largest != 0.0;
         strong.then(|| (3 * length + mass - exponent(self.k) - 2 * exponent(largest)).div_euclid(2))
     }
@@ -161,7 +166,7 @@ impl ForceTerm for Coulomb {
         units: Units,
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
-        let largest = self.largest();
+        let largest = self.largest;
         let softening = units.take(self.softening, [1, 0, 0]);
         let mut strongest = 0.0_f64;
         for (at, &(body, mass, position)) in bodies.iter().enumerate() {
@@ -179,6 +184,9 @@ impl ForceTerm for Coulomb {
             ticker.tick()?;
         }
         Ok(strongest)
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![self.softening.to_bits()])
     }
     fn as_coulomb(&self, [i, j]: [usize; 2]) -> Option<(Scaled, f64)> {
         Some((Scaled::from(self.k).times(self.charge(i)).times(self.charge(j)), self.softening))

@@ -4,8 +4,8 @@
 //! Products and sums are not fused, so that one number has the bits of a lane.
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
-use super::links::{Linked, Links, check_counts, of_link};
+use super::context::{Context, System};
+use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -69,12 +69,10 @@ impl ForceTerm for Dampers {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let linked = Linked::new(&self.links, context);
-        let own = linked
-            .links
-            .iter()
-            .map(|&(at, _)| context.units.take(self.coefficient[at], COEFFICIENT))
-            .collect();
-        Box::new(Kernel { coefficient: own, linked })
+        let number = |system: &System<'_>, at: usize| {
+            context.units.take(context.own(self, system).coefficient[at], COEFFICIENT)
+        };
+        Box::new(Kernel { coefficient: linked.numbers(context, number), linked })
     }
     fn potential_and_virial(
         &self,
@@ -106,18 +104,21 @@ impl ForceTerm for Dampers {
     fn keeps_plane(&self) -> bool {
         true
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
 }
 
 #[derive(Debug)]
 struct Kernel {
     linked: Linked,
-    coefficient: Vec<f64>,
+    coefficient: OfLinks,
 }
 
 /// Adds the drag of a damper to the accelerations of its ends, whose numbers are at these places.
 #[inline(always)]
 fn act<S: Real>(
-    coefficient: f64,
+    coefficient: S,
     (i, j): (usize, usize),
     (stride, components): (usize, usize),
     inverse_mass: &[S],
@@ -131,7 +132,7 @@ fn act<S: Real>(
         square += d[c] * d[c];
         closing += d[c] * (v[c * stride + j] - v[c * stride + i]);
     }
-    let share = S::splat(coefficient) * closing / square;
+    let share = coefficient * closing / square;
     for c in 0..components {
         let force = share * d[c];
         a[c * stride + i] += force * inverse_mass[i];
@@ -151,16 +152,17 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes],
         let (q, v, a) = (as_numbers(q), as_numbers(v), as_numbers_mut(a));
         let inverse_mass = as_numbers(&linked.inverse_mass);
         for (at, &(_, ends)) in linked.links.iter().enumerate() {
-            act::<f64>(force.coefficient[at], ends, (stride, components), inverse_mass, (q, v), a);
+            act::<f64>(force.coefficient[at].0[0], ends, (stride, components), inverse_mass, (q, v), a);
         }
         return;
     }
     let (q, v, a, inverse_mass) = (V::view(q), V::view(v), V::view_mut(a), V::view(&linked.inverse_mass));
     let bodies = rows / linked.blocks.max(1);
+    let (dampers, coefficient) = (linked.links.len(), V::view(&force.coefficient));
     for block in 0..linked.blocks {
         for (at, &(_, (i, j))) in linked.links.iter().enumerate() {
             let ends = (block * bodies + i, block * bodies + j);
-            act::<V>(force.coefficient[at], ends, (rows, components), inverse_mass, (q, v), a);
+            act::<V>(coefficient[block * dampers + at], ends, (rows, components), inverse_mass, (q, v), a);
         }
     }
 }

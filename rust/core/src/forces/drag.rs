@@ -9,7 +9,7 @@ pub mod named;
 pub mod sampled;
 
 use super::bodies::PreciseBodies;
-use super::context::{Context, of_body};
+use super::context::{Context, System, of_body};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -51,6 +51,10 @@ trait Law: Clone + Debug + Send + Sync + 'static {
     /// What the force of it declares.
     const DECLARATION: &'static ForceDeclaration;
 
+    /// As [`ForceTerm::in_every_lane`].
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        None
+    }
     /// The largest Reynolds number at which it is known.
     fn last(&self) -> f64;
     /// At a Reynolds number up to that. Inlined, and without closures: it is compiled for each tier.
@@ -83,14 +87,17 @@ impl<L: Law> ForceTerm for Spheres<L> {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let units = context.units;
-        let viscosity = units.take(self.viscosity, VISCOSITY);
-        let kinematic = viscosity / units.take(self.density, DENSITY);
-        let radius = |body: usize| units.take(self.radius(body), [1, 0, 0]);
-        let rate = context.per_body(|system, slot| match radius(system.bodies[slot]) {
+        let viscosity = |system: &System<'_>| units.take(context.own(self, system).viscosity, VISCOSITY);
+        let density = |system: &System<'_>| units.take(context.own(self, system).density, DENSITY);
+        let radius = |system: &System<'_>, slot: usize| {
+            units.take(context.own(self, system).radius(system.bodies[slot]), [1, 0, 0])
+        };
+        let rate = context.per_body(|system, slot| match radius(system, slot) {
             0.0 => 0.0,
-            radius => -6.0 * PI * viscosity * radius / system.mass[slot],
+            radius => -6.0 * PI * viscosity(system) * radius / system.mass[slot],
         });
-        let reynolds = context.per_body(|system, slot| radius(system.bodies[slot]) / kinematic);
+        let reynolds =
+            context.per_body(|system, slot| radius(system, slot) / (viscosity(system) / density(system)));
         Box::new(Kernel { law: self.law.clone(), shape: context.shape, rate, reynolds })
     }
     fn potential_and_virial(
@@ -139,6 +146,9 @@ impl<L: Law> ForceTerm for Spheres<L> {
     }
     fn keeps_plane(&self) -> bool {
         true
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        self.law.in_every_lane()
     }
     fn speed_limit(&self, particle: usize) -> Option<f64> {
         let limit = self.law.last() * (self.viscosity / self.density) / self.radius(particle);

@@ -1,7 +1,7 @@
 //! A periodic drive: the same force on every body, a cosine of time.
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{Bodies, Drive, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -64,12 +64,22 @@ impl ForceTerm for DrivenForce {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let start = DoubleDouble::product(self.frequency, context.t0) + DoubleDouble::from(self.phase);
+        let start = |system: &System<'_>| {
+            let own = context.own(self, system);
+            (DoubleDouble::product(own.frequency, context.t0) + DoubleDouble::from(own.phase)).parts()
+        };
+        let amplitude =
+            |system: &System<'_>, c: usize| context.units.take(context.own(self, system).amplitude[c], FORCE);
+        let frequency =
+            |system: &System<'_>| context.units.take(context.own(self, system).frequency, FREQUENCY);
         Box::new(Kernel {
             shape: context.shape,
-            amplitude: context.units.take_vector(self.amplitude, FORCE),
-            frequency: context.units.take(self.frequency, FREQUENCY),
-            start: start.parts(),
+            amplitude: [0, 1, 2].map(|c| context.per_system(|system| amplitude(system, c))),
+            frequency: context.per_system(frequency),
+            start: [
+                context.per_system(|system| start(system).0),
+                context.per_system(|system| start(system).1),
+            ],
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
         })
     }
@@ -104,6 +114,9 @@ impl ForceTerm for DrivenForce {
     fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
         units.take(self.frequency, FREQUENCY).abs()
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn as_driven(&self) -> Option<Drive> {
         let Self { amplitude, frequency, phase } = *self;
         Some(Drive { amplitude, frequency, phase })
@@ -113,10 +126,11 @@ impl ForceTerm for DrivenForce {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    amplitude: [f64; 3],
-    frequency: f64,
+    /// Of each block, as what follows.
+    amplitude: [Vec<Lanes>; 3],
+    frequency: Vec<Lanes>,
     /// The phase at the start of the run, as an unevaluated sum.
-    start: (f64, f64),
+    start: [Vec<Lanes>; 2],
     inverse_mass: Vec<Lanes>,
 }
 
@@ -124,16 +138,19 @@ struct Kernel {
 fn kernel<V: Vector8>(force: &Kernel, t: &Lanes, a: &mut [Lanes], first: bool) {
     let Shape { rows, components } = force.shape;
     let (a, inverse_mass) = (V::view_mut(a), V::view(&force.inverse_mass));
-    let (turned, error) = two_product(V::splat(force.frequency), V::load(*t));
-    let (high, rest) = two_sum(turned, V::splat(force.start.0));
-    let (high, low) = two_sum(high, rest + (error + V::splat(force.start.1)));
-    let wave = cosine(high, low);
-    for c in 0..components {
-        let push = V::splat(force.amplitude[c]) * wave;
-        for row in 0..rows {
-            let term = push * inverse_mass[row];
-            let a = &mut a[c * rows + row];
-            *a = if first { term } else { *a + term };
+    let bodies = rows / force.frequency.len();
+    for block in 0..force.frequency.len() {
+        let (turned, error) = two_product(V::load(force.frequency[block]), V::load(*t));
+        let (high, rest) = two_sum(turned, V::load(force.start[0][block]));
+        let (high, low) = two_sum(high, rest + (error + V::load(force.start[1][block])));
+        let wave = cosine(high, low);
+        for c in 0..components {
+            let push = V::load(force.amplitude[c][block]) * wave;
+            for row in block * bodies..(block + 1) * bodies {
+                let term = push * inverse_mass[row];
+                let a = &mut a[c * rows + row];
+                *a = if first { term } else { *a + term };
+            }
         }
     }
 }

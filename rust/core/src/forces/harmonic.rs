@@ -1,7 +1,7 @@
 //! An isotropic oscillator: the pull −k (r − center) on every body.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -55,11 +55,14 @@ impl ForceTerm for Harmonic {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let k = context.units.take(self.k, STIFFNESS);
+        let k = |system: &System<'_>| context.units.take(context.own(self, system).k, STIFFNESS);
+        let center = |system: &System<'_>, c: usize| {
+            context.units.take(context.own(self, system).center[c], [1, 0, 0])
+        };
         Box::new(Kernel {
             shape: context.shape,
-            center: context.units.take_vector(self.center, [1, 0, 0]),
-            square: context.per_body(|system, slot| k / system.mass[slot]),
+            center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
+            square: context.per_body(|system, slot| k(system) / system.mass[slot]),
         })
     }
     fn potential_and_virial(
@@ -105,6 +108,9 @@ impl ForceTerm for Harmonic {
         let k = units.take(self.k, STIFFNESS);
         bodies.iter().map(|&(_, mass, _)| (k / mass).sqrt()).fold(0.0, f64::max)
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn fixed_point(&self) -> Option<[f64; 3]> {
         Some(self.center)
     }
@@ -116,7 +122,8 @@ impl ForceTerm for Harmonic {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    center: [f64; 3],
+    /// Of each block.
+    center: [Vec<Lanes>; 3],
     /// The squares of the angular frequencies.
     square: Vec<Lanes>,
 }
@@ -126,11 +133,14 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool)
     let Shape { rows, components } = force.shape;
     let (q, a, square) = (V::view(q), V::view_mut(a), V::view(&force.square));
     for c in 0..components {
-        let center = V::splat(force.center[c]);
-        for row in 0..rows {
-            let at = c * rows + row;
-            let term = square[row] * (center - q[at]);
-            a[at] = if first { term } else { a[at] + term };
+        let centers = V::view(&force.center[c]);
+        let bodies = rows / centers.len();
+        for (block, &center) in centers.iter().enumerate() {
+            for row in block * bodies..(block + 1) * bodies {
+                let at = c * rows + row;
+                let term = square[row] * (center - q[at]);
+                a[at] = if first { term } else { a[at] + term };
+            }
         }
     }
 }

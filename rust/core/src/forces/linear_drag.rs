@@ -1,10 +1,11 @@
 //! Linear drag: every velocity decays, in the medium that is at rest.
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
+use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
@@ -40,7 +41,8 @@ impl ForceTerm for LinearDrag {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        Box::new(Kernel { rate: -1.0 / context.units.take(self.tau, [0, 0, 1]) })
+        let rate = |system: &System<'_>| -1.0 / context.units.take(context.own(self, system).tau, [0, 0, 1]);
+        Box::new(Kernel { shape: context.shape, rate: context.per_system(rate) })
     }
     fn potential_and_virial(
         &self,
@@ -62,6 +64,9 @@ impl ForceTerm for LinearDrag {
     fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
         1.0 / units.take(self.tau, [0, 0, 1])
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn as_linear_drag(&self) -> Option<f64> {
         Some(self.tau)
     }
@@ -69,19 +74,29 @@ impl ForceTerm for LinearDrag {
 
 #[derive(Debug)]
 struct Kernel {
-    rate: f64,
+    shape: Shape,
+    /// Of each block.
+    rate: Vec<Lanes>,
 }
 
 #[inline(always)]
-fn kernel<V: Vector8>(rate: f64, v: &[Lanes], a: &mut [Lanes], first: bool) {
-    for (v, a) in V::view(v).iter().zip(V::view_mut(a)) {
-        let term = V::splat(rate) * *v;
-        *a = if first { term } else { *a + term };
+fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) {
+    let Shape { rows, components } = force.shape;
+    let (v, a, rates) = (V::view(v), V::view_mut(a), V::view(&force.rate));
+    let bodies = rows / rates.len();
+    for (block, &rate) in rates.iter().enumerate() {
+        for c in 0..components {
+            let start = c * rows + block * bodies;
+            for (v, a) in v[start..start + bodies].iter().zip(&mut a[start..start + bodies]) {
+                let term = rate * *v;
+                *a = if first { term } else { *a + term };
+            }
+        }
     }
 }
 
 tiered! {
-    fn kernel_tier[][](rate: f64, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
+    fn kernel_tier[][](force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) = kernel;
 }
 
 impl Force<Lanes> for Kernel {
@@ -92,7 +107,7 @@ impl Force<Lanes> for Kernel {
         first: bool,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        kernel_tier(self.rate, phase.v, a, first);
+        kernel_tier(self, phase.v, a, first);
         Ok(())
     }
     fn needs(&self) -> Needs {

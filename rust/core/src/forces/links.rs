@@ -2,11 +2,12 @@
 //!
 //! Canonical order: links act one after another, in the order in which they are listed, whatever the lanes are.
 
-use super::context::{Arrangement, Context, packed_place};
+use super::context::{Arrangement, Context, System, packed_place};
 use super::term::Bodies;
 use crate::error::{Error, Result};
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::numerics::real::Real;
 
 /// Pairs of bodies, in the order in which their links act.
 #[derive(Debug)]
@@ -139,7 +140,20 @@ pub struct Linked {
     pub inverse_mass: Vec<Lanes>,
 }
 
+/// Numbers of links, one after another, of each block.
+pub type OfLinks = Vec<Lanes>;
+
 impl Linked {
+    /// A number of each link, by its place in the list, of each system.
+    pub fn numbers(&self, context: &Context<'_>, of: impl Fn(&System<'_>, usize) -> f64) -> OfLinks {
+        let number = |system: &System<'_>, link: usize| of(system, self.links[link].0);
+        if !self.packed {
+            return context.in_rows(self.links.len(), number);
+        }
+        let system = context.first();
+        (0..self.links.len()).map(|link| Lanes::splat(number(&system, link))).collect()
+    }
+
     /// Those between the bodies of a context.
     pub fn new(links: &Links, context: &Context<'_>) -> Self {
         let packed = context.arrangement == Arrangement::Packed;

@@ -75,9 +75,11 @@ impl ForceTerm for PairPotential {
                 Way::Shards((0..count).map(|shard| (bound(shard), bound(shard + 1))).collect())
             }
         };
+        let potential = self.potential.scaled(context.units);
+        let numbers = context.potentials(&*potential, |system| &context.own(self, system).potential);
         Box::new(Kernel {
-            potential: self.potential.scaled(context.units),
-            pairs: Pairs { shape, blocks: context.blocks(), bodies },
+            potential,
+            pairs: Pairs { shape, blocks: context.blocks(), bodies, numbers },
             way,
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
             force: vec![Lanes::zero(); shape.len()],
@@ -136,6 +138,9 @@ impl ForceTerm for PairPotential {
     }
     fn domain(&self) -> Option<(f64, f64)> {
         self.potential.domain()
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        self.potential.in_every_lane()
     }
     fn keeps_plane(&self) -> bool {
         true

@@ -64,7 +64,8 @@ impl ForceTerm for QuadraticDrag {
 
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let ratio = context.per_body(|system, slot| {
-            let coefficient = context.units.take(self.coefficient(system.bodies[slot]), COEFFICIENT);
+            let coefficient = context.own(self, system).coefficient(system.bodies[slot]);
+            let coefficient = context.units.take(coefficient, COEFFICIENT);
             if coefficient == 0.0 { 0.0 } else { -coefficient / system.mass[slot] }
         });
         Box::new(Kernel { shape: context.shape, ratio })
@@ -94,6 +95,9 @@ impl ForceTerm for QuadraticDrag {
     }
     fn keeps_plane(&self) -> bool {
         true
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
     }
     fn as_quadratic_drag(&self, particle: usize) -> Option<f64> {
         Some(self.coefficient(particle))

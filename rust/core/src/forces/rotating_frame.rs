@@ -1,7 +1,7 @@
 //! A frame that turns: the centrifugal force and the Coriolis force on everything that is described in it.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -58,10 +58,15 @@ impl ForceTerm for RotatingFrame {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        let omega =
+            |system: &System<'_>, c: usize| context.units.take(context.own(self, system).omega[c], FREQUENCY);
+        let center = |system: &System<'_>, c: usize| {
+            context.units.take(context.own(self, system).center[c], [1, 0, 0])
+        };
         Box::new(Kernel {
             shape: context.shape,
-            omega: context.units.take_vector(self.omega, FREQUENCY),
-            center: context.units.take_vector(self.center, [1, 0, 0]),
+            omega: [0, 1, 2].map(|c| context.per_system(|system| omega(system, c))),
+            center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
             there: context.per_body(|_, _| 1.0),
         })
     }
@@ -110,6 +115,9 @@ impl ForceTerm for RotatingFrame {
     fn rate(&self, _: &[(usize, f64, [f64; 3])], units: Units) -> f64 {
         2.0 * distance(units.take_vector(self.omega, FREQUENCY), [0.0; 3])
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn fixed_point(&self) -> Option<[f64; 3]> {
         Some(self.center)
     }
@@ -121,8 +129,9 @@ impl ForceTerm for RotatingFrame {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    omega: [f64; 3],
-    center: [f64; 3],
+    /// Of each block.
+    omega: [Vec<Lanes>; 3],
+    center: [Vec<Lanes>; 3],
     /// One in the lanes of bodies, zero in the others, which stay at rest: the error of a step is measured over all.
     there: Vec<Lanes>,
 }
@@ -132,26 +141,30 @@ struct Kernel {
 fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) {
     let Shape { rows, components } = force.shape;
     let (q, v, a, there) = (V::view(q), V::view(v), V::view_mut(a), V::view(&force.there));
-    let [x, y, z] = force.omega;
-    let square = V::splat(x * x + y * y + z * z);
-    let (mut omega, mut twice) = ([V::zero(); 3], [V::zero(); 3]);
-    for c in 0..3 {
-        omega[c] = V::splat(force.omega[c]);
-        twice[c] = V::splat(2.0 * force.omega[c]);
-    }
-    for row in 0..rows {
-        let (mut d, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
-        for c in 0..components {
-            d[c] = q[c * rows + row] - V::splat(force.center[c]);
-            speed[c] = v[c * rows + row];
+    let blocks = force.center[0].len();
+    let bodies = rows / blocks;
+    for block in 0..blocks {
+        let (mut omega, mut twice, mut center) = ([V::zero(); 3], [V::zero(); 3], [V::zero(); 3]);
+        for c in 0..3 {
+            omega[c] = V::load(force.omega[c][block]);
+            twice[c] = omega[c] + omega[c];
+            center[c] = V::load(force.center[c][block]);
         }
-        let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
-        for c in 0..components {
-            let (e, f) = ((c + 1) % 3, (c + 2) % 3);
-            let turning = speed[e] * twice[f] - speed[f] * twice[e];
-            let term = there[row] * (turning + (square * d[c] - along * omega[c]));
-            let a = &mut a[c * rows + row];
-            *a = if first { term } else { *a + term };
+        let square = omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2];
+        for row in block * bodies..(block + 1) * bodies {
+            let (mut d, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
+            for c in 0..components {
+                d[c] = q[c * rows + row] - center[c];
+                speed[c] = v[c * rows + row];
+            }
+            let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
+            for c in 0..components {
+                let (e, f) = ((c + 1) % 3, (c + 2) % 3);
+                let turning = speed[e] * twice[f] - speed[f] * twice[e];
+                let term = there[row] * (turning + (square * d[c] - along * omega[c]));
+                let a = &mut a[c * rows + row];
+                *a = if first { term } else { *a + term };
+            }
         }
     }
 }

@@ -4,8 +4,8 @@
 //! Products and sums are not fused, so that one number has the bits of a lane.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::Context;
-use super::links::{Linked, Links, check_counts, of_link};
+use super::context::{Context, System};
+use super::links::{Linked, Links, OfLinks, check_counts, of_link};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -79,12 +79,10 @@ impl Springs {
 
 /// How much of the vector from one end to the other is the force on the first.
 #[inline(always)]
-fn pull<S: Real>(d: [S; 3], k: f64, length: f64) -> S {
-    if length == 0.0 {
-        return S::splat(k);
-    }
+fn pull<S: Real>(d: [S; 3], k: S, length: Option<S>) -> S {
+    let Some(length) = length else { return k };
     let r = (d[0] * d[0] + d[1] * d[1] + d[2] * d[2]).sqrt();
-    S::splat(k) * (r - S::splat(length)) / r
+    k * (r - length) / r
 }
 
 impl ForceTerm for Springs {
@@ -93,12 +91,14 @@ impl ForceTerm for Springs {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let linked = Linked::new(&self.links, context);
-        let own = linked.links.iter().map(|&(at, ends)| {
-            let Spring { k, length } = self.springs[at];
-            let (k, length) = (context.units.take(k, STIFFNESS), context.units.take(length, [1, 0, 0]));
-            (Spring { k, length }, ends)
-        });
-        Box::new(Kernel { springs: own.collect(), linked })
+        let number = |system: &System<'_>, at: usize| context.own(self, system).springs[at];
+        Box::new(Kernel {
+            k: linked.numbers(context, |system, at| context.units.take(number(system, at).k, STIFFNESS)),
+            length: linked
+                .numbers(context, |system, at| context.units.take(number(system, at).length, [1, 0, 0])),
+            long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
+            linked,
+        })
     }
     fn potential_and_virial(
         &self,
@@ -139,6 +139,9 @@ impl ForceTerm for Springs {
     fn keeps_plane(&self) -> bool {
         true
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(self.springs.iter().map(|spring| u64::from(spring.length != 0.0)).collect())
+    }
     /// 1/ω of the stiffest spring on the mass.
     fn unit_of_time(&self, _: i32, mass: i32) -> Option<i32> {
         let stiffest = self.springs.iter().map(|spring| spring.k).fold(0.0, f64::max);
@@ -158,14 +161,16 @@ impl ForceTerm for Springs {
 #[derive(Debug)]
 struct Kernel {
     linked: Linked,
-    /// With the places of their ends.
-    springs: Vec<(Spring, (usize, usize))>,
+    k: OfLinks,
+    length: OfLinks,
+    /// Which of them have a length.
+    long: Vec<bool>,
 }
 
 /// Adds the pull of a spring to the accelerations of its ends, whose numbers are at these places.
 #[inline(always)]
 fn act<S: Real>(
-    spring: &Spring,
+    (k, length): (S, Option<S>),
     (i, j): (usize, usize),
     (stride, components): (usize, usize),
     inverse_mass: &[S],
@@ -176,7 +181,7 @@ fn act<S: Real>(
     for c in 0..components {
         d[c] = q[c * stride + j] - q[c * stride + i];
     }
-    let pull = pull(d, spring.k, spring.length);
+    let pull = pull(d, k, length);
     for c in 0..components {
         let force = pull * d[c];
         a[c * stride + i] += force * inverse_mass[i];
@@ -193,16 +198,21 @@ fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], a: &mut [Lanes], first: bool)
     if force.linked.packed {
         let stride = rows * WIDTH;
         let (q, a, inverse_mass) = (as_numbers(q), as_numbers_mut(a), as_numbers(&force.linked.inverse_mass));
-        for (spring, ends) in &force.springs {
-            act::<f64>(spring, *ends, (stride, components), inverse_mass, q, a);
+        for (at, &(_, ends)) in force.linked.links.iter().enumerate() {
+            let spring = (force.k[at].0[0], force.long[at].then_some(force.length[at].0[0]));
+            act::<f64>(spring, ends, (stride, components), inverse_mass, q, a);
         }
         return;
     }
     let (q, a, inverse_mass) = (V::view(q), V::view_mut(a), V::view(&force.linked.inverse_mass));
     let bodies = rows / force.linked.blocks.max(1);
+    let springs = force.linked.links.len();
+    let (k, length) = (V::view(&force.k), V::view(&force.length));
     for block in 0..force.linked.blocks {
-        for (spring, (i, j)) in &force.springs {
+        for (at, &(_, (i, j))) in force.linked.links.iter().enumerate() {
             let ends = (block * bodies + i, block * bodies + j);
+            let own = block * springs + at;
+            let spring = (k[own], force.long[at].then_some(length[own]));
             act::<V>(spring, ends, (rows, components), inverse_mass, q, a);
         }
     }

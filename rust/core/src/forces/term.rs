@@ -16,6 +16,7 @@ use crate::potentials::Potential;
 use crate::potentials::parameters::Declaration;
 use crate::units::Units;
 use crate::words::number;
+use core::any::Any;
 use core::fmt::Debug;
 
 /// What a force declares about itself.
@@ -78,6 +79,8 @@ pub struct Bodies<'a> {
     pub position: &'a [[f64; 3]],
     /// Velocities.
     pub velocity: &'a [[f64; 3]],
+    /// Which copy it is, of one among several.
+    pub copy: Option<usize>,
 }
 
 impl<'a> Bodies<'a> {
@@ -89,7 +92,12 @@ impl<'a> Bodies<'a> {
     /// What a refusal calls the quantity of a body, by its place in the arrays.
     pub fn name(&self, what: &str, index: usize) -> String {
         let (copy, particle) = (index / self.particles, index % self.particles);
-        if self.copies == 1 { format!("{what}[{particle}]") } else { format!("{what}[{copy}, {particle}]") }
+        let copy = self.copy.unwrap_or(copy);
+        if self.copies == 1 && self.copy.is_none() {
+            format!("{what}[{particle}]")
+        } else {
+            format!("{what}[{copy}, {particle}]")
+        }
     }
     /// Two bodies of one copy in one place, by their places in the arrays, if that matters for their masses.
     pub fn coincident(&self, matters: impl Fn(f64, f64) -> bool) -> Option<(usize, usize)> {
@@ -124,7 +132,7 @@ impl<'a> Bodies<'a> {
 }
 
 /// A force of a scene, as described.
-pub trait ForceTerm: Debug + Send + Sync {
+pub trait ForceTerm: Any + Debug + Send + Sync {
     /// What it declares about itself.
     fn declaration(&self) -> &'static ForceDeclaration;
 
@@ -230,6 +238,11 @@ pub trait ForceTerm: Debug + Send + Sync {
     /// takes longer than one over it.
     fn rate(&self, _: &[(usize, f64, [f64; 3])], _: Units) -> f64 {
         0.0
+    }
+    /// What ensemble members must have alike, as numbers, to share lanes, each with a force of this kind: its kernel has
+    /// all else lane by lane ([`Context::own`]). `None`: nothing, so only members with the very same force share lanes.
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        None
     }
     /// What its kernel leaves out, and why.
     fn skipped(&self) -> Option<(&'static str, &'static str)> {

@@ -1,7 +1,7 @@
 //! A uniform electric field: the force charge E on every charge.
 
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::{Context, of_body};
+use super::context::{Context, System, of_body};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -62,10 +62,12 @@ impl ForceTerm for UniformElectricField {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let ratio = context.per_body(|system, slot| {
-            let charge = of_body(&self.charge, system.bodies[slot]);
+            let charge = of_body(&context.own(self, system).charge, system.bodies[slot]);
             if charge == 0.0 { 0.0 } else { charge / system.mass[slot] }
         });
-        let field = context.units.take_vector(self.field, FORCE);
+        let field =
+            |system: &System<'_>, c: usize| context.units.take(context.own(self, system).field[c], FORCE);
+        let field = [0, 1, 2].map(|c| context.per_system(|system| field(system, c)));
         Box::new(Kernel { shape: context.shape, field, ratio })
     }
     fn potential_and_virial(
@@ -119,6 +121,9 @@ impl ForceTerm for UniformElectricField {
         };
         Ok(bodies.iter().map(of).fold(0.0, f64::max))
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn as_electric(&self, particle: usize) -> Option<([f64; 3], f64)> {
         Some((self.field, of_body(&self.charge, particle)))
     }
@@ -127,7 +132,8 @@ impl ForceTerm for UniformElectricField {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    field: [f64; 3],
+    /// Of each block.
+    field: [Vec<Lanes>; 3],
     /// Charge over mass.
     ratio: Vec<Lanes>,
 }
@@ -137,11 +143,14 @@ fn kernel<V: Vector8>(force: &Kernel, a: &mut [Lanes], first: bool) {
     let Shape { rows, components } = force.shape;
     let (a, ratio) = (V::view_mut(a), V::view(&force.ratio));
     for c in 0..components {
-        let field = V::splat(force.field[c]);
-        for row in 0..rows {
-            let term = ratio[row] * field;
-            let a = &mut a[c * rows + row];
-            *a = if first { term } else { *a + term };
+        let fields = V::view(&force.field[c]);
+        let bodies = rows / fields.len();
+        for (block, &field) in fields.iter().enumerate() {
+            for row in block * bodies..(block + 1) * bodies {
+                let term = ratio[row] * field;
+                let a = &mut a[c * rows + row];
+                *a = if first { term } else { *a + term };
+            }
         }
     }
 }

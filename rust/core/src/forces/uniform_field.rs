@@ -1,7 +1,7 @@
 //! A uniform field: the same acceleration everywhere.
 
 use super::bodies::{Of, PreciseBodies, joined, vector_sum};
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -43,8 +43,10 @@ impl ForceTerm for Uniform {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let g = context.units.take_vector(self.g, ACCELERATION);
-        Box::new(Kernel { acceleration: g.iter().flat_map(|&g| context.per_body(|_, _| g)).collect() })
+        let g =
+            |system: &System<'_>, c: usize| context.units.take(context.own(self, system).g[c], ACCELERATION);
+        let acceleration = (0..3).flat_map(|c| context.per_body(|system, _| g(system, c)));
+        Box::new(Kernel { acceleration: acceleration.collect() })
     }
     fn potential_and_virial(
         &self,
@@ -72,6 +74,9 @@ impl ForceTerm for Uniform {
     }
     fn strongest(&self, _: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
         Ok(distance(units.take_vector(self.g, ACCELERATION), [0.0; 3]))
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
     }
     fn as_uniform(&self) -> Option<[f64; 3]> {
         Some(self.g)

@@ -1,7 +1,7 @@
 //! A uniform magnetic field: the Lorentz force on charges.
 
 use super::bodies::PreciseBodies;
-use super::context::Context;
+use super::context::{Context, System};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm, MagneticField};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -17,6 +17,7 @@ use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
 use crate::tiered;
 use crate::units::Units;
+use core::iter;
 use std::sync::Arc;
 
 /// The exponents of length, mass and time in charge times field.
@@ -68,11 +69,16 @@ impl ForceTerm for UniformMagneticField {
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let ratio = context.per_body(|system, slot| {
-            let charge = self.charge(system.bodies[slot]);
+            let charge = context.own(self, system).charge(system.bodies[slot]);
             if charge == 0.0 { 0.0 } else { charge / system.mass[slot] }
         });
-        let field = context.units.take_vector(self.field, FIELD);
-        Box::new(Kernel { shape: context.shape, field, ratio, turns: Vec::new() })
+        let field = |system: &System<'_>| context.units.take_vector(context.own(self, system).field, FIELD);
+        // The strength of the field, and its direction.
+        let size = |system: &System<'_>| distance(field(system), [0.0; 3]);
+        let axis = [0, 1, 2].map(|c| context.per_system(|system| field(system)[c] / size(system)));
+        let size = context.per_system(size);
+        let field = [0, 1, 2].map(|c| context.per_system(|system| field(system)[c]));
+        Box::new(Kernel { shape: context.shape, field, size, axis, ratio, turns: Vec::new() })
     }
     fn potential_and_virial(
         &self,
@@ -116,6 +122,9 @@ impl ForceTerm for UniformMagneticField {
         };
         bodies.iter().map(of).fold(0.0, f64::max)
     }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
     fn as_magnetic(&self) -> Option<MagneticField<'_>> {
         Some(MagneticField { field: self.field, charge: &self.charge })
     }
@@ -124,7 +133,10 @@ impl ForceTerm for UniformMagneticField {
 #[derive(Debug)]
 struct Kernel {
     shape: Shape,
-    field: [f64; 3],
+    /// Of each block, with its strength and its direction.
+    field: [Vec<Lanes>; 3],
+    size: Vec<Lanes>,
+    axis: [Vec<Lanes>; 3],
     /// Charge over mass.
     ratio: Vec<Lanes>,
     /// By what velocities turn, for the times asked for so far.
@@ -142,24 +154,19 @@ struct Turns {
 }
 
 impl Kernel {
-    /// The strength of the field, and its direction.
-    fn direction(&self) -> (f64, [f64; 3]) {
-        let size = distance(self.field, [0.0; 3]);
-        (size, self.field.map(|component| component / size))
-    }
-
     fn turns(&mut self, h: f64) -> usize {
         let known = self.turns.iter().position(|turns| turns.h == h);
         known.unwrap_or_else(|| {
-            let (size, _) = self.direction();
-            let angle = |ratio: f64| ratio * size * h;
-            let sine = self.ratio.iter().map(|ratio| ratio.map(|ratio| sin_cos(angle(ratio)).0)).collect();
+            let bodies = self.ratio.len() / self.size.len();
+            let rows = self.ratio.iter().zip(self.size.iter().flat_map(|size| iter::repeat_n(size, bodies)));
+            let angles: Vec<Lanes> = rows.map(|(&ratio, &size)| ratio * size * Lanes::splat(h)).collect();
+            let sine = angles.iter().map(|angle| angle.map(|angle| sin_cos(angle).0)).collect();
             // 1 - cos x = 2 sin²(x/2), without the cancellation.
-            let versine = |ratio: f64| {
-                let half = sin_cos(0.5 * angle(ratio)).0;
+            let versine = |angle: f64| {
+                let half = sin_cos(0.5 * angle).0;
                 2.0 * half * half
             };
-            let versine = self.ratio.iter().map(|ratio| ratio.map(versine)).collect();
+            let versine = angles.iter().map(|angle| angle.map(versine)).collect();
             // Steps to times between nodes are all of different lengths.
             if self.turns.len() == MOST_TURNS {
                 let _: Turns = self.turns.remove(MOST_TURNS - 1);
@@ -176,7 +183,7 @@ const MOST_TURNS: usize = 64;
 /// `v += sin φ (v × b) + (1 - cos φ) ((v × b) × b)`, compensated.
 struct Rotate<'a> {
     shape: Shape,
-    axis: [f64; 3],
+    axis: &'a [Vec<Lanes>; 3],
     turns: &'a Turns,
     v: PairMut<'a, Lanes>,
 }
@@ -188,19 +195,24 @@ impl Pass<Lanes> for Rotate<'_> {
         let Shape { rows, components } = self.shape;
         let (v, rest) = V::pair_mut(self.v);
         let (sine, versine) = (V::view(&self.turns.sine), V::view(&self.turns.versine));
-        let [bx, by, bz] = self.axis;
-        let axis = [V::splat(bx), V::splat(by), V::splat(bz)];
-        for row in 0..rows {
-            let mut speed = [V::zero(); 3];
-            for c in 0..components {
-                speed[c] = v[c * rows + row];
+        let bodies = rows / self.axis[0].len();
+        for block in 0..self.axis[0].len() {
+            let mut axis = [V::zero(); 3];
+            for c in 0..3 {
+                axis[c] = V::load(self.axis[c][block]);
             }
-            let across = cross(speed, axis);
-            let back = cross(across, axis);
-            for c in 0..components {
-                let change = sine[row].multiply_add(across[c], versine[row] * back[c]);
-                let at = c * rows + row;
-                (v[at], rest[at]) = add_compensated(v[at], rest[at], change);
+            for row in block * bodies..(block + 1) * bodies {
+                let mut speed = [V::zero(); 3];
+                for c in 0..components {
+                    speed[c] = v[c * rows + row];
+                }
+                let across = cross(speed, axis);
+                let back = cross(across, axis);
+                for c in 0..components {
+                    let change = sine[row].multiply_add(across[c], versine[row] * back[c]);
+                    let at = c * rows + row;
+                    (v[at], rest[at]) = add_compensated(v[at], rest[at], change);
+                }
             }
         }
     }
@@ -215,20 +227,23 @@ fn cross<S: Real>(a: [S; 3], b: [S; 3]) -> [S; 3] {
 fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool) {
     let Shape { rows, components } = force.shape;
     let (v, a, ratio) = (V::view(v), V::view_mut(a), V::view(&force.ratio));
-    let mut field = [V::zero(); 3];
-    for c in 0..3 {
-        field[c] = V::splat(force.field[c]);
-    }
-    for row in 0..rows {
-        let mut speed = [V::zero(); 3];
-        for c in 0..components {
-            speed[c] = v[c * rows + row];
+    let bodies = rows / force.size.len();
+    for block in 0..force.size.len() {
+        let mut field = [V::zero(); 3];
+        for c in 0..3 {
+            field[c] = V::load(force.field[c][block]);
         }
-        for c in 0..components {
-            let (d, e) = ((c + 1) % 3, (c + 2) % 3);
-            let term = ratio[row] * (speed[d] * field[e] - speed[e] * field[d]);
-            let a = &mut a[c * rows + row];
-            *a = if first { term } else { *a + term };
+        for row in block * bodies..(block + 1) * bodies {
+            let mut speed = [V::zero(); 3];
+            for c in 0..components {
+                speed[c] = v[c * rows + row];
+            }
+            for c in 0..components {
+                let (d, e) = ((c + 1) % 3, (c + 2) % 3);
+                let term = ratio[row] * (speed[d] * field[e] - speed[e] * field[d]);
+                let a = &mut a[c * rows + row];
+                *a = if first { term } else { *a + term };
+            }
         }
     }
 }
@@ -250,8 +265,7 @@ impl Force<Lanes> for Kernel {
     }
     fn rotate(&mut self, h: f64, v: PairMut<'_, Lanes>) {
         let index = self.turns(h);
-        let (_, axis) = self.direction();
-        Lanes::pass(Rotate { shape: self.shape, axis, turns: &self.turns[index], v });
+        Lanes::pass(Rotate { shape: self.shape, axis: &self.axis, turns: &self.turns[index], v });
     }
     fn needs(&self) -> Needs {
         Needs { rotation: true, ..Needs::default() }

@@ -1,7 +1,7 @@
 //! V = A e^(−br) − C/r⁶: closed shells.
 
 use super::parameters::{Declaration, Kind, Parameter, Sign, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = A e^(−br) − C/r⁶.
 #[derive(Clone, Copy, Debug)]
@@ -37,13 +37,13 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 };
 
 impl Buckingham {
-    /// e^(−br), and C/r⁶ times what is given, nothing if C is nothing.
+    /// e^(−br), and what is given over r⁶, nothing if C is nothing.
     #[inline(always)]
-    fn parts<S: Analytic>(&self, r: S, factor: f64) -> (S, S) {
+    fn parts<S: Analytic>(&self, own: &Numbers<S>, r: S, strength: S) -> (S, S) {
         let inverse = S::one() / r;
         let square = inverse * inverse;
-        let attraction = S::splat(self.c * factor) * (square * square * square);
-        let decay = (-(S::splat(self.b) * r)).exp();
+        let attraction = strength * (square * square * square);
+        let decay = (-(own[1] * r)).exp();
         (decay, if self.c == 0.0 { S::zero() } else { attraction })
     }
 }
@@ -56,21 +56,28 @@ impl Formula for Buckingham {
         Self { a: values[0].number(), b: values[1].number(), c: values[2].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.a, self.b, self.c, 6.0 * self.c, 42.0 * self.c]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![u64::from(self.c == 0.0)])
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        let (decay, attraction) = self.parts(r, 1.0);
-        S::splat(self.a) * decay - attraction
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let (decay, attraction) = self.parts(own, r, own[2]);
+        own[0] * decay - attraction
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let (decay, attraction) = self.parts(r, 6.0);
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let (decay, attraction) = self.parts(own, r, own[3]);
         let pull = if self.c == 0.0 { S::zero() } else { attraction / r };
-        S::splat(self.a) * S::splat(self.b) * decay - pull
+        own[0] * own[1] * decay - pull
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let (decay, attraction) = self.parts(r, 42.0);
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let (decay, attraction) = self.parts(own, r, own[4]);
         let bend = if self.c == 0.0 { S::zero() } else { attraction / r / r };
-        S::splat(self.a) * S::splat(self.b) * S::splat(self.b) * decay - bend
+        own[0] * own[1] * own[1] * decay - bend
     }
 }

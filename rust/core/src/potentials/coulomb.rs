@@ -1,7 +1,7 @@
 //! V = k/r: charges, and gravity with k = −G·m·M.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = k/r.
 #[derive(Clone, Copy, Debug)]
@@ -36,17 +36,24 @@ impl Formula for Coulomb {
         Self { k: values[0].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.k, 0.0, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) / r
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] / r
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) / (r * r)
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] / (r * r)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        S::splat(2.0 * self.k) / (r * r * r)
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        S::splat(2.0) * own[0] / (r * r * r)
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         Some(self.k)

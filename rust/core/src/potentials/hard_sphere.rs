@@ -1,7 +1,7 @@
 //! V = ∞ within a radius: what nothing enters.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = ∞ within a radius.
 #[derive(Clone, Copy, Debug)]
@@ -34,15 +34,15 @@ impl Formula for HardSphere {
     }
 
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         S::select(r.less(S::splat(self.radius)), S::splat(f64::INFINITY), S::zero())
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, _: S) -> S {
+    fn force<S: Analytic>(&self, _: &Numbers<S>, _: S) -> S {
         S::splat(f64::NAN)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, _: S) -> S {
+    fn curvature<S: Analytic>(&self, _: &Numbers<S>, _: S) -> S {
         S::splat(f64::NAN)
     }
 }

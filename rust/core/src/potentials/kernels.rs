@@ -3,7 +3,7 @@
 //! They know places and distances and nothing of forces, which call them by way of [`Potential`](super::Potential):
 //! one indirect call for rows of bodies, everything hot inside it.
 
-use super::{Analytic, Formula};
+use super::{Analytic, Formula, Numbers};
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::tiered;
@@ -13,8 +13,10 @@ use crate::tiered;
 pub struct Around {
     /// How their coordinates lie.
     pub shape: Shape,
-    /// The point.
-    pub center: [f64; 3],
+    /// The point and the numbers of the potential, of each block of rows.
+    pub center: Vec<[Lanes; 3]>,
+    /// See there.
+    pub numbers: Vec<Numbers<Lanes>>,
     /// 1/m of each row's bodies.
     pub inverse_mass: Vec<Lanes>,
 }
@@ -30,28 +32,42 @@ fn around<V: Vector8 + Analytic, P: Formula>(
     let Shape { rows, components } = field.shape;
     let (q, a) = (V::view(q), V::view_mut(a));
     let inverse_mass = V::view(&field.inverse_mass);
-    for row in 0..rows {
-        let mut d = [V::zero(); 3];
-        let mut r2 = V::zero();
-        for c in 0..components {
-            d[c] = q[c * rows + row] - V::splat(field.center[c]);
-            r2 += d[c] * d[c];
-        }
-        let pull = if P::SINGULAR {
-            let r = r2.sqrt();
-            potential.force(r) / r
-        } else {
-            potential.over_distance(r2)
-        };
-        // Lanes without a body are far out, where a table has no force.
-        let nobody = inverse_mass[row].less_equal(V::zero());
-        let pull = V::select(nobody, V::zero(), pull * inverse_mass[row]);
-        for c in 0..components {
-            let a = &mut a[c * rows + row];
-            let term = pull * d[c];
-            *a = if first { term } else { *a + term };
+    let bodies = rows / field.numbers.len();
+    for block in 0..field.numbers.len() {
+        let own = &load::<V>(&field.numbers[block]);
+        for row in block * bodies..(block + 1) * bodies {
+            let mut d = [V::zero(); 3];
+            let mut r2 = V::zero();
+            for c in 0..components {
+                d[c] = q[c * rows + row] - V::load(field.center[block][c]);
+                r2 += d[c] * d[c];
+            }
+            let pull = if P::SINGULAR {
+                let r = r2.sqrt();
+                potential.force(own, r) / r
+            } else {
+                potential.over_distance(own, r2)
+            };
+            // Lanes without a body are far out, where a table has no force.
+            let nobody = inverse_mass[row].less_equal(V::zero());
+            let pull = V::select(nobody, V::zero(), pull * inverse_mass[row]);
+            for c in 0..components {
+                let a = &mut a[c * rows + row];
+                let term = pull * d[c];
+                *a = if first { term } else { *a + term };
+            }
         }
     }
+}
+
+/// The numbers of a block.
+#[inline(always)]
+fn load<V: Vector8>(numbers: &Numbers<Lanes>) -> Numbers<V> {
+    let mut loaded = [V::zero(); 5];
+    for place in 0..loaded.len() {
+        loaded[place] = V::load(numbers[place]);
+    }
+    loaded
 }
 
 tiered! {
@@ -67,6 +83,8 @@ pub struct Pairs {
     pub blocks: usize,
     /// Bodies of a system.
     pub bodies: usize,
+    /// The numbers of the potential, of each block of rows.
+    pub numbers: Vec<Numbers<Lanes>>,
 }
 
 /// Bodies of a row that meet a block of eight together, so that one's operations fill another's waits.
@@ -74,9 +92,9 @@ const GROUP: usize = 4;
 
 /// How much of `d` is the force along it, for distances squared.
 #[inline(always)]
-fn pull<V: Vector8 + Analytic, P: Formula>(potential: &P, d: [V; 3]) -> V {
+fn pull<V: Vector8 + Analytic, P: Formula>(potential: &P, own: &Numbers<V>, d: [V; 3]) -> V {
     let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
-    potential.over_distance(r2)
+    potential.over_distance(own, r2)
 }
 
 #[inline(always)]
@@ -90,13 +108,14 @@ fn between_systems<V: Vector8 + Analytic, P: Formula>(
     let (q, force) = (V::view(q), V::view_mut(force));
     for block in 0..pairs.blocks {
         let start = block * pairs.bodies;
+        let own = &load::<V>(&pairs.numbers[block]);
         for i in start..start + pairs.bodies {
             for j in i + 1..start + pairs.bodies {
                 let mut d = [V::zero(); 3];
                 for c in 0..components {
                     d[c] = q[c * rows + j] - q[c * rows + i];
                 }
-                let w = pull(potential, d);
+                let w = pull(potential, own, d);
                 for c in 0..components {
                     let (from, to) = (c * rows + i, c * rows + j);
                     force[from] = w.multiply_subtract_from(d[c], force[from]);
@@ -116,13 +135,14 @@ fn between_few<V: Vector8 + Analytic, P: Formula>(
 ) {
     let Shape { rows, components } = pairs.shape;
     let numbers = as_numbers(q);
+    let own = &load::<V>(&pairs.numbers[0]);
     for j in 0..pairs.bodies {
         let others = Bits(((1_u32 << pairs.bodies) - 1) as u8 & !(1 << j));
         let mut d = [V::zero(); 3];
         for c in 0..components {
             d[c] = V::splat(numbers[c * rows * WIDTH + j]) - V::load(q[c * rows]);
         }
-        let w = pull(potential, d);
+        let w = pull(potential, own, d);
         for c in 0..components {
             let before = V::load(force[c * rows]);
             force[c * rows] = V::select(others, w.multiply_subtract_from(d[c], before), before).store();
@@ -141,6 +161,7 @@ fn between_rows<V: Vector8 + Analytic, P: Formula>(
 ) {
     let ((row, from), Shape { rows, components }) = (place, pairs.shape);
     let numbers = as_numbers(q);
+    let own = &load::<V>(&pairs.numbers[0]);
     let local = rows - from;
     let last = Bits(0xff_u8 >> ((WIDTH - pairs.bodies % WIDTH) % WIDTH));
     for group in 0..WIDTH / GROUP {
@@ -159,7 +180,7 @@ fn between_rows<V: Vector8 + Analytic, P: Formula>(
                 for c in 0..components {
                     d[i][c] = V::load(q[c * rows + block]) - held[i][c];
                 }
-                w[i] = pull(potential, d[i]);
+                w[i] = pull(potential, own, d[i]);
             }
             if block == row || block + 1 == rows {
                 // Not with itself or one before, nor with lanes that have no body, whatever the potential is there.

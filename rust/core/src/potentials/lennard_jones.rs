@@ -1,7 +1,7 @@
 //! V = 4ε[(σ/r)¹² − (σ/r)⁶]: neutral atoms.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = 4ε[(σ/r)¹² − (σ/r)⁶].
 #[derive(Clone, Copy, Debug)]
@@ -31,8 +31,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 impl LennardJones {
     /// (σ/r)⁶.
     #[inline(always)]
-    fn sixth_power<S: Analytic>(&self, r: S) -> S {
-        let ratio = S::splat(self.sigma) / r;
+    fn sixth_power<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        let ratio = own[1] / r;
         let square = ratio * ratio;
         square * square * square
     }
@@ -46,27 +46,34 @@ impl Formula for LennardJones {
         Self { epsilon: values[0].number(), sigma: values[1].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.epsilon, self.sigma, 24.0 * self.epsilon, self.sigma * self.sigma, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        let sixth = self.sixth_power(r);
-        S::splat(4.0 * self.epsilon) * (sixth * (sixth - S::one()))
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let sixth = Self::sixth_power(own, r);
+        S::splat(4.0) * own[0] * (sixth * (sixth - S::one()))
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let sixth = self.sixth_power(r);
-        S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) / r
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let sixth = Self::sixth_power(own, r);
+        own[2] * (sixth * (sixth + sixth - S::one())) / r
     }
     #[inline(always)]
-    fn over_distance<S: Analytic>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
         let inverse = S::one() / r2;
-        let ratio = S::splat(self.sigma * self.sigma) * inverse;
+        let ratio = own[3] * inverse;
         let sixth = ratio * ratio * ratio;
-        S::splat(24.0 * self.epsilon) * (sixth * (sixth + sixth - S::one())) * inverse
+        own[2] * (sixth * (sixth + sixth - S::one())) * inverse
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let sixth = self.sixth_power(r);
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let sixth = Self::sixth_power(own, r);
         let bracket = sixth * (S::splat(26.0) * sixth - S::splat(7.0));
-        S::splat(24.0 * self.epsilon) * bracket / (r * r)
+        own[2] * bracket / (r * r)
     }
 }

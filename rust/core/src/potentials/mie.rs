@@ -1,7 +1,7 @@
 //! V = C ε [(σ/r)ⁿ − (σ/r)ᵐ]: Lennard-Jones with exponents of one's own.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::numerics::power::{Power, Powers};
 use crate::words::number;
@@ -66,23 +66,30 @@ impl Formula for Mie {
         Self { strength: epsilon * factor(n, m), sigma, exponents: [n, m], powers }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.strength, self.sigma, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(self.exponents.map(f64::to_bits).to_vec())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        let ratio = S::splat(self.sigma) / r;
-        S::splat(self.strength) * (ratio.power(&self.powers[0]) * (ratio.power(&self.powers[1]) - S::one()))
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let ratio = own[1] / r;
+        own[0] * (ratio.power(&self.powers[0]) * (ratio.power(&self.powers[1]) - S::one()))
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let ratio = S::splat(self.sigma) / r;
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let ratio = own[1] / r;
         let [n, m] = self.exponents.map(S::splat);
         let bracket = n * ratio.power(&self.powers[1]) - m;
-        S::splat(self.strength) * (ratio.power(&self.powers[0]) * bracket) / r
+        own[0] * (ratio.power(&self.powers[0]) * bracket) / r
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let ratio = S::splat(self.sigma) / r;
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let ratio = own[1] / r;
         let [n, m] = self.exponents.map(|x| S::splat(x * (x + 1.0)));
         let bracket = n * ratio.power(&self.powers[1]) - m;
-        S::splat(self.strength) * (ratio.power(&self.powers[0]) * bracket) / r / r
+        own[0] * (ratio.power(&self.powers[0]) * bracket) / r / r
     }
 }

@@ -52,6 +52,9 @@ pub trait Analytic: Exponential + Powers + Lookup {}
 
 impl<S: Exponential + Powers + Lookup> Analytic for S {}
 
+/// The numbers of a formula: of one potential, or lane by lane those of several.
+pub type Numbers<S> = [S; 5];
+
 /// A potential energy as written by its author: formulas generic over the scalar.
 pub trait Formula: Debug + Send + Sync + Sized + 'static {
     /// What it declares about itself.
@@ -67,21 +70,29 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn scaled(&self, values: &[Value], _: Units) -> Self {
         Self::new(values)
     }
+    /// The numbers that it takes as `own`, in which ensemble members that share lanes may differ; zeros fill up.
+    fn numbers(&self) -> Numbers<f64> {
+        [0.0; 5]
+    }
+    /// What else it is made of, which they must have alike, as numbers; `None`: they must have the very same potential.
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        None
+    }
     /// V(r).
-    fn value<S: Analytic>(&self, r: S) -> S;
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S;
     /// −dV/dr.
-    fn force<S: Analytic>(&self, r: S) -> S;
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S;
     /// d²V/dr².
-    fn curvature<S: Analytic>(&self, r: S) -> S;
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S;
     /// −dV/dr / r as a function of r²: what a pair needs, which may be less than a root and two divisions.
     #[inline(always)]
-    fn over_distance<S: Analytic>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
         let r = r2.sqrt();
         if Self::SINGULAR {
-            return self.force(r) / r;
+            return self.force(own, r) / r;
         }
         // Its limit in the middle, where 0/0 would be undefined.
-        S::select(r2.less_equal(S::zero()), -self.curvature(r), self.force(r) / r)
+        S::select(r2.less_equal(S::zero()), -self.curvature(own, r), self.force(own, r) / r)
     }
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64> {
@@ -110,6 +121,10 @@ pub trait Potential: Debug + Send + Sync {
     /// The same potential in that unit of length and one of energy in which its strength is near one, and the exponent of
     /// that unit of energy; nothing if the units of the scene will do.
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)>;
+    /// What it has of its own in lanes with other potentials of its kind.
+    fn numbers(&self) -> Numbers<f64>;
+    /// Its kind and what such potentials have alike, as numbers; `None`: only the very same one shares lanes.
+    fn in_every_lane(&self) -> Option<Vec<u64>>;
     /// `k` if V = k/r.
     fn inverse_distance_strength(&self) -> Option<f64>;
     /// The distances between which it is, if not at all. Beyond them it is NaN.
@@ -155,14 +170,16 @@ impl<P: Formula> Potential for Held<P> {
         P::JUMPS
     }
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3] {
+        let own = &self.formula.numbers();
         [
-            r.iter().map(|&r| self.formula.value(r)).collect(),
-            r.iter().map(|&r| self.formula.force(r)).collect(),
-            r.iter().map(|&r| self.formula.curvature(r)).collect(),
+            r.iter().map(|&r| self.formula.value(own, r)).collect(),
+            r.iter().map(|&r| self.formula.force(own, r)).collect(),
+            r.iter().map(|&r| self.formula.curvature(own, r)).collect(),
         ]
     }
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
-        (self.formula.value(r), self.formula.force(r))
+        let own = &self.formula.numbers().map(DoubleDouble::from);
+        (self.formula.value(own, r), self.formula.force(own, r))
     }
     fn scaled(&self, units: Units) -> Arc<dyn Potential> {
         let values = P::DECLARATION.scaled(&self.values, units);
@@ -182,6 +199,13 @@ impl<P: Formula> Potential for Held<P> {
             return None;
         }
         Some((self.scaled(Units { length, mass, time: 0 }), mass + 2 * length))
+    }
+    fn numbers(&self) -> Numbers<f64> {
+        self.formula.numbers()
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        let kind = core::ptr::from_ref(P::DECLARATION).addr() as u64;
+        self.formula.in_every_lane().map(|alike| [vec![kind], alike].concat())
     }
     fn inverse_distance_strength(&self) -> Option<f64> {
         self.formula.inverse_distance_strength()

@@ -1,7 +1,7 @@
 //! V = D [(1 − e^(−a(r − r_e)))² − 1]: two atoms that are bound.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = D [(1 − e^(−a(r − r_e)))² − 1].
 #[derive(Clone, Copy, Debug)]
@@ -32,8 +32,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 
 impl Morse {
     #[inline(always)]
-    fn decay<S: Analytic>(&self, r: S) -> S {
-        ((S::splat(self.r_e) - r) * S::splat(self.a)).exp()
+    fn decay<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        ((own[2] - r) * own[1]).exp()
     }
 }
 
@@ -45,20 +45,27 @@ impl Formula for Morse {
         Self { depth: values[0].number(), a: values[1].number(), r_e: values[2].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.depth, self.a, self.r_e, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        let e = self.decay(r);
-        S::splat(self.depth) * (e * (e - S::splat(2.0)))
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let e = Self::decay(own, r);
+        own[0] * (e * (e - S::splat(2.0)))
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let e = self.decay(r);
-        S::splat(self.depth) * S::splat(2.0 * self.a) * (e * (e - S::one()))
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let e = Self::decay(own, r);
+        own[0] * (S::splat(2.0) * own[1]) * (e * (e - S::one()))
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let e = self.decay(r);
-        let a = S::splat(self.a);
-        S::splat(self.depth) * S::splat(2.0 * self.a) * a * (e * (e + e - S::one()))
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let e = Self::decay(own, r);
+        let a = own[1];
+        own[0] * (S::splat(2.0) * own[1]) * a * (e * (e + e - S::one()))
     }
 }

@@ -2,7 +2,7 @@
 
 use super::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use super::piecewise::Piecewise;
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::words::number;
 
@@ -98,15 +98,15 @@ impl Formula for PiecewisePolynomial {
     }
 
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         self.curve.derivative(r, 0)
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         -self.curve.derivative(r, 1)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
+    fn curvature<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         self.curve.derivative(r, 2)
     }
 }

@@ -1,7 +1,7 @@
 //! V = k/√(r² + a²): 1/r, softened.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = k/√(r² + a²).
 #[derive(Clone, Copy, Debug)]
@@ -35,8 +35,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 impl Plummer {
     /// √(r² + a²), whose squares neither overflow nor vanish.
     #[inline(always)]
-    fn distance<S: Analytic>(&self, r: S) -> S {
-        let a = S::splat(self.a);
+    fn distance<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        let a = own[1];
         let (large, small) = (r.max(a), r.min(a));
         let ratio = small / large;
         large * (S::one() + ratio * ratio).sqrt()
@@ -51,24 +51,31 @@ impl Formula for Plummer {
         Self { k: values[0].number(), a: values[1].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.k, self.a, self.a * self.a, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) / self.distance(r)
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] / Self::distance(own, r)
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let distance = self.distance(r);
-        S::splat(self.k) / distance * (r / distance) / distance
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let distance = Self::distance(own, r);
+        own[0] / distance * (r / distance) / distance
     }
     #[inline(always)]
-    fn over_distance<S: Analytic>(&self, r2: S) -> S {
-        let square = r2 + S::splat(self.a * self.a);
-        S::splat(self.k) / (square * square.sqrt())
+    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
+        let square = r2 + own[2];
+        own[0] / (square * square.sqrt())
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let distance = self.distance(r);
-        let (out, within) = (r / distance, S::splat(self.a) / distance);
-        S::splat(self.k) / distance * (S::splat(2.0) * out * out - within * within) / distance / distance
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let distance = Self::distance(own, r);
+        let (out, within) = (r / distance, own[1] / distance);
+        own[0] / distance * (S::splat(2.0) * out * out - within * within) / distance / distance
     }
 }

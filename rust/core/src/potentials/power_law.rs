@@ -1,7 +1,7 @@
 //! V = k/rⁿ.
 
 use super::parameters::{Declaration, Kind, Parameter, Sign, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::numerics::power::Power;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::units::Units;
@@ -11,6 +11,8 @@ use crate::units::Units;
 #[derive(Clone, Copy, Debug)]
 pub struct PowerLaw {
     significand: f64,
+    /// The exponent of k, which is in the power.
+    unit: i32,
     n: f64,
     power: Power,
 }
@@ -41,23 +43,30 @@ impl Formula for PowerLaw {
     fn new(values: &[Value]) -> Self {
         let (k, n) = (values[0].number(), values[1].number());
         let unit = exponent(k);
-        Self { significand: scale(k, -unit), n, power: Power::new(-n).scaled(0, unit) }
+        Self { significand: scale(k, -unit), unit, n, power: Power::new(-n).scaled(0, unit) }
     }
     fn scaled(&self, _: &[Value], units: Units) -> Self {
         let energy = units.mass + 2 * (units.length - units.time);
         Self { power: self.power.scaled(units.length, -energy), ..*self }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.significand, 0.0, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![self.n.to_bits(), self.unit as u64])
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.significand) * r.power(&self.power)
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * r.power(&self.power)
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.n) * self.value(r) / r
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        S::splat(self.n) * self.value(own, r) / r
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.n * (self.n + 1.0)) * self.value(r) / r / r
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        S::splat(self.n * (self.n + 1.0)) * self.value(own, r) / r / r
     }
 }

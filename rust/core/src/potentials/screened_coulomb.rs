@@ -2,7 +2,7 @@
 
 use super::parameters::{Declaration, Kind, Parameter, Value};
 use super::screening::{NAMES, Screening};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = k φ(r/length)/r.
 #[derive(Clone, Debug)]
@@ -10,6 +10,8 @@ pub struct ScreenedCoulomb {
     k: f64,
     inverse_length: f64,
     screening: Screening,
+    /// Of its name among all.
+    place: u64,
 }
 
 /// What it declares about itself.
@@ -39,8 +41,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
 
 impl ScreenedCoulomb {
     #[inline(always)]
-    fn lengths<S: Analytic>(&self, r: S) -> S {
-        r * S::splat(self.inverse_length)
+    fn lengths<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        r * own[1]
     }
 }
 
@@ -49,25 +51,34 @@ impl Formula for ScreenedCoulomb {
     const SINGULAR: bool = true;
 
     fn new(values: &[Value]) -> Self {
+        let word = values[2].word();
+        let place = NAMES.iter().position(|name| *name == word).unwrap_or(0) as u64;
         let inverse_length = (1.0 / values[1].number()).min(f64::MAX);
-        Self { k: values[0].number(), inverse_length, screening: Screening::of(values[2].word()) }
+        Self { k: values[0].number(), inverse_length, place, screening: Screening::of(word) }
+    }
+
+    fn numbers(&self) -> Numbers<f64> {
+        [self.k, self.inverse_length, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![self.place])
     }
 
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) * self.screening.value(self.lengths(r)) / r
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * self.screening.value(Self::lengths(own, r)) / r
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) * self.screening.with_slope(self.lengths(r)) / r / r
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * self.screening.with_slope(Self::lengths(own, r)) / r / r
     }
     #[inline(always)]
-    fn over_distance<S: Analytic>(&self, r2: S) -> S {
+    fn over_distance<S: Analytic>(&self, own: &Numbers<S>, r2: S) -> S {
         let r = r2.sqrt();
-        S::splat(self.k) * self.screening.with_slope(self.lengths(r)) / (r2 * r)
+        own[0] * self.screening.with_slope(Self::lengths(own, r)) / (r2 * r)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) * self.screening.with_bend(self.lengths(r)) / r / r / r
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * self.screening.with_bend(Self::lengths(own, r)) / r / r / r
     }
 }

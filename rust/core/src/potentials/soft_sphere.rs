@@ -1,7 +1,7 @@
 //! V = k (1 − r/radius)ⁿ where spheres overlap.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::numerics::power::Power;
 use crate::words::number;
@@ -54,8 +54,8 @@ fn check(n: f64) -> Result<()> {
 impl SoftSphere {
     /// 1 − r/radius, nothing beyond.
     #[inline(always)]
-    fn overlap<S: Analytic>(&self, r: S) -> S {
-        let radius = S::splat(self.radius);
+    fn overlap<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        let radius = own[1];
         let overlap = (radius - r) / radius;
         // What is no number stays none.
         S::select(overlap.less(S::zero()), S::zero(), overlap)
@@ -72,21 +72,28 @@ impl Formula for SoftSphere {
         Self { k: values[0].number(), radius: values[1].number(), n, powers }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.k, self.radius, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![self.n.to_bits()])
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) * self.overlap(r).power(&self.powers[0])
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * Self::overlap(own, r).power(&self.powers[0])
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
-        let radius = S::splat(self.radius);
-        S::splat(self.k) * (S::splat(self.n) * self.overlap(r).power(&self.powers[1])) / radius
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let radius = own[1];
+        own[0] * (S::splat(self.n) * Self::overlap(own, r).power(&self.powers[1])) / radius
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let (radius, overlap) = (S::splat(self.radius), self.overlap(r));
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let (radius, overlap) = (own[1], Self::overlap(own, r));
         let power = S::splat(self.n * (self.n - 1.0)) * overlap.power(&self.powers[2]);
         // The zeroth power is one in contact only.
         let power = S::select(overlap.less_equal(S::zero()), S::zero(), power);
-        S::splat(self.k) * power / radius / radius
+        own[0] * power / radius / radius
     }
 }

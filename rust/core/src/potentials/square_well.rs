@@ -1,7 +1,7 @@
 //! V = −depth within a radius: no force but on its edge.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = −depth within a radius.
 #[derive(Clone, Copy, Debug)]
@@ -38,15 +38,15 @@ impl Formula for SquareWell {
     }
 
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         S::select(r.less(S::splat(self.radius)), S::splat(0.0 - self.depth), S::zero())
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, _: S) -> S {
+    fn force<S: Analytic>(&self, _: &Numbers<S>, _: S) -> S {
         S::splat(f64::NAN)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, _: S) -> S {
+    fn curvature<S: Analytic>(&self, _: &Numbers<S>, _: S) -> S {
         S::splat(f64::NAN)
     }
 }

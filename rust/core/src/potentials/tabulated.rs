@@ -3,7 +3,7 @@
 use super::hermite::{bends, quintic};
 use super::parameters::{Declaration, Kind, Parameter, Sign, Value};
 use super::piecewise::Piecewise;
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 use crate::error::{Error, Result};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::words::number;
@@ -111,15 +111,15 @@ impl Formula for Tabulated {
     }
 
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
+    fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         self.curve.derivative(r, 0)
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         -self.curve.derivative(r, 1)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
+    fn curvature<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {
         self.curve.derivative(r, 2)
     }
 }

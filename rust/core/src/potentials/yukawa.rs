@@ -1,7 +1,7 @@
 //! V = k·exp(−r/length)/r: a charge screened over a length.
 
 use super::parameters::{Declaration, Parameter, Value};
-use super::{Analytic, Formula, PotentialDeclaration, held};
+use super::{Analytic, Formula, Numbers, PotentialDeclaration, held};
 
 /// V = k·exp(−r/length)/r.
 #[derive(Clone, Copy, Debug)]
@@ -38,8 +38,8 @@ const FAR: f64 = 1e100;
 impl Yukawa {
     /// r/length, cut off where there is nothing left.
     #[inline(always)]
-    fn lengths<S: Analytic>(&self, r: S) -> S {
-        (r / S::splat(self.length)).min(S::splat(FAR))
+    fn lengths<S: Analytic>(own: &Numbers<S>, r: S) -> S {
+        (r / own[1]).min(S::splat(FAR))
     }
 }
 
@@ -51,20 +51,27 @@ impl Formula for Yukawa {
         Self { k: values[0].number(), length: values[1].number() }
     }
 
+    fn numbers(&self) -> Numbers<f64> {
+        [self.k, self.length, 0.0, 0.0, 0.0]
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(Vec::new())
+    }
+
     #[inline(always)]
-    fn value<S: Analytic>(&self, r: S) -> S {
-        S::splat(self.k) * (-r / S::splat(self.length)).exp() / r
+    fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        own[0] * (-r / own[1]).exp() / r
     }
     #[inline(always)]
-    fn force<S: Analytic>(&self, r: S) -> S {
+    fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
         // −dV/dr = V (1/r + 1/length)
-        let s = self.lengths(r);
-        S::splat(self.k) * (-s).exp() * (S::one() + s) / (r * r)
+        let s = Self::lengths(own, r);
+        own[0] * (-s).exp() * (S::one() + s) / (r * r)
     }
     #[inline(always)]
-    fn curvature<S: Analytic>(&self, r: S) -> S {
-        let s = self.lengths(r);
+    fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
+        let s = Self::lengths(own, r);
         let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
-        S::splat(self.k) * (-s).exp() * polynomial / (r * r * r)
+        own[0] * (-s).exp() * polynomial / (r * r * r)
     }
 }

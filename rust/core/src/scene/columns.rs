@@ -8,13 +8,11 @@ use super::Scene;
 use super::room;
 use crate::conservation::columns::{Column, Snapshot};
 use crate::error::Result;
-use crate::forces::ForceTerm;
 use crate::forces::bodies::PreciseBodies;
 use crate::numerics::lanes::{Bits, Vector8, WIDTH};
 use crate::numerics::simd::prefetch;
 use crate::parallel::Ticker;
 use core::marker::PhantomData;
-use std::sync::Arc;
 
 /// What is recorded, and how.
 #[derive(Clone, Debug)]
@@ -150,8 +148,7 @@ impl Columns {
                 .filter(|_| streams)
                 .map(|derived| (derived.column, raw(&mut derived.values)))
                 .collect(),
-            masses: &scene.mass,
-            forces: &scene.forces,
+            scene,
             members,
             threads,
             columns: PhantomData,
@@ -180,8 +177,7 @@ pub struct Writer<'a> {
     position_rest: (*mut f64, usize),
     velocity_rest: (*mut f64, usize),
     derived: Vec<(&'static Column, (*mut f64, usize))>,
-    masses: &'a [f64],
-    forces: &'a [Arc<dyn ForceTerm>],
+    scene: &'a Scene,
     members: Option<&'a [usize]>,
     threads: usize,
     columns: PhantomData<&'a mut Columns>,
@@ -239,7 +235,7 @@ impl<'a> Writer<'a> {
 
     /// The masses of a copy.
     pub fn masses(&self, copy: usize) -> &[f64] {
-        &self.masses[copy * self.particles..(copy + 1) * self.particles]
+        self.scene.masses(copy)
     }
 
     /// The entries of a copy at an output time.
@@ -251,7 +247,7 @@ impl<'a> Writer<'a> {
     pub unsafe fn output(&'a self, copy: usize, time: usize) -> Output<'a> {
         let member = self.members.map_or(copy, |members| members[copy]);
         let row = member * self.times + time;
-        Output { writer: self, row, start: row * self.particles }
+        Output { writer: self, copy, row, start: row * self.particles }
     }
 }
 
@@ -259,6 +255,8 @@ impl<'a> Writer<'a> {
 #[derive(Debug)]
 pub struct Output<'a> {
     writer: &'a Writer<'a>,
+    /// Which copy of those that are written.
+    copy: usize,
     /// Its place among those of all copies.
     row: usize,
     /// The entry of its first particle.
@@ -282,8 +280,8 @@ impl Output<'_> {
     /// # Errors
     /// [`Error::Interrupted`](crate::Error::Interrupted), and then not all are written.
     pub fn derive(&self, bodies: &PreciseBodies, ticker: &mut Ticker<'_>) -> Result<()> {
-        let Writer { derived, forces, threads, .. } = self.writer;
-        let mut state = Snapshot::new(forces, bodies, [0.0; 3], *threads, ticker);
+        let Writer { derived, scene, threads, .. } = self.writer;
+        let mut state = Snapshot::new(scene.forces_of(self.copy), bodies, [0.0; 3], *threads, ticker);
         for &(column, (array, len)) in derived {
             let values = state.value(column)?;
             let at = self.row * column.width;

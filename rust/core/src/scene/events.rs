@@ -252,8 +252,9 @@ fn call(function: &Function, view: &View<'_>, around: &Surroundings<'_>) -> Resu
 
 fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -> Result<f64> {
     let mut bodies = PreciseBodies::default();
+    let forces = around.scene.forces_of(around.copy);
     // What a force names must be in its place; bodies that are elsewhere have no mass and add nothing.
-    let in_order = around.massive && !around.scene.forces.iter().any(|force| force.names_bodies());
+    let in_order = around.massive && !forces.iter().any(|force| force.names_bodies());
     bodies.clear(if in_order { view.bodies.len() } else { around.scene.particles });
     let masses = around.scene.masses(around.copy);
     let origin = view.origin.at(view.elapsed);
@@ -262,6 +263,6 @@ fn energy(view: &View<'_>, around: &Surroundings<'_>, ticker: &mut Ticker<'_>) -
         bodies.set(if in_order { place } else { body }, masses[body], position, velocity);
     }
     bodies.settle();
-    let mut state = Snapshot::new(&around.scene.forces, &bodies, [0.0; 3], 1, ticker);
+    let mut state = Snapshot::new(forces, &bodies, [0.0; 3], 1, ticker);
     Ok(state.value(column("events", "energy")?)?[0])
 }

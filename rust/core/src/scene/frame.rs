@@ -44,12 +44,12 @@ impl Units {
             }
         }
         let masses = scene.masses(copy);
-        let length = exponent(scene.forces.iter().map(|force| force.length()).fold(size, f64::max));
+        let forces = scene.forces_of(copy);
+        let length = exponent(forces.iter().map(|force| force.length()).fold(size, f64::max));
         let mass = exponent(masses.iter().copied().fold(0.0, f64::max));
         // The time in which a force moves the largest mass over that length, else the crossing time.
         let massive = masses.iter().any(|&mass| mass > 0.0);
-        let given =
-            scene.forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
+        let given = forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
         let crossing = (speed > 0.0).then(|| length - exponent(speed));
         let time = given.or(crossing).unwrap_or(0);
         // In a run that is much shorter an acceleration that matters is beyond measure in that time: the run's own is taken.

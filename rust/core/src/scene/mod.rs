@@ -35,6 +35,24 @@ pub struct OwnForces {
     pub of_copy: Vec<usize>,
 }
 
+impl OwnForces {
+    /// The forces of some copies; `None` if they have the same.
+    pub fn of(&self, members: &[usize]) -> Option<Self> {
+        let mut places = vec![usize::MAX; self.sets.len()];
+        let mut sets = Vec::new();
+        let mut of_copy = Vec::with_capacity(members.len());
+        for &copy in members {
+            let set = self.of_copy[copy];
+            if places[set] == usize::MAX {
+                places[set] = sets.len();
+                sets.push(self.sets[set].clone());
+            }
+            of_copy.push(places[set]);
+        }
+        (sets.len() > 1).then_some(Self { sets, of_copy })
+    }
+}
+
 /// A batch of copies of a scene (a batch of one is a scene).
 #[derive(Clone, Debug)]
 pub struct Scene {
@@ -87,7 +105,20 @@ impl Scene {
     /// The bodies, for a force to look at.
     pub fn bodies(&self) -> Bodies<'_> {
         let Self { copies, particles, .. } = *self;
-        Bodies { copies, particles, mass: &self.mass, position: &self.position, velocity: &self.velocity }
+        let (position, velocity) = (&self.position, &self.velocity);
+        Bodies { copies, particles, mass: &self.mass, position, velocity, copy: None }
+    }
+
+    /// The bodies of a copy.
+    pub fn bodies_of(&self, copy: usize) -> Bodies<'_> {
+        Bodies {
+            copies: 1,
+            particles: self.particles,
+            mass: self.masses(copy),
+            position: self.positions(copy),
+            velocity: self.velocities(copy),
+            copy: (self.copies > 1).then_some(copy),
+        }
     }
 
     /// Refuses what no run could be made of.
@@ -135,10 +166,15 @@ impl Scene {
         if !self.t0.is_finite() {
             return Err(Error::invalid("t0", format!("expected a finite time, got {}", number(self.t0))));
         }
-        let bodies = self.bodies();
-        self.forces.iter().try_for_each(|force| {
-            check_masses(&**force, &bodies)?;
-            force.validate(&bodies)
-        })
+        let check = |forces: &[Arc<dyn ForceTerm>], bodies: &Bodies<'_>| {
+            forces.iter().try_for_each(|force| {
+                check_masses(&**force, bodies)?;
+                force.validate(bodies)
+            })
+        };
+        if self.own_forces.is_none() {
+            return check(&self.forces, &self.bodies());
+        }
+        (0..self.copies).try_for_each(|copy| check(self.forces_of(copy), &self.bodies_of(copy)))
     }
 }

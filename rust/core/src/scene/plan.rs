@@ -3,6 +3,8 @@
 mod coupling;
 mod events;
 mod explain;
+mod kinds;
+mod own;
 mod solutions;
 mod transformation;
 
@@ -28,6 +30,8 @@ use crate::ode::system::{Form, Needs};
 use crate::ode::transformation::Transformation;
 use crate::parallel::Ticker;
 use crate::registry::METHODS;
+use kinds::kinds_of_forces;
+use own::{Own, about, acting};
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -56,8 +60,10 @@ pub struct Plan {
     pub direction: f64,
     /// How the motion of each ensemble member is found.
     pub solutions: Solutions,
-    /// The forces that do something, in order.
+    /// The forces that do something, in order; those of the first copy, if copies have their own.
     pub forces: Vec<Arc<dyn ForceTerm>>,
+    /// Those of each copy, if they differ.
+    own: Option<Own>,
     /// What they make depend on each other.
     pub groups: Groups,
     /// Bodies on which others depend.
@@ -98,8 +104,11 @@ pub struct Plan {
     pub t0: f64,
     /// The node that the run goes on from; 0 is the scene.
     pub from: u64,
-    /// Sets of forces that copies have of their own, each planned by itself; this plan is that of the first.
+    /// Sets of forces that copies have of their own.
     pub sets_of_forces: usize,
+    /// The kind of the forces of each copy, if copies have their own: each kind is planned by itself, and this plan is that
+    /// of the first.
+    pub kinds: Vec<usize>,
     copies: usize,
     particles: usize,
 }
@@ -115,7 +124,7 @@ impl Plan {
         ticker.tick()?;
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
-        let forces = effective_forces(scene);
+        let forces = acting(scene, &scene.forces);
         check_method(method, &forces)?;
         // Spheres may touch whichever they are: all of them are on one step.
         let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
@@ -133,13 +142,10 @@ impl Plan {
         let solutions =
             if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
         let planar = planar(scene, &forces);
-        let frame = if solutions.integrates() { Frame::of(&forces) } else { Frame::Given };
-        // What accelerates all alike moves the origin, and nothing relative to it.
-        let falls = matches!(frame, Frame::Falling(_));
         let count = forces.len();
-        let forces: Vec<_> =
-            forces.into_iter().filter(|force| !falls || force.as_uniform().is_none()).collect();
+        let (forces, frame) = about(forces, solutions.integrates());
         let alike = count - forces.len();
+        let own = Own::of(scene, method, solutions.integrates())?;
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && !touching
@@ -171,6 +177,7 @@ impl Plan {
             span,
             units: units(scene, 0, frame, &groups, span),
             forces,
+            own,
             groups,
             active,
             passive,
@@ -188,6 +195,7 @@ impl Plan {
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
+            kinds: kinds_of_forces(scene, transformed.is_some()),
             copies: scene.copies,
             particles: scene.particles,
         };
@@ -198,7 +206,17 @@ impl Plan {
 
     /// The units for a copy by itself.
     pub fn units_of(&self, scene: &Scene, copy: usize) -> Units {
-        units(scene, copy, self.frame, &self.groups, self.span)
+        units(scene, copy, self.frame_of(copy), &self.groups, self.span)
+    }
+
+    /// The forces that do something in a copy, in order.
+    pub fn forces_of(&self, copy: usize) -> &[Arc<dyn ForceTerm>] {
+        self.own.as_ref().map_or(&self.forces, |own| own.forces(copy))
+    }
+
+    /// About what the bodies of a copy are integrated.
+    fn frame_of(&self, copy: usize) -> Frame {
+        self.own.as_ref().map_or(self.frame, |own| own.frame(copy))
     }
 
     /// The origin for a unit: all that are coupled have one.
@@ -207,7 +225,7 @@ impl Plan {
             Groups::All if !self.active.is_empty() => &self.active,
             _ => &*unit.bodies,
         };
-        self.frame.origin(scene, unit.copy, bodies.iter().copied())
+        self.frame_of(unit.copy).origin(scene, unit.copy, bodies.iter().copied())
     }
 
     fn share_threads(&self, request: &Request) -> (usize, usize) {
@@ -394,12 +412,6 @@ fn guides(force: &Arc<dyn ForceTerm>) -> bool {
         Coupling::None | Coupling::Listed(_) => true,
         Coupling::AllPairs => force.as_newtonian().is_some(),
     }
-}
-
-/// The forces that do anything in this scene.
-fn effective_forces(scene: &Scene) -> Vec<Arc<dyn ForceTerm>> {
-    let bodies = scene.bodies();
-    scene.forces.iter().filter(|force| force.acts(&bodies)).cloned().collect()
 }
 
 fn outputs_between(scene: &Scene, request: &Request) -> usize {

@@ -56,7 +56,7 @@ impl Unit {
     /// Whether the unit can tell the columns of its copy: nothing that has a mass is elsewhere, and forces that name bodies
     /// find them in their places.
     pub fn is_whole(&self, scene: &Scene) -> bool {
-        if scene.forces.iter().any(|force| force.names_bodies()) {
+        if scene.forces_of(self.copy).iter().any(|force| force.names_bodies()) {
             return self.bodies.iter().copied().eq(0..scene.particles);
         }
         let massive = scene.masses(self.copy).iter().filter(|&&mass| mass > 0.0).count();
@@ -119,7 +119,7 @@ impl Prepared {
             rests.push([x_rest, v_rest]);
         }
         let mass: Vec<f64> = unit.bodies.iter().map(|&i| scale(masses[i], -units.mass)).collect();
-        let constants = plan.forces.iter().filter_map(|force| force.as_newtonian());
+        let constants = plan.forces_of(unit.copy).iter().filter_map(|force| force.as_newtonian());
         let constant: f64 = constants.map(|(constant, _)| units.take(constant, [3, -1, -2])).sum();
         let strength = mass[..unit.active].iter().map(|mass| constant * mass).collect();
         let mut prepared = Self {

@@ -6,8 +6,11 @@ use crate::errors::raised;
 use crate::registry;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::exceptions::PyValueError;
+use pyo3::ffi::PyObject;
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use std::collections::HashMap;
+use std::collections::hash_map::Entry;
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
@@ -192,7 +195,14 @@ pub(super) fn points(values: &[f64]) -> Vec<[f64; 3]> {
 /// # Errors
 /// As [`forces`], and for sets that are not there.
 fn own_forces((sets, of_copy): &(Vec<Bound<'_, PyList>>, Vec<usize>), copies: usize) -> PyResult<OwnForces> {
-    let sets: Vec<_> = sets.iter().map(forces).collect::<PyResult<_>>()?;
+    // A description that several sets have is one force: what is one and the same may be shared where nothing else may.
+    let mut known: HashMap<*mut PyObject, Arc<dyn ForceTerm>> = HashMap::new();
+    let mut force = |spec: Bound<'_, PyAny>| match known.entry(spec.as_ptr()) {
+        Entry::Occupied(force) => Ok(Arc::clone(force.get())),
+        Entry::Vacant(place) => Ok(Arc::clone(place.insert(registry::force(spec.cast::<PyDict>()?)?))),
+    };
+    let sets: Vec<_> =
+        sets.iter().map(|set| set.iter().map(&mut force).collect()).collect::<PyResult<_>>()?;
     if of_copy.len() != copies || of_copy.iter().any(|&set| set >= sets.len()) {
         return Err(PyValueError::new_err("own_forces: expected a set of forces for each copy"));
     }

@@ -86,6 +86,15 @@ impl Named {
 impl Law for Named {
     const DECLARATION: &'static ForceDeclaration = &DECLARATION;
 
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(match *self {
+            Self::SchillerNaumann => vec![0],
+            Self::Sum { factor, rise, most, late, fall } => {
+                [factor, rise, most, late, fall].map(f64::to_bits).to_vec()
+            }
+            Self::Stokes => vec![1],
+        })
+    }
     fn last(&self) -> f64 {
         if matches!(self, Self::Stokes) { f64::INFINITY } else { CRISIS }
     }

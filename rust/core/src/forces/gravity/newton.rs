@@ -53,10 +53,14 @@ impl Gravity {
     }
 }
 
-/// Gravity among the few bodies of each system, batched.
-pub fn few_bodies(context: &Context<'_>, constant: f64, softening: f64) -> FewBodies<Lanes> {
-    let constant = context.units.take(constant, CONSTANT);
-    few(context, |system, slot| constant * system.mass[slot], softening)
+/// Gravity among the few bodies of each system, batched, if it is the first of the forces.
+pub fn few_bodies(context: &Context<'_>) -> Option<FewBodies<Lanes>> {
+    let newtonian = |system: &System<'_>| system.forces.first().and_then(|force| force.as_newtonian());
+    let (_, softening) = newtonian(&context.first())?;
+    let constant = |system: &System<'_>| newtonian(system).map_or(0.0, |(constant, _)| constant);
+    let strength =
+        |system: &System<'_>, slot: usize| context.units.take(constant(system), CONSTANT) * system.mass[slot];
+    Some(few(context, strength, softening))
 }
 
 fn few(
@@ -95,8 +99,10 @@ impl ForceTerm for Gravity {
     }
 
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let constant = context.units.take(self.constant, CONSTANT);
-        attraction(context, |system, slot| constant * system.mass[slot], self.softening)
+        let strength = |system: &System<'_>, slot: usize| {
+            context.units.take(context.own(self, system).constant, CONSTANT) * system.mass[slot]
+        };
+        attraction(context, strength, self.softening)
     }
 
     fn potential_and_virial(
@@ -145,6 +151,9 @@ impl ForceTerm for Gravity {
     /// The free-fall time of the mass from that length.
     fn unit_of_time(&self, length: i32, mass: i32) -> Option<i32> {
         (self.constant != 0.0).then(|| (3 * length - exponent(self.constant) - mass).div_euclid(2))
+    }
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        Some(vec![self.softening.to_bits()])
     }
     fn skipped(&self) -> Option<(&'static str, &'static str)> {
         (self.softening == 0.0).then_some(("softening terms", "softening is 0"))

@@ -29,8 +29,13 @@ impl Plan {
         let (decision, reason) = self.describe_solution();
         row("solution", decision, reason);
         if self.sets_of_forces > 1 {
-            let why = "copies have parameters of their own: each set is planned and run by itself, the first as told here";
-            row("sets of forces", self.sets_of_forces.to_string(), why.to_owned());
+            let decision = match self.kinds.iter().max() {
+                Some(&last) if last > 0 => format!("{} of {} kinds", self.sets_of_forces, last + 1),
+                _ => self.sets_of_forces.to_string(),
+            };
+            let why = "copies have parameters of their own, each in its lane; where more than numbers differs they are \
+                       planned and run apart, the first as told here";
+            row("sets of forces", decision, why.to_owned());
         }
         if self.solutions.integrates() {
             let steps = match (self.dt, self.transformed) {

@@ -76,9 +76,9 @@ impl Solutions {
 
 /// A member of a scene, for closed forms to look at.
 pub fn member(scene: &Scene, copy: usize) -> Member<'_> {
-    let (mass, position, velocity) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
-    let alone = Bodies { copies: 1, particles: scene.particles, mass, position, velocity };
-    let forces = scene.forces.iter().filter(|force| force.acts(&alone));
+    let alone = scene.bodies_of(copy);
+    let Bodies { mass, position, velocity, .. } = alone;
+    let forces = scene.forces_of(copy).iter().filter(|force| force.acts(&alone));
     let forces = forces.map(|force| &**force as &dyn ForceTerm).collect();
     Member { mass, position, velocity, forces, t0: scene.t0 }
 }

@@ -1,12 +1,12 @@
 //! From what a run begins: the scene as it is, or the beginning of an earlier run, which it goes on with.
 
+use super::super::Scene;
 use super::super::collisions;
 use super::super::continuation::Continuation;
 use super::super::integrate::Report;
 use super::super::plan::Plan;
 use super::super::request::Request;
-use super::super::{OwnForces, Scene};
-use super::patterns::{Pattern, part, patterns};
+use super::patterns::{Pattern, patterns};
 use super::{Kept, Part};
 use crate::error::Result;
 use crate::parallel::Ticker;
@@ -31,9 +31,9 @@ pub(in super::super) fn plan_through(
     request: &Request,
     ticker: &mut Ticker<'_>,
 ) -> Result<Plan> {
-    match (&scene.continuation, &scene.own_forces) {
-        (None, None) => Plan::new(scene, request, ticker),
-        _ => Ok(Begun::of(scene, request, ticker)?.plan),
+    match &scene.continuation {
+        None => Plan::new(scene, request, ticker),
+        Some(_) => Ok(Begun::of(scene, request, ticker)?.plan),
     }
 }
 
@@ -66,10 +66,7 @@ impl Begun {
 
     fn planned(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         let plan = Plan::new(scene, request, ticker)?;
-        let groups = match &scene.own_forces {
-            None => patterns(scene, &plan, ticker)?,
-            Some(own) => Some(of_each_set(scene, own, request, ticker)?),
-        };
+        let groups = patterns(scene, &plan, ticker)?;
         let plans = groups.iter().flatten().map(|(_, part)| Plan::new(part, request, ticker));
         let plans = plans.collect::<Result<_>>()?;
         Ok(Self { start: None, plan, groups, plans })
@@ -89,33 +86,6 @@ impl Begun {
                 .collect(),
         }
     }
-}
-
-/// The patterns of the copies of each set of forces, which are planned apart.
-fn of_each_set(
-    scene: &Scene,
-    own: &OwnForces,
-    request: &Request,
-    ticker: &mut Ticker<'_>,
-) -> Result<Vec<Pattern>> {
-    let mut members: Vec<Vec<usize>> = vec![Vec::new(); own.sets.len()];
-    for (copy, &set) in own.of_copy.iter().enumerate() {
-        members[set].push(copy);
-    }
-    let mut all = Vec::new();
-    for members in members.into_iter().filter(|members| !members.is_empty()) {
-        let alike = part(scene, &members);
-        let plan = Plan::new(&alike, request, ticker)?;
-        match patterns(&alike, &plan, ticker)? {
-            None => all.push((members, alike)),
-            Some(found) => all.extend(
-                found
-                    .into_iter()
-                    .map(|(places, part)| (places.into_iter().map(|place| members[place]).collect(), part)),
-            ),
-        }
-    }
-    Ok(all)
 }
 
 impl Kept {

@@ -1,5 +1,5 @@
-//! Batches whose copies differ in how their motion is found, in which bodies are massless, or by far in size: each such
-//! pattern is a run of its own.
+//! Batches whose copies differ in how their motion is found, in what their forces are, in which bodies are massless, or by
+//! far in size: each such pattern is a run of its own.
 
 use super::super::Scene;
 use super::super::frame::Units;
@@ -11,8 +11,11 @@ use std::collections::BTreeMap;
 /// Some copies, by their places among all, and the scene that they make.
 pub(super) type Pattern = (Vec<usize>, Scene);
 
-/// Copies that have closed forms, and copies that are integrated with the same set of massless bodies and the same units,
-/// and their scenes; `None` if that is all of them.
+/// Which bodies have mass, the kind of the forces and the units.
+type Key = (Vec<bool>, (usize, Units));
+
+/// Copies that have closed forms, and copies that are integrated with forces of one kind, the same set of massless bodies
+/// and the same units, and their scenes; `None` if that is all of them.
 ///
 /// They are run apart, so that each has the bits it has alone, and a wild one spoils no other.
 ///
@@ -25,21 +28,22 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> R
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
     let units = |copy| ticker.tick().map(|()| plan.units_of(scene, copy));
     let units: Vec<Units> = (0..scene.copies).map(units).collect::<Result<_>>()?;
-    let alike = |copy: usize| units[copy] == units[0] && pattern(copy).eq(pattern(0));
+    let kind = |copy: usize| (plan.kinds.get(copy).copied().unwrap_or(0), units[copy]);
+    let alike = |copy: usize| kind(copy) == kind(0) && pattern(copy).eq(pattern(0));
     if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
         return Ok(None);
     }
-    let mut groups: BTreeMap<Option<(Vec<bool>, Units)>, Vec<usize>> = BTreeMap::new();
+    let mut groups: BTreeMap<Option<Key>, Vec<usize>> = BTreeMap::new();
     for copy in 0..scene.copies {
         let integrated = plan.solutions.of_member(copy).is_none();
-        let key = integrated.then(|| (pattern(copy).collect(), units[copy]));
+        let key = integrated.then(|| (pattern(copy).collect(), kind(copy)));
         groups.entry(key).or_default().push(copy);
     }
     Ok(Some(groups.into_values().map(|members| (members.clone(), part(scene, &members))).collect()))
 }
 
-/// Some copies of a scene, which have the same forces.
-pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
+/// Some copies of a scene.
+fn part(scene: &Scene, members: &[usize]) -> Scene {
     let pick = |of: fn(&Scene, usize) -> &[[f64; 3]]| {
         members.iter().flat_map(|&copy| of(scene, copy)).copied().collect()
     };
@@ -50,7 +54,7 @@ pub(super) fn part(scene: &Scene, members: &[usize]) -> Scene {
         position: pick(|scene, copy| scene.positions(copy)),
         velocity: pick(|scene, copy| scene.velocities(copy)),
         forces: scene.forces_of(members.first().copied().unwrap_or(0)).to_vec(),
-        own_forces: None,
+        own_forces: scene.own_forces.as_ref().and_then(|own| own.of(members)),
         radius: members.iter().flat_map(|&copy| scene.radii(copy)).copied().collect(),
         t0: scene.t0,
         continuation: None,

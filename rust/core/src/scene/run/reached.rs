@@ -74,7 +74,7 @@ pub(super) fn gather(
 fn left_a_domain(scene: &Scene, report: &Report) -> bool {
     let undefined = || report.states.iter().flatten().flatten().any(|x| x.is_nan());
     report.ending == Ending::NotFinite
-        && scene.forces.iter().any(|force| {
+        && scene.forces_of(report.unit.copy).iter().any(|force| {
             force.domain().is_some()
                 || report.unit.bodies.iter().any(|&body| force.speed_limit(body).is_some())
         })

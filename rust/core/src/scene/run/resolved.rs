@@ -35,6 +35,7 @@ pub(super) fn look(
     ticker: &mut Ticker<'_>,
 ) -> Result<()> {
     let (scene, plan) = (part.scene, part.plan);
+    // Members that run together have forces of one kind.
     let conserved = conserved_by(&scene.forces, &scene.bodies()).energy;
     if !conserved || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
@@ -61,7 +62,7 @@ pub(super) fn look(
                 bodies.set(particle, mass, exact(position[particle]), exact(velocity[particle]));
             }
             bodies.settle();
-            let Ok((potential, _)) = potential_and_virial(&scene.forces, &bodies, 1, ticker) else {
+            let Ok((potential, _)) = potential_and_virial(scene.forces_of(copy), &bodies, 1, ticker) else {
                 return Ok(());
             };
             *energies = (kinetic_energy(&bodies), potential);

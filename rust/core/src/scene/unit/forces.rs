@@ -4,32 +4,50 @@ use super::{Layout, Plan, Prepared};
 use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::gravity::newton::few_bodies;
 use crate::forces::monitor::InverseDistances;
-use crate::forces::{Dynamics, Force};
+use crate::forces::{Dynamics, Force, ForceTerm};
 use crate::numerics::lanes::Lanes;
+use std::sync::Arc;
+
+/// The systems that units are, each with its own forces.
+fn systems<'a>(plan: &'a Plan, units: &'a [&Prepared]) -> Vec<System<'a>> {
+    let system = |unit: &&'a Prepared| System {
+        bodies: &unit.unit.bodies,
+        mass: &unit.mass,
+        forces: plan.forces_of(unit.unit.copy),
+    };
+    units.iter().map(system).collect()
+}
+
+/// What a kernel for all systems is made of: the forces on the first of them, which say what all have alike.
+fn described<'a>(systems: &[System<'a>]) -> impl Iterator<Item = (usize, &'a Arc<dyn ForceTerm>)> {
+    systems.first().map_or(&[][..], |system| system.forces).iter().enumerate()
+}
 
 /// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of gravity.
 pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Box<dyn Force<Lanes>>>> {
-    let systems: Vec<System<'_>> =
-        units.iter().map(|unit| System { bodies: &unit.unit.bodies, mass: &unit.mass }).collect();
-    let context = Context {
+    let systems = systems(plan, units);
+    let mut context = Context {
         arrangement: Arrangement::Batched,
         shape: units[0].state_shape(units.len()),
         active: 0,
         systems: &systems,
+        term: 0,
         units: plan.units,
         t0: plan.t0,
         threads: 1,
     };
-    let forces = plan.forces.iter();
-    forces.map(|force| force.as_newtonian().is_none().then(|| force.kernel(&context))).collect()
+    let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
+        context.term = term;
+        force.as_newtonian().is_none().then(|| force.kernel(&context))
+    };
+    described(&systems).map(kernel).collect()
 }
 
 /// The forces on `units` of the same make-up: one if packed, up to eight for each block of rows if batched.
 pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<Lanes> {
     let shape = units[0].state_shape(units.len());
-    let systems: Vec<System<'_>> =
-        units.iter().map(|unit| System { bodies: &unit.unit.bodies, mass: &unit.mass }).collect();
-    let context = Context {
+    let systems = systems(plan, units);
+    let mut context = Context {
         arrangement: match units[0].layout {
             Layout::Packed => Arrangement::Packed,
             Layout::Batched => Arrangement::Batched,
@@ -37,17 +55,24 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         shape,
         active: units[0].unit.active,
         systems: &systems,
+        term: 0,
         units: plan.units,
         t0: plan.t0,
         threads,
     };
-    let newtonian = plan.forces.first().and_then(|force| force.as_newtonian());
-    if let (true, Some((constant, softening))) = (plan.relative, newtonian) {
-        return Dynamics::closed(few_bodies(&context, constant, softening));
+    if let (true, Some(few)) = (plan.relative, few_bodies(&context)) {
+        return Dynamics::closed(few);
     }
-    let dynamics = Dynamics::new(shape, plan.forces.iter().map(|force| force.kernel(&context)).collect());
+    let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
+        context.term = term;
+        force.kernel(&context)
+    };
+    let dynamics = Dynamics::new(shape, described(&systems).map(kernel).collect());
     match plan.transformed {
         None => dynamics,
-        Some((by, _)) => dynamics.watched_by(Box::new(InverseDistances::new(by, &plan.forces, &context))),
+        Some((by, _)) => {
+            let forces = plan.forces_of(units[0].unit.copy);
+            dynamics.watched_by(Box::new(InverseDistances::new(by, forces, &context)))
+        }
     }
 }

@@ -48,7 +48,11 @@ impl Prepared {
     fn path(&self, plan: &Plan, speed: f64, field: f64) -> f64 {
         let span = self.units.take(plan.span, [0, 0, 1]);
         let bodies = self.bodies();
-        let rate = plan.forces.iter().map(|force| force.rate(&bodies, self.units)).fold(0.0, f64::max);
+        let rate = plan
+            .forces_of(self.unit.copy)
+            .iter()
+            .map(|force| force.rate(&bodies, self.units))
+            .fold(0.0, f64::max);
         let time = if rate * span > 1.0 { 1.0 / rate } else { span };
         let length = time * (speed + 0.5 * field * time);
         // Where nothing ever moves any length will do.
@@ -64,13 +68,17 @@ impl Prepared {
     /// body alone the point that forces tell its place from, lest its size be how far the scene is from the origin.
     fn find_reference(&self, plan: &Plan) -> Origin {
         let mut reference = Origin::default();
-        let center = plan.forces.iter().find_map(|force| force.center());
+        let center = plan.forces_of(self.unit.copy).iter().find_map(|force| force.center());
         if let Some(center) = center {
             reference.center = self.units.take_vector(center, [1, 0, 0]);
             return reference;
         }
         if self.is_lone() {
-            let fixed = plan.forces.iter().find_map(|force| force.fixed_point()).unwrap_or_default();
+            let fixed = plan
+                .forces_of(self.unit.copy)
+                .iter()
+                .find_map(|force| force.fixed_point())
+                .unwrap_or_default();
             reference.center = self.units.take_vector(fixed, [1, 0, 0]);
             return reference;
         }
@@ -108,7 +116,7 @@ impl Prepared {
                 ticker.tick()?;
             }
         }
-        let length = plan.forces.iter().map(|force| force.length()).fold(0.0, f64::max);
+        let length = plan.forces_of(self.unit.copy).iter().map(|force| force.length()).fold(0.0, f64::max);
         Ok(separation.max(self.units.take(length, [1, 0, 0])))
     }
 
@@ -118,7 +126,7 @@ impl Prepared {
         let of = |most: f64, force: &Arc<dyn ForceTerm>| {
             Ok(most.max(force.strongest(&bodies, self.units, ticker)?))
         };
-        plan.forces.iter().try_fold(0.0, of)
+        plan.forces_of(self.unit.copy).iter().try_fold(0.0, of)
     }
 
     /// Place in the scene, mass and position of each body.

@@ -71,7 +71,7 @@ impl<'a> Followers<'a> {
             }
             let run = &mut self.runs[run];
             if let Forces::Along(guided) = &mut run.forces {
-                guided.attach(guide, Layout::Batched.mask(lane));
+                guided.attach(self.job.plan, guide, Layout::Batched.mask(lane));
             }
             run.put(lane, place, unit, ticker)?;
         }
@@ -104,7 +104,7 @@ fn measure(unit: &mut Prepared, guide: &Prepared, job: &Job<'_>) {
     let plan = job.plan;
     let (place, velocity) = (unit.position[0], unit.velocity[0]);
     let nearest = guide.position.iter().map(|&other| distance(place, other)).fold(f64::INFINITY, f64::min);
-    let softening = plan.forces.iter().map(|force| force.length()).fold(0.0, f64::max);
+    let softening = plan.forces_of(unit.unit.copy).iter().map(|force| force.length()).fold(0.0, f64::max);
     let nearest = nearest.max(plan.units.take(softening, [1, 0, 0]));
     let length = if nearest > 0.0 && nearest.is_finite() { nearest } else { 1.0 };
     let total: f64 = guide.strength.iter().map(|x| x.abs()).sum();

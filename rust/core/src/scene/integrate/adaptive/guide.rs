@@ -115,7 +115,7 @@ fn at<V: Real, const G: usize>(blocks: &[V], numbers: usize, start: usize, theta
 /// One of the forces on massless bodies.
 enum Term {
     /// The massive ones pull, with these `G·m`.
-    Pull { constant: f64, strength: Vec<Lanes>, softening2: f64 },
+    Pull { strength: Vec<Lanes>, softening2: f64 },
     /// Another, which does not couple them.
     Other(Box<dyn Force<Lanes>>),
 }
@@ -141,10 +141,9 @@ impl Guided {
         let mut terms = Vec::with_capacity(plan.forces.len());
         for (force, kernel) in plan.forces.iter().zip(uncoupled(plan, units)) {
             match (force.as_newtonian(), kernel) {
-                (Some((constant, softening)), _) => {
+                (Some((_, softening)), _) => {
                     let softening = plan.units.take(softening, [1, 0, 0]);
                     terms.push(Term::Pull {
-                        constant: plan.units.take(constant, [3, -1, -2]),
                         strength: vec![Lanes::zero(); guide.unit.active],
                         softening2: softening * softening,
                     });
@@ -168,12 +167,13 @@ impl Guided {
         }
     }
 
-    /// Takes over the masses of a guide for its lanes.
-    pub(super) fn attach(&mut self, guide: &Prepared, lanes: Bits) {
-        for term in &mut self.terms {
-            if let Term::Pull { constant, strength, .. } = term {
+    /// Takes over the masses of a guide, and what is its own of the forces, for its lanes.
+    pub(super) fn attach(&mut self, plan: &Plan, guide: &Prepared, lanes: Bits) {
+        for (term, force) in self.terms.iter_mut().zip(plan.forces_of(guide.unit.copy)) {
+            if let (Term::Pull { strength, .. }, Some((constant, _))) = (term, force.as_newtonian()) {
+                let constant = plan.units.take(constant, [3, -1, -2]);
                 for (strength, mass) in strength.iter_mut().zip(&guide.mass) {
-                    *strength = Lanes::select(lanes, Lanes::splat(*constant * mass), *strength);
+                    *strength = Lanes::select(lanes, Lanes::splat(constant * mass), *strength);
                 }
             }
         }

@@ -17,9 +17,9 @@ const STEPS: f64 = 1e6;
 const AT_THE_END: f64 = 1e-6;
 
 /// Whether bodies at those places are at a distance where a potential ends.
-fn at_an_end(job: &Job<'_>, places: &[[f64; 3]]) -> bool {
+fn at_an_end(job: &Job<'_>, unit: &Prepared, places: &[[f64; 3]]) -> bool {
     let units = job.plan.units;
-    job.plan.forces.iter().any(|force| {
+    job.plan.forces_of(unit.unit.copy).iter().any(|force| {
         let Some((first, last)) = force.domain() else { return false };
         let ends = [first, last].map(|end| scale(end, -units.length));
         let ending = |distance: f64| {
@@ -41,7 +41,7 @@ fn at_an_end(job: &Job<'_>, places: &[[f64; 3]]) -> bool {
 fn at_a_speed_limit(job: &Job<'_>, unit: &Prepared, state: &State<Lanes>, lane: usize) -> bool {
     unit.unit.bodies.iter().enumerate().any(|(slot, &body)| {
         let speed = distance(unit.pick(slot, state.v(), lane), [0.0; 3]);
-        let limits = job.plan.forces.iter().filter_map(|force| force.speed_limit(body));
+        let limits = job.plan.forces_of(unit.unit.copy).iter().filter_map(|force| force.speed_limit(body));
         limits.into_iter().any(|limit| speed >= (1.0 - AT_THE_END) * job.plan.units.take(limit, [1, 0, -1]))
     })
 }
@@ -75,7 +75,7 @@ pub(super) fn why(
             closest = (distance, (body.min(other), body.max(other)));
         }
     }
-    for center in job.plan.forces.iter().filter_map(|force| force.center()) {
+    for center in job.plan.forces_of(unit.unit.copy).iter().filter_map(|force| force.center()) {
         let center = job.plan.units.take_vector(center, [1, 0, 0]);
         for (slot, &body) in bodies.iter().enumerate() {
             let distance = distance(places[slot], center);
@@ -84,7 +84,7 @@ pub(super) fn why(
             }
         }
     }
-    if at_an_end(job, &places) || at_a_speed_limit(job, unit, state, lane) {
+    if at_an_end(job, unit, &places) || at_a_speed_limit(job, unit, state, lane) {
         return Ending::OutsideDomain;
     }
     let (length, speed) = unit.size;
