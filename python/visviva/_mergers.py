@@ -1,7 +1,7 @@
 """Runs in which bodies merge: which bodies there are at which times, with which masses.
 
-The one idea: between two mergers the bodies that are left are a scene like any, and whatever is told of states is told of
-those of one such era after another. A run without mergers is one era.
+The one idea: between two mergers the bodies that are left are a scene like any, and whatever is told of states is told
+of those of one such era after another. A run without mergers is one era.
 """
 
 from __future__ import annotations

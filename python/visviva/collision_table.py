@@ -34,8 +34,8 @@ class CollisionTable:
     position : ndarray, shape (K, 3)
         Where they touched.
     energy_lost : ndarray, shape (K,)
-        The kinetic energy that was lost: ½μ·speed²·(1 − restitution²) of a bounce, ½μ·(relative speed)² of a merger. The
-        potential energy that two bodies had of each other goes with a merger, too, and is not in it.
+        The kinetic energy that was lost: ½μ·speed²·(1 − restitution²) of a bounce, ½μ·(relative speed)² of a merger.
+        The potential energy that two bodies had of each other goes with a merger, too, and is not in it.
     survivor : ndarray of int64, shape (K,)
         The body that is left of both, if they merged, else -1.
     member : ndarray of int64, shape (K,)

@@ -302,9 +302,7 @@ class EnsembleTrajectory(Recorded):
         last = self._result["final"]
         shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
         mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
-        copies = EnsembleScene(
-            shared, position=last["position"], velocity=last["velocity"], mass=mass, radius=radius
-        )
+        copies = EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=mass, radius=radius)
         return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
 
 

@@ -49,8 +49,8 @@ class Particles:
     Raises
     ------
     visviva.InvalidInput
-        For a wrong shape, complex or object arrays, NaN or infinity, a negative mass or radius, or names that are not one for
-        each body.
+        For a wrong shape, complex or object arrays, NaN or infinity, a negative mass or radius, or names that are not
+        one for each body.
 
     Examples
     --------
@@ -91,9 +91,7 @@ class Particles:
     def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> Particles:
         chosen = body_indices("bodies", bodies, self.names, len(self))
         names = [self.names[body] for body in chosen] if self.names else None
-        return Particles(
-            self.mass[chosen], self.position[chosen], self.velocity[chosen], names, self.radius[chosen]
-        )
+        return Particles(self.mass[chosen], self.position[chosen], self.velocity[chosen], names, self.radius[chosen])
 
     def __iter__(self) -> Iterator[Particles]:
         return (self[body] for body in range(len(self)))
@@ -117,7 +115,9 @@ class Particles:
 
     def __hash__(self) -> int:
         # Adding 0.0 turns -0.0, which compares equal to 0.0, into 0.0.
-        return hash((self.names, *((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity, self.radius))))
+        return hash(
+            (self.names, *((a + 0.0).tobytes() for a in (self.mass, self.position, self.velocity, self.radius)))
+        )
 
     def __reduce__(self) -> tuple[type[Particles], tuple[Any, ...]]:
         return Particles, (self.mass, self.position, self.velocity, self.names, self.radius)

@@ -79,13 +79,14 @@ class Runnable(ABC, Generic[_Result]):
             there, with `Status.STOPPED`; no closed form is used. An ensemble with functions runs on one thread.
         collisions : {"merge", "bounce", "stop"}, optional
             What bodies with a `Particles.radius` do when they touch; by default they pass through each other.
-            ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass, momentum,
-            centre of mass and volume are kept. The other has no mass and no radius from then on and goes with it;
-            ``out.final.particles.mass`` tells. ``"bounce"``: an impulse along the line of their centres; a massless body
-            bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run ends there,
-            with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin anew after it.
-            All bodies are on the same steps, no closed form is used, and ``out.collisions`` is the table of them. Spheres
-            that bounce and come to rest on each other end the run, with `Status.RESTING`.
+            ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,
+            momentum, centre of mass and volume are kept. The other has no mass and no radius from then on and goes
+            with it; ``out.final.particles.mass`` tells. ``"bounce"``: an impulse along the line of their centres; a
+            massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
+            ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
+            anew after it. All bodies are on the same steps, no closed form is used while two may touch, and
+            ``out.collisions`` is the table of them. Spheres that overlap at the start are refused. Those that bounce
+            and come to rest on each other end the run, with `Status.RESTING`.
         restitution : float, optional
             The part of their speed along the line of centres with which spheres part that bounce, from 0 to 1, the
             default.
@@ -106,8 +107,8 @@ class Runnable(ABC, Generic[_Result]):
         visviva.CloseEncounter
             Of a scene: two bodies came so close that the step fell to zero; ``.trajectory`` holds what was done.
         visviva.ConvergenceError
-            Of a scene: the step control gave up, `max_steps` was reached, or spheres came to rest on each other; ``.trajectory`` likewise. A copy of
-            an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
+            Of a scene: the step control gave up, `max_steps` was reached, or spheres came to rest on each other;
+            ``.trajectory`` likewise. A copy of an ensemble that fails raises nothing: see `EnsembleTrajectory.status`.
         visviva.Interrupted
             Ctrl-C; ``.trajectory`` likewise. It is a `KeyboardInterrupt`, which ``except Exception`` lets pass.
 

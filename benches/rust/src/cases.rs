@@ -53,6 +53,7 @@ pub fn cluster(particles: usize, solar: bool) -> Bodies {
         velocity,
         forces,
         own_forces: None,
+        radius: Vec::new(),
         t0: 0.0,
         continuation: None,
     }
@@ -105,6 +106,7 @@ pub fn figure_eights(copies: usize) -> Bodies {
         velocity: [v, v, scaled(v, -2.0)].repeat(copies),
         forces: gravity(0.0),
         own_forces: None,
+        radius: Vec::new(),
         t0: 0.0,
         continuation: None,
     }
@@ -124,6 +126,7 @@ pub fn request(method: &str, dt: Option<f64>, times: Vec<f64>, threads: usize) -
         record: vec!["position".to_owned(), "velocity".to_owned()],
         threads,
         events: Vec::new(),
+        collisions: None,
     }
 }
 

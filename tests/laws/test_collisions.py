@@ -1,0 +1,451 @@
+"""Spheres that touch: where, what becomes of them, and that nobody else notices."""
+
+from __future__ import annotations
+
+import pickle
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from numpy.typing import ArrayLike
+
+EPSILON = float(np.finfo(float).eps)
+
+# An adaptive method, one that splits, one with stages, one that looks back; steps that end on no contact.
+METHODS: dict[str, dict[str, Any]] = {
+    "auto": {},
+    "leapfrog": {"dt": 0.03},
+    "rk4": {"dt": 0.3},
+    "stormer13": {"dt": 0.007},
+}
+each_method = pytest.mark.parametrize("method", METHODS)
+
+
+def how(method: str) -> dict[str, Any]:
+    return {"method": method, **METHODS[method]}
+
+
+def spheres(mass: ArrayLike, x: ArrayLike, v: ArrayLike, radius: ArrayLike, *forces: Any) -> vv.Scene:
+    return vv.Scene(vv.Particles(mass, x, v, radius=radius), *forces)
+
+
+def head_on(m1: float, m2: float) -> vv.Scene:
+    """They touch at t = 13/8 with their centers at x = -3/8 and 3/8."""
+    return spheres([m1, m2], [[-2, 0, 0], [2, 0, 0]], [[1, 0, 0], [-1, 0, 0]], [0.5, 0.25])
+
+
+@each_method
+@pytest.mark.parametrize("restitution", [1.0, 0.5, 0.0])
+@pytest.mark.parametrize("masses", [(1.0, 1.0), (1.0, 3.0), (0.0, 2.0), (0.0, 0.0)])
+def test_head_on(method: str, restitution: float, masses: tuple[float, float]) -> None:
+    out = head_on(*masses).run([0.0, 1.0, 1.625, 2.0], collisions="bounce", restitution=restitution, **how(method))
+    table = out.collisions
+    # A sum of a hundred steps, each rounded.
+    assert table.t == pytest.approx([1.625], rel=1e-14)
+    assert table.speed == pytest.approx([2.0], rel=1e-14)
+    assert np.allclose(table.position, [[0.125, 0.0, 0.0]], rtol=0.0, atol=1e-14)
+    m1, m2 = masses if any(masses) else (1.0, 1.0)
+    mean, part = (m1 - m2) / (m1 + m2), 2.0 * restitution / (m1 + m2)
+    after = np.array([mean - part * m2, mean + part * m1])
+    assert np.allclose(out.velocity[-1, :, 0], after, rtol=0.0, atol=1e-14)
+    assert np.allclose(out.position[-1, :, 0], [-0.375, 0.375] + after * 0.375, rtol=0.0, atol=1e-13)
+    reduced = m1 * m2 / (m1 + m2) if any(masses) else 0.0
+    assert table.energy_lost == pytest.approx([2.0 * reduced * (1.0 - restitution**2)], rel=1e-13)
+    # The row at the time of contact is of before.
+    assert np.allclose(out.velocity[1:3, :, 0], [1.0, -1.0], rtol=0.0, atol=1e-14)
+    assert out.status is vv.Status.OK
+
+
+@each_method
+def test_oblique_impulses_are_along_the_line_of_centers(method: str) -> None:
+    x = np.array([[-1.0, 0.1, 0.2], [1.5, -0.2, 0.1]])
+    v = np.array([[1.0, 0.2, -0.1], [-0.5, 0.3, 0.2]])
+    mass, radius = np.array([1.0, 2.5]), 0.4
+    out = spheres(mass, x, v, radius).run([0.0, 3.0], collisions="bounce", restitution=0.75, **how(method))
+    d, u = x[1] - x[0], v[1] - v[0]
+    b, c = d @ u, d @ d - 0.64
+    t = (-b - np.sqrt(b * b - (u @ u) * c)) / (u @ u)
+    assert out.collisions.t == pytest.approx([t], rel=1e-14)
+    normal = (d + t * u) / 0.8
+    impulse = 1.75 * mass.prod() / mass.sum() * (normal @ u) * normal
+    assert np.allclose(out.velocity[-1], v + np.array([impulse, -impulse]) / mass[:, None], rtol=0.0, atol=1e-14)
+    assert np.allclose(out.momentum[1], out.momentum[0], rtol=0.0, atol=1e-14)
+    assert np.allclose(out.angular_momentum[1], out.angular_momentum[0], rtol=0.0, atol=1e-14)
+    lost = out.kinetic_energy[0] - out.kinetic_energy[1]
+    assert out.collisions.energy_lost[0] == pytest.approx(lost, rel=1e-13)
+
+
+@pytest.mark.parametrize("speed", [1.0, 1e3, 1e6, 1e9])
+@pytest.mark.parametrize("offset", [0.0, 0.15, 0.2 * (1.0 - 1e-10), 0.2 * (1.0 - 1e-12)])
+@pytest.mark.parametrize("options", [{}, {"method": "leapfrog", "dt": 1.0}, {"method": "rk4", "dt": 7.0}])
+def test_no_approach_is_too_short_for_a_step(speed: float, offset: float, options: dict[str, Any]) -> None:
+    # Up to 10^11 radii in a step; grazing by a part of 10^12 of the radius.
+    scene = spheres([1, 2], [[-3, offset, 0], [3, 0, 0]], [[speed, 0, 0], [-speed, 0, 0]], 0.1)
+    out = scene.run(100.0, collisions="stop", **options)
+    exact = (6.0 - np.sqrt((0.2 - offset) * (0.2 + offset))) / (2.0 * speed)
+    assert out.status is vv.Status.STOPPED
+    # Near grazing the time of contact is known as the root of the rounding of the distance, an ulp of 6, is.
+    chord = np.sqrt((0.2 - offset) * (0.2 + offset))
+    assert out.collisions.t[0] == pytest.approx(exact, rel=4 * EPSILON + 8 * EPSILON / chord)
+    assert out.final.t0 == out.collisions.t[0]
+
+
+def test_what_passes_by_is_no_contact() -> None:
+    for speed in (1.0, 1e6):
+        scene = spheres([1, 2], [[-3, 0.2 * (1 + 1e-12), 0], [3, 0, 0]], [[speed, 0, 0], [-speed, 0, 0]], 0.1)
+        for options in ({}, {"method": "leapfrog", "dt": 1.0}):
+            out = scene.run(100.0, collisions="stop", **options)
+            assert len(out.collisions) == 0
+            assert out.status is vv.Status.OK
+
+
+@each_method
+def test_newtons_cradle(method: str) -> None:
+    x = np.zeros((5, 3))
+    x[:, 0] = np.arange(5)
+    x[0, 0] = -1.0
+    v = np.zeros((5, 3))
+    v[0, 0] = 1.0
+    out = spheres(np.ones(5), x, v, 0.5).run(2.0, collisions="bounce", **how(method))
+    assert out.collisions.first.tolist() == [0, 1, 2, 3]
+    assert np.allclose(out.collisions.t, 1.0, rtol=0.0, atol=1e-14)
+    assert np.allclose(out.velocity[-1, :, 0], [0, 0, 0, 0, 1], rtol=0.0, atol=1e-14)
+
+
+def dropped(height: float = 1.0) -> vv.Scene:
+    """A ball above a plate that nothing moves, in a field that acts on the ball alone, whose acceleration is 2."""
+    field = vv.UniformElectricField((0.0, 0.0, -2.0), charge=[0.0, 1.0])
+    return spheres([1e30, 1.0], [[0, 0, 0], [0, 0, 1.25 + height]], np.zeros((2, 3)), [1.0, 0.25], field)
+
+
+@each_method
+def test_a_ball_bounces_to_its_end(method: str) -> None:
+    part = 0.8
+    options = {**how(method)}
+    out = dropped().run(4.0, collisions="bounce", restitution=part, **options)
+    flights = np.arange(len(out.collisions))
+    exact = 1.0 + 2.0 * part * (1.0 - part**flights) / (1.0 - part)
+    assert len(flights) == 3
+    # Tolerances of 1e-9 hold the motion to that at least; fixed steps are exact for a parabola.
+    assert np.allclose(out.collisions.t, exact, rtol=0.0, atol=1e-12)
+    with pytest.raises(vv.ConvergenceError, match="came to rest") as caught:
+        dropped().run(20.0, collisions="bounce", restitution=part, **options)
+    run = caught.value.trajectory
+    assert run.status is vv.Status.RESTING
+    assert len(run.collisions) > 60
+    # The last flights are too low to be told from contact, which is 1e-12 of the radii: the root of that in time.
+    assert caught.value.time == pytest.approx((1.0 + part) / (1.0 - part), abs=1e-5)
+    assert caught.value.time == run.final.t0
+
+
+@pytest.mark.parametrize("restitution", [0.0, 0.5, 1.0])
+def test_what_rests_at_the_start_is_told_at_once(restitution: float) -> None:
+    with pytest.raises(vv.ConvergenceError, match="bodies 0 and 1 came to rest"):
+        dropped(0.0).run(5.0, collisions="bounce", restitution=restitution)
+
+
+def test_elastic_bounces_go_on() -> None:
+    out = dropped().run(400.0, collisions="bounce")
+    # 200 flights, each to the round-off of the time; the energy of the ball is 2.
+    assert np.allclose(out.collisions.t, 1.0 + 2.0 * np.arange(200), rtol=0.0, atol=1e-11)
+
+
+def crowd(n: int, seed: int, radius: float = 0.35) -> vv.Scene:
+    """Balls in a harmonic trap, which keeps them together."""
+    random = np.random.default_rng(seed)
+    x = np.array([[i % 3, (i // 3) % 3, i // 9] for i in range(n)], dtype=float) - 1.0
+    return spheres(random.uniform(0.5, 2.0, n), x, random.normal(size=(n, 3)), radius, vv.Harmonic(1.0))
+
+
+def test_many_bounces_conserve() -> None:
+    scene = crowd(20, 1)
+    out = scene.run([0.0, 700.0], collisions="bounce", method="kahan_li8", dt=0.1)
+    table = out.collisions
+    assert len(table) > 9_000
+    # Rounding of 10^4 impulses of about 1, and of their places.
+    assert abs(out.energy[1] / out.energy[0] - 1.0) < 1e-10
+    assert np.abs(out.angular_momentum[1] - out.angular_momentum[0]).max() < 1e-9
+    last = out.position[-1]
+    apart = np.linalg.norm(last[:, None] - last, axis=-1) + np.eye(20)
+    assert apart.min() > 0.7 * (1.0 - 1e-9), "no sphere is inside another"
+    assert (np.diff(table.t) >= 0.0).all()
+    assert not table.energy_lost.any()
+    assert (table.survivor == -1).all()
+
+
+@pytest.mark.parametrize("options", [{"rtol": 1e-13}, {"method": "kahan_li8", "dt": 0.02}])
+def test_elastic_bounces_are_retraced(options: dict[str, Any]) -> None:
+    scene = crowd(9, 5)
+    there = scene.run(2.0, collisions="bounce", **options)
+    back = there.final.run(0.0, collisions="bounce", **options)
+    assert len(there.collisions) == len(back.collisions) > 5
+    # Ten bounces of convex bodies, each of which multiplies rounding by a few.
+    assert np.abs(back.final.particles.position - scene.particles.position).max() < 1e-10
+    assert np.allclose(back.collisions.t[::-1], there.collisions.t, rtol=0.0, atol=1e-10)
+
+
+@each_method
+def test_a_merger_keeps_what_it_must(method: str) -> None:
+    scene = crowd(12, 3)
+    p = scene.particles
+    free = vv.Scene(p)
+    out = free.run([0.0, 0.5, 1.0], collisions="merge", **how(method))
+    after = out.final.particles
+    assert len(out.collisions) > 0
+    assert after.mass.sum() == pytest.approx(p.mass.sum(), rel=1e-15)
+    assert (after.radius**3).sum() == pytest.approx((p.radius**3).sum(), rel=1e-14)
+    assert np.allclose(out.momentum, out.momentum[0], rtol=0.0, atol=1e-13)
+    drift = out.center_of_mass[0] + np.multiply.outer(out.t, out.momentum[0] / p.mass.sum())
+    assert np.allclose(out.center_of_mass, drift, rtol=0.0, atol=1e-13)
+    lost = out.kinetic_energy[0] - out.kinetic_energy[-1]
+    assert out.collisions.energy_lost.sum() == pytest.approx(lost, rel=1e-12)
+    for line in range(len(out.collisions)):
+        first, second, left = (int(getattr(out.collisions, name)[line]) for name in ("first", "second", "survivor"))
+        gone = first + second - left
+        assert after.mass[gone] == 0.0
+        assert after.radius[gone] == 0.0
+    gone = after.mass == 0.0
+    there = {tuple(row) for row in np.hstack([after.position, after.velocity])[~gone].tolist()}
+    assert all(tuple(row) in there for row in np.hstack([after.position, after.velocity])[gone].tolist())
+
+
+def test_the_more_massive_survives_and_of_equals_the_first() -> None:
+    for masses, left in (((1.0, 3.0), 1), ((3.0, 1.0), 0), ((2.0, 2.0), 0), ((0.0, 1.0), 1), ((0.0, 0.0), 0)):
+        out = head_on(*masses).run(2.0, collisions="merge")
+        assert out.collisions.survivor.tolist() == [left]
+        assert out.final.particles.mass[left] == sum(masses)
+        assert out.final.particles.radius[left] == pytest.approx((0.5**3 + 0.25**3) ** (1 / 3), rel=1e-15)
+
+
+def test_a_merged_body_that_reaches_others_takes_them() -> None:
+    # 0 and 1 meet at t = 1 at x = 0; the merged radius of 0.63 reaches the one that rests at y = 1.1.
+    scene = spheres(
+        [1, 1, 1], [[-1.5, 0, 0], [1.5, 0, 0], [0, 1.1, 0]], [[1, 0, 0], [-1, 0, 0], [0, 0, 0]], [0.5, 0.5, 0.5]
+    )
+    out = scene.run(2.0, collisions="merge")
+    assert np.allclose(out.collisions.t, 1.0, rtol=0.0, atol=1e-14)
+    assert len(out.collisions) == 2
+    assert out.final.particles.mass.tolist() == [3.0, 0.0, 0.0]
+    assert np.allclose(out.position[-1], [0.0, 1.1 / 3.0, 0.0], rtol=0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("options", [{"rtol": 1e-12}, {"method": "leapfrog", "dt": 1e-3}])
+def test_what_falls_onto_a_star_is_taken_in(options: dict[str, Any]) -> None:
+    start = np.array([1.0, 1.5, 2.0])
+    x = np.zeros((4, 3))
+    x[1:] = start[:, None] * np.array([[1, 0, 0], [0, 1, 0], [0, 0, -1]])
+    radius = np.array([0.3, 0.0, 0.0, 0.0])
+    scene = spheres([1.0, 0, 0, 0], x, np.zeros((4, 3)), radius, vv.Gravity(G=1.0))
+    out = scene.run(5.0, collisions="merge", **options)
+    part = radius[0] / start
+    exact = start**1.5 / np.sqrt(2.0) * (np.arccos(np.sqrt(part)) + np.sqrt(part * (1.0 - part)))
+    # The order-2 steps are off by (1e-3)² times the acceleration near the star, 10.
+    assert np.allclose(out.collisions.t, exact, rtol=0.0, atol=1e-10 if "rtol" in options else 1e-5)
+    assert out.final.particles.mass.tolist() == [1.0, 0.0, 0.0, 0.0]
+    assert out.final.particles.radius[0] == 0.3
+    assert not out.position[-1].any()
+
+
+def test_planetesimals_become_one_and_columns_know_it() -> None:
+    random = np.random.default_rng(7)
+    x = np.array([[i % 3, (i // 3) % 3, i // 9] for i in range(15)], dtype=float)
+    scene = spheres(random.uniform(0.5, 1.5, 15), x, 0.1 * random.normal(size=(15, 3)), 0.2, vv.Gravity(G=1.0))
+    times = np.linspace(0.0, 3.0, 7)
+    out = scene.run(times, collisions="merge")
+    recorded = scene.run(times, collisions="merge", record=["energy", "momentum", "angular_momentum", "virial"])
+    assert len(out.collisions) > 5
+    assert out.collisions.t.tolist() == recorded.collisions.t.tolist()
+    for column in ("energy", "momentum", "virial", "angular_momentum"):
+        # Derived from the rounded states, and at the record from those with their compensation.
+        assert np.allclose(getattr(out, column), getattr(recorded, column), rtol=1e-12, atol=1e-12), column
+    assert np.allclose(out.momentum, out.momentum[0], rtol=0.0, atol=1e-12)
+    assert np.allclose(out.angular_momentum_about("center_of_mass").shape, (7, 3))
+    table = out.conservation()
+    assert table.momentum.max < 1e-13
+    assert table.center_of_mass.max < 1e-12
+    assert out.final.particles.mass.sum() == pytest.approx(scene.particles.mass.sum(), rel=1e-14)
+    with pytest.raises(vv.InvalidInput, match="merged"):
+        out.elements()
+
+
+@pytest.mark.parametrize("rule", ["bounce", "merge"])
+@pytest.mark.parametrize("options", [{"method": "kahan_li8", "dt": 0.0625}, {"method": "stormer13", "dt": 0.03125}])
+def test_a_run_goes_on_to_the_bits_of_one(rule: str, options: dict[str, Any]) -> None:
+    scene = crowd(9, 5, radius=0.2)
+    first = scene.run(1.0, collisions=rule, **options)
+    assert len(first.collisions) > 0
+    # A node after the last collision: there the run can be cut.
+    cut = float(first.collisions.t[-1] + 8 * options["dt"])
+    long = scene.run([cut, 3.0], collisions=rule, **options)
+    half = scene.run(cut, collisions=rule, **options)
+    rest = half.final.run(3.0, collisions=rule, **options)
+    assert len(half.collisions) + len(rest.collisions) == len(long.collisions) > len(half.collisions)
+    assert np.array_equal(rest.position[-1], long.position[-1])
+    assert np.array_equal(rest.final.particles.mass, long.final.particles.mass)
+
+
+@pytest.mark.parametrize("rule", ["bounce", "merge", "stop"])
+@each_method
+def test_copies_have_the_bits_that_they_have_alone(rule: str, method: str) -> None:
+    scene = crowd(9, 5)
+    random = np.random.default_rng(1)
+    starts = scene.particles.position + 0.02 * random.normal(size=(7, 9, 3))
+    radii = np.full((7, 9), 0.35) * random.uniform(0.5, 1.0, (7, 1))
+    radii[2] = 0.0
+    copies = scene.ensemble(position=starts, radius=radii)
+    times = np.linspace(0.0, 2.0, 5)
+    options = {"collisions": rule, **how(method)}
+    one, three = (copies.run(times, threads=threads, **options) for threads in (1, 3))
+    assert np.array_equal(one.position, three.position, equal_nan=True)
+    for index in range(7):
+        alone = copies[index].run(times, **options)
+        rows = len(alone.t)
+        assert np.array_equal(alone.position, one.position[index, :rows])
+        assert np.isnan(one.position[index, rows:]).all()
+        mine = one[index]
+        for name in ("t", "first", "second", "speed", "survivor", "energy_lost"):
+            assert np.array_equal(getattr(alone.collisions, name), getattr(mine.collisions, name))
+        assert np.array_equal(mine.final.particles.mass, alone.final.particles.mass)
+        assert np.array_equal(mine.final.particles.radius, alone.final.particles.radius)
+        assert mine.stats.steps == alone.stats.steps
+    assert (one.collisions.member != 2).all()
+
+
+@pytest.mark.parametrize("rule", ["bounce", "merge", "stop"])
+def test_results_are_kept(rule: str, tmp_path: Path) -> None:
+    scene = crowd(9, 5)
+    copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None])
+    for run in (scene.run(1.0, collisions=rule), copies.run(1.0, collisions=rule)):
+        path = tmp_path / "run.npz"
+        run.save(path)
+        for again in (vv.load(path), pickle.loads(pickle.dumps(run))):
+            for name in ("t", "first", "second", "speed", "position", "energy_lost", "survivor", "member"):
+                assert np.array_equal(getattr(again.collisions, name), getattr(run.collisions, name))
+            assert again._start._keywords["radius"].tolist() == run._start._keywords["radius"].tolist()
+            assert np.array_equal(again.energy, run.energy, equal_nan=True)
+    assert pickle.loads(pickle.dumps(copies)).radius.tolist() == copies.radius.tolist()
+
+
+def test_outputs_do_not_steer() -> None:
+    scene = crowd(9, 5)
+    for options in ({}, {"method": "leapfrog", "dt": 0.03}):
+        few = scene.run([0.0, 2.0], collisions="bounce", **options)
+        many = scene.run(np.linspace(0.0, 2.0, 501), collisions="bounce", **options)
+        assert np.array_equal(few.position[-1], many.position[-1])
+        assert few.collisions.t.tolist() == many.collisions.t.tolist()
+
+
+@pytest.mark.parametrize("rule", ["bounce", "merge"])
+def test_events_beside_collisions(rule: str) -> None:
+    def half(t: float, position: Any, velocity: Any) -> float:
+        assert position.shape == velocity.shape == (2, 3)
+        return float(position[0, 0] + 1.5)
+
+    scene = head_on(1.0, 3.0)
+    plane = vv.events.plane([-1.0, 0.0, 0.0], [1.0, 0.0, 0.0], body=0)
+    out = scene.run(4.0, collisions=rule, events=[vv.events.distance(0, 1, below=2.0), plane, half])
+    # After the bounce body 0 goes back at speed 2, after the merger at 1/2.
+    speed, at = (2.0, -0.375) if rule == "bounce" else (0.5, 0.1875)
+    assert out.events.of(1).t == pytest.approx([1.0, 1.625 + (1.0 + at) / speed], rel=1e-13)
+    # Only what comes near counts, not what parts.
+    assert out.events.of(0).t == pytest.approx([1.0], rel=1e-13)
+    last = scene.run(5.0, collisions=rule, events=[vv.events.plane([-1.0, 0, 0], [1.0, 0, 0], body=0, terminal=2)])
+    assert last.status is vv.Status.STOPPED
+    assert last.final.t0 == pytest.approx(1.625 + (1.0 + at) / speed, rel=1e-13)
+
+
+def test_without_spheres_nothing_is_looked_for() -> None:
+    scene = vv.problems.pleiades().scene
+    plain = scene.run([0.0, 1.0], record=["position", "energy"])
+    for options in ({"collisions": "bounce"}, {"collisions": "merge"}):
+        out = scene.run([0.0, 1.0], record=["position", "energy"], **options)
+        assert np.array_equal(out.position, plain.position)
+        assert len(out.collisions) == 0
+        assert "no two bodies can touch" in str(out.plan)
+    bigger = vv.Scene(scene.particles._changed(radius=np.full(7, 1e-9)), *scene.forces)
+    assert np.array_equal(bigger.run([0.0, 1.0]).position, plain.position)
+    assert "pass through each other" in str(bigger.plan(1.0))
+    assert "spheres that touch" in str(bigger.plan(1.0, collisions="stop"))
+    with pytest.raises(vv.InvalidInput, match="collisions"):
+        _ = plain.collisions
+
+
+def test_stopped_spheres_go_on_with_a_bounce() -> None:
+    stopped = head_on(1.0, 3.0).run(4.0, collisions="stop")
+    assert stopped.status is vv.Status.STOPPED
+    assert stopped.t.tolist() == [0.0]
+    again = stopped.final.run(4.0, collisions="stop")
+    assert again.status is vv.Status.STOPPED
+    assert again.final.t0 == stopped.final.t0
+    on = stopped.final.run(4.0, collisions="bounce")
+    once = head_on(1.0, 3.0).run(4.0, collisions="bounce")
+    assert np.allclose(on.position[-1], once.position[-1], rtol=0.0, atol=1e-14)
+    assert on.velocity[0, :, 0].tolist() == [1.0, -1.0], "the row of the start is as it was given"
+
+
+def test_steps_are_counted_over_all_legs() -> None:
+    scene = head_on(1.0, 3.0)
+    out = scene.run(4.0, collisions="bounce", method="leapfrog", dt=0.01)
+    assert out.stats.steps == 162 + 1 + 237
+    with pytest.raises(vv.ConvergenceError, match="max_steps") as caught:
+        scene.run(4.0, collisions="bounce", method="leapfrog", dt=0.01, max_steps=300)
+    assert caught.value.trajectory.stats.steps == 300
+    assert len(caught.value.trajectory.collisions) == 1
+
+
+def test_what_has_no_meaning_is_refused() -> None:
+    bodies = vv.Particles([1, 1], [[0, 0, 0], [1, 0, 0]], radius=0.1)
+    scene = vv.Scene(bodies)
+    overlap = vv.Scene(vv.Particles([1, 1], [[0, 0, 0], [1, 0, 0]], radius=0.75))
+    for of, options, words in (
+        (scene, {"collisions": "merge", "t": -1.0}, "cannot be undone"),
+        (scene, {"collisions": "bounce", "restitution": 0.5, "t": -1.0}, "does not come back"),
+        (scene, {"collisions": "bounce", "restitution": 1.5}, "from 0 to 1"),
+        (scene, {"collisions": "bounce", "restitution": float("nan")}, "from 0 to 1"),
+        (scene, {"collisions": "stop", "restitution": 1.0}, "restitution: expected None"),
+        (scene, {"restitution": 1.0}, "restitution: expected None"),
+        (scene, {"collisions": "bonce"}, "did you mean 'bounce'"),
+        (scene, {"collisions": 1}, "collisions: expected a name"),
+        (overlap, {"collisions": "bounce"}, "bodies 0 and 1 overlap by 0.5 at the start"),
+        (overlap, {"collisions": "merge"}, "bodies 0 and 1 overlap"),
+        (vv.Scene(bodies, vv.Spring(0, 1, 1.0)), {"collisions": "merge"}, "Spring names bodies"),
+        (vv.Scene(bodies, vv.Coulomb([1.0, 1.0], k=1.0)), {"collisions": "merge"}, "Coulomb names bodies"),
+        (vv.Scene(bodies, vv.UniformMagneticField((0, 0, 1))), {"collisions": "merge"}, "has charges"),
+        (vv.Scene(bodies, vv.QuadraticDrag([1.0, 2.0])), {"collisions": "merge"}, "QuadraticDrag"),
+    ):
+        with pytest.raises(vv.InvalidInput, match=words):
+            of.run(**{"t": 1.0, **options})
+    for radius in (-1.0, [0.1], [0.1, float("inf")], "large", [[0.1, 0.1]]):
+        with pytest.raises(vv.InvalidInput, match="radius"):
+            vv.Particles([1, 1], [[0, 0, 0], [1, 0, 0]], radius=radius)  # type: ignore[arg-type]
+    assert overlap.run(1.0).status is vv.Status.OK, "they pass through each other"
+
+
+def test_forces_that_name_bodies_go_with_bounces() -> None:
+    bodies = vv.Particles([1.0, 1.0], [[-2, 0, 0], [2, 0, 0]], radius=1.0)
+    out = vv.Scene(bodies, vv.Spring(0, 1, k=0.5, length=3.0)).run([0.0, 10.0], collisions="bounce", rtol=1e-12)
+    # Relative motion is 3 + cos(t); it reaches 2 at rest: a graze each time.
+    assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-10)
+    bodies = vv.Particles([1.0, 1.0], [[-2, 0, 0], [2, 0, 0]], radius=1.25)
+    out = vv.Scene(bodies, vv.Spring(0, 1, k=0.5, length=3.0)).run([0.0, 10.0], collisions="bounce", rtol=1e-12)
+    first = float(np.arccos(-0.5))
+    assert np.allclose(out.collisions.t, first * np.array([1.0, 3.0]), rtol=0.0, atol=1e-10)
+
+
+def test_radii_go_with_their_bodies() -> None:
+    bodies = vv.Particles([1, 2, 3], np.eye(3), radius=[0.1, 0.2, 0.3], names=["a", "b", "c"])
+    assert bodies[["c", "a"]].radius.tolist() == [0.3, 0.1]
+    assert bodies.rescaled(length=10.0).radius.tolist() == [1.0, 2.0, 3.0]
+    assert vv.Particles([1, 2], np.eye(3)[:2], radius=0.5).radius.tolist() == [0.5, 0.5]
+    assert bodies != vv.Particles([1, 2, 3], np.eye(3), names=["a", "b", "c"])
+    assert pickle.loads(pickle.dumps(bodies)) == bodies
+    assert hash(pickle.loads(pickle.dumps(bodies))) == hash(bodies)
+    moved = vv.Scene(bodies).with_state(2 * np.eye(3), np.zeros((3, 3)))
+    assert moved.particles.radius.tolist() == [0.1, 0.2, 0.3]
+    assert not bodies.radius.flags.writeable
