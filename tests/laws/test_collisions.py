@@ -407,7 +407,7 @@ def test_what_has_no_meaning_is_refused() -> None:
         (scene, {"collisions": "merge", "t": -1.0}, "cannot be undone"),
         (scene, {"collisions": "bounce", "restitution": 0.5, "t": -1.0}, "does not come back"),
         (scene, {"collisions": "bounce", "restitution": 1.5}, "from 0 to 1"),
-        (scene, {"collisions": "bounce", "restitution": float("nan")}, "from 0 to 1"),
+        (scene, {"collisions": "bounce", "restitution": float("nan")}, "restitution: expected finite"),
         (scene, {"collisions": "stop", "restitution": 1.0}, "restitution: expected None"),
         (scene, {"restitution": 1.0}, "restitution: expected None"),
         (scene, {"collisions": "bonce"}, "did you mean 'bounce'"),
