@@ -9,7 +9,9 @@ LATER = {
     "generalized coordinates": ["G3.20", "G5.1-", "G5.4-", "G5.10", "G5.14", "G5.29", "G5.32", "G6.3-", "G6.29"],
     "collisions": ["G8.23", "G8.24"],
     "scattering by any potential": ["G8.41", "G8.39-square-well"],
-    "rigid bodies": ["G9."],
+    "rigid velocity fields": ["G9.9-"],
+    "mass properties": ["G9.14-", "G9.29-", "G9.32-"],
+    "heavy tops": ["G9.48-", "G9.55-", "G9.71-", "G9.78-", "G9.79-"],
 }
 
 

@@ -14,6 +14,7 @@ pub mod ode;
 pub mod parallel;
 pub mod potentials;
 pub mod registry;
+pub mod rigid;
 pub mod scattering;
 pub mod scene;
 pub mod units;

@@ -15,6 +15,7 @@ mod gate;
 mod info;
 mod orbits;
 mod registry;
+mod rigid;
 mod scattering;
 mod scene;
 mod solve_ivp;
@@ -44,6 +45,10 @@ mod _core {
     #[pymodule_export]
     use crate::registry::{
         check_potential, dimensions, forces, methods, potential, potentials, screening_length,
+    };
+    #[pymodule_export]
+    use crate::rigid::{
+        free_rotation, polhode, rotated, rotation_euler, rotation_form, rotation_product, rotation_rates,
     };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};

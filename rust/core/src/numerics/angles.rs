@@ -88,8 +88,14 @@ fn arctangent_in_unit(x: f64) -> (f64, f64) {
 
 /// The angle of the vector (x, y), in (−π, π]; the conventions of IEEE 754 at zeros and infinities.
 pub fn atan2(y: f64, x: f64) -> f64 {
+    let (high, low) = atan2_parts(y, x);
+    (high + low).copysign(y)
+}
+
+/// As [`atan2`], as an unevaluated sum with an error below half a unit in the last place of the larger part.
+pub fn atan2_parts(y: f64, x: f64) -> (f64, f64) {
     if x.is_nan() || y.is_nan() {
-        return f64::NAN;
+        return (f64::NAN, 0.0);
     }
     let (x_size, y_size) = (x.abs(), y.abs());
     let steep = y_size > x_size;
@@ -110,7 +116,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
     if x.is_sign_negative() {
         (high, low) = (PI - high, DoubleDouble::PI.low() - low + ((PI - (PI - high)) - high));
     }
-    (high + low).copysign(y)
+    if y.is_sign_negative() { (-high, -low) } else { (high, low) }
 }
 
 /// arctan x.

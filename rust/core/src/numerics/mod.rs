@@ -7,6 +7,7 @@ pub mod decay;
 pub mod double_double;
 pub mod element;
 pub mod elementary;
+pub mod elliptic;
 pub mod exponentials;
 pub mod fused_double;
 pub mod inverse_cube;

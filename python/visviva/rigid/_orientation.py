@@ -1,0 +1,298 @@
+"""Rotations as quaternions, matrices and rotation vectors."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.rigid._arguments import rows, together
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+
+@known_keywords
+def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
+    """Rotate by b, then by a.
+
+    Parameters
+    ----------
+    a, b : array_like, shape (…, 4)
+        Quaternions (x, y, z, w).
+
+    Returns
+    -------
+    ndarray, shape (…, 4)
+        Their product.
+
+    Raises
+    ------
+    InvalidInput
+        For a quaternion whose length is not 1 within 1e-6, or axes that do not broadcast.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> half_turn = [0.0, 0.0, 1.0, 0.0]
+    >>> vv.rigid.quaternion_product(half_turn, half_turn)
+    array([ 0.,  0.,  0., -1.])
+    """
+    shape, first, second = together(("a", rows("a", a, (4,))), ("b", rows("b", b, (4,))))
+    return _core.rotation_product(first, second).reshape(*shape, 4)
+
+
+@known_keywords
+def rotate(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
+    """Rotate vectors: those of the body, seen in space.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (…, 4)
+        (x, y, z, w).
+    vector : array_like, shape (…, 3)
+        What to rotate.
+
+    Returns
+    -------
+    ndarray, shape (…, 3)
+        To 4 ε of the length of the vector.
+
+    Raises
+    ------
+    InvalidInput
+        As `quaternion_product`.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.rotate([0.6, 0.0, 0.8, 0.0], [1.0, 0.0, 0.0])
+    array([-0.28,  0.  ,  0.96])
+    """
+    return _rotated(quaternion, vector, back=False)
+
+
+@known_keywords
+def rotate_back(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
+    """Rotate vectors the opposite way: those of space, seen in the body.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (…, 4)
+        (x, y, z, w).
+    vector : array_like, shape (…, 3)
+        What to rotate.
+
+    Returns
+    -------
+    ndarray, shape (…, 3)
+        To 4 ε of the length of the vector.
+
+    Raises
+    ------
+    InvalidInput
+        As `quaternion_product`.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.rotate_back([0.6, 0.0, 0.0, 0.8], [0.0, 1.0, 0.0])
+    array([ 0.  ,  0.28, -0.96])
+    """
+    return _rotated(quaternion, vector, back=True)
+
+
+def _rotated(quaternion: ArrayLike, vector: ArrayLike, back: bool) -> NDArray[np.float64]:
+    turns, vectors = rows("quaternion", quaternion, (4,)), rows("vector", vector, (3,))
+    shape, first, second = together(("quaternion", turns), ("vector", vectors))
+    return _core.rotated(first, second, back).reshape(*shape, 3)
+
+
+@known_keywords
+def matrix(quaternion: ArrayLike) -> NDArray[np.float64]:
+    """Give the matrices of rotations; their columns are the body's axes in space.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (…, 4)
+        (x, y, z, w).
+
+    Returns
+    -------
+    ndarray, shape (…, 3, 3)
+        Rotation matrices.
+
+    Raises
+    ------
+    InvalidInput
+        For a quaternion whose length is not 1 within 1e-6.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.matrix([0.0, 0.0, 1.0, 0.0])
+    array([[-1.,  0.,  0.],
+           [ 0., -1.,  0.],
+           [ 0.,  0.,  1.]])
+    """
+    turns = rows("quaternion", quaternion, (4,))
+    return _core.rotation_form("matrix", turns.reshape(-1, 4)).reshape(*turns.shape[:-1], 3, 3)
+
+
+@known_keywords
+def quaternion_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
+    """Give the quaternions of rotation matrices.
+
+    Parameters
+    ----------
+    matrix : array_like, shape (…, 3, 3)
+        Rotation matrices.
+
+    Returns
+    -------
+    ndarray, shape (…, 4)
+        (x, y, z, w), to 4 ε; of the two signs, that with which the largest part is positive.
+
+    Raises
+    ------
+    InvalidInput
+        For a matrix whose columns are not unit vectors at right angles within 1e-6, or a reflection.
+
+    Notes
+    -----
+    Shepperd's choice of the largest part (J. Guidance 1 (1978) 223), and one step of the power method with the matrix
+    4 q qᵀ that the rotation matrix tells.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.quaternion_from_matrix([[-1, 0, 0], [0, -1, 0], [0, 0, 1]])
+    array([0., 0., 1., 0.])
+    """
+    given = rows("matrix", matrix, (3, 3))
+    return _core.rotation_form("from_matrix", given.reshape(-1, 9)).reshape(*given.shape[:-2], 4)
+
+
+@known_keywords
+def rotation_vector(quaternion: ArrayLike) -> NDArray[np.float64]:
+    """Give the vectors about which to rotate, by their lengths.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (…, 4)
+        (x, y, z, w).
+
+    Returns
+    -------
+    ndarray, shape (…, 3)
+        Of lengths in [0, π].
+
+    Raises
+    ------
+    InvalidInput
+        For a quaternion whose length is not 1 within 1e-6.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.rotation_vector([0.0, 0.0, 1.0, 0.0])
+    array([0.        , 0.        , 3.14159265])
+    """
+    turns = rows("quaternion", quaternion, (4,))
+    return _core.rotation_form("rotation_vector", turns.reshape(-1, 4)).reshape(*turns.shape[:-1], 3)
+
+
+@known_keywords
+def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.float64]:
+    """Give the quaternions of rotations about vectors, by their lengths.
+
+    Parameters
+    ----------
+    rotation_vector : array_like, shape (…, 3)
+        Of any length.
+
+    Returns
+    -------
+    ndarray, shape (…, 4)
+        (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        For NaN or infinity, or another shape.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> vv.rigid.quaternion_from_rotation_vector([0.0, 0.0, np.pi]).round(15)
+    array([0., 0., 1., 0.])
+    """
+    vectors = rows("rotation_vector", rotation_vector, (3,))
+    return _core.rotation_form("from_rotation_vector", vectors.reshape(-1, 3)).reshape(*vectors.shape[:-1], 4)
+
+
+@known_keywords
+def from_scipy(rotation: Any) -> NDArray[np.float64]:
+    """Give the quaternions of a ``scipy.spatial.transform.Rotation``.
+
+    Parameters
+    ----------
+    rotation : scipy.spatial.transform.Rotation
+        One rotation or several.
+
+    Returns
+    -------
+    ndarray, shape (…, 4)
+        (x, y, z, w).
+
+    Raises
+    ------
+    InvalidInput
+        For anything else.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> from scipy.spatial.transform import Rotation
+    >>> vv.rigid.from_scipy(Rotation.identity())
+    array([0., 0., 0., 1.])
+    """
+    if not hasattr(rotation, "as_quat"):
+        raise InvalidInput("rotation", f"expected a scipy.spatial.transform.Rotation, got {type(rotation).__name__}")
+    return np.asarray(rows("rotation", rotation, (4,)))
+
+
+@known_keywords
+def to_scipy(quaternion: ArrayLike) -> Any:
+    """Give a ``scipy.spatial.transform.Rotation`` of quaternions; needs SciPy.
+
+    Parameters
+    ----------
+    quaternion : array_like, shape (…, 4)
+        (x, y, z, w).
+
+    Returns
+    -------
+    scipy.spatial.transform.Rotation
+        The same rotations.
+
+    Raises
+    ------
+    InvalidInput
+        For a quaternion whose length is not 1 within 1e-6.
+    ImportError
+        Without SciPy.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.to_scipy([0.0, 0.0, 1.0, 0.0]).apply([1.0, 0.0, 0.0])
+    array([-1.,  0.,  0.])
+    """
+    from scipy.spatial.transform import Rotation
+
+    turns = rows("quaternion", quaternion, (4,))
+    return Rotation.from_quat(_core.rotation_form("normalized", turns.reshape(-1, 4)).reshape(turns.shape))

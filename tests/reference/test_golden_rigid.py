@@ -1,0 +1,93 @@
+"""Golden numbers of `golden.json` for rigid bodies, through `vv.rigid` (catalogue items 96–111).
+
+Comparisons are relative to 1e-13, the accuracy the file promises, unless the line says why not.
+"""
+
+from typing import Any
+
+import numpy as np
+import pytest
+from golden_cases import Golden, close
+
+import visviva as vv
+
+golden = Golden()
+
+
+@golden("G9.59-euler-angles")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    angles = [given["phi"], given["theta"], given["psi"]]
+    rates = [given["phi_dot"], given["theta_dot"], given["psi_dot"]]
+    q = vv.rigid.quaternion_from_euler(angles)
+    close(q, np.roll(expected["quaternion_body_to_space_wxyz"], -1))
+    close(vv.rigid.matrix(q).T, expected["lam"])
+    close(vv.rigid.rotate(q, [0.0, 0.0, 1.0]), expected["e3_in_space"])
+    close(vv.rigid.angular_velocity_from_euler(angles, rates), expected["omega_body"])
+    close(vv.rigid.angular_velocity_from_euler(angles, rates, frame="space"), expected["omega_space"])
+    close(vv.rigid.euler_angles(q), angles)
+    close(vv.rigid.euler_rates(angles, expected["omega_body"]), rates)
+
+
+@golden("G9.42-free-symmetric-top")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    a, c = given["A"], given["C"]
+    spin = [given["omega_perp"], 0.0, given["omega3"]]
+    out = vv.rigid.free_rotation([a, a, c], spin, [0.0, given["t"]])
+    path = vv.rigid.polhode([a, a, c], spin)
+    assert path.kind == "symmetric"
+    close(np.linalg.norm(out.angular_momentum, axis=-1), [expected["L"]] * 2)
+    close(path.precession_rate, expected["Omega"])
+    close(2 * np.pi / path.period, expected["body_precession"])
+    close(out.angular_velocity[1], [expected["w1"], expected["w2"], given["omega3"]])
+    close(out.energy, [expected["T"]] * 2)
+    # The axis goes round L by Ω t, at the angle of its cone.
+    axes = vv.rigid.rotate(out.orientation, [0.0, 0.0, 1.0])
+    along = out.angular_momentum[0] / expected["L"]
+    close(np.arccos(axes @ along), [expected["cone_angle"]] * 2)
+    turned = vv.rigid.rotate(vv.rigid.quaternion_from_rotation_vector(expected["Omega"] * given["t"] * along), axes[0])
+    close(axes[1], turned, scale=1.0)
+    velocity = vv.rigid.rotate(out.orientation, out.angular_velocity)
+    cosine = (velocity * axes).sum(axis=-1) / np.linalg.norm(velocity, axis=-1)
+    close(np.arccos(cosine), [expected["angle_omega_e3"]] * 2)
+    # ω = Ω L/|L| + ψ̇ e₃.
+    close(((velocity - expected["Omega"] * along) * axes).sum(axis=-1), [expected["psi_dot"]] * 2)
+
+
+@golden("G9.43-earth-wobble")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    rate = 2 * np.pi / given["day"]
+    period = vv.rigid.period([1.0, 1.0, given["C_over_A"]], [1e-6 * rate, 0.0, rate])
+    # C − A of the rounded C/A: 1/0.00328 times ε.
+    close(period, expected["period_s"])
+    close(period / 86400.0, expected["period_days"])
+
+
+@golden("G9.36-asymmetric-free")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    moments = [given["A"], given["B"], given["C"]]
+    out = vv.rigid.free_rotation(moments, given["omega0"], given["t"])
+    close(out.angular_velocity, [expected["w1"], expected["w2"], expected["w3"]])
+    close(out.energy, expected["T"])
+    close(out.angular_momentum @ out.angular_momentum, expected["L2"])
+    path = vv.rigid.polhode(moments, given["omega0"])
+    close(path.modulus**2, expected["modulus_m"])
+    close(path.period, expected["period"])
+
+
+@golden("G9.36-stability")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    moments, w, small = [given["A"], given["B"], given["C"]], given["w"], 1e-9
+    # Oscillations about the outer axes: 2π over the period, to the square of the displacement.
+    about = [vv.rigid.period(moments, w * axis + small * (1 - axis)) for axis in np.eye(3)]
+    close(2 * np.pi / about[0], expected["freq_about_A"])
+    close(2 * np.pi / about[2], expected["freq_about_C"])
+    # Away from the middle one: the rate of the hyperbolic functions, and twice the logarithm of the displacement.
+    path = vv.rigid.polhode(moments, [0.0, w, 1e-150])
+    close(path.rate, expected["growth_rate_about_B"])
+    further = vv.rigid.polhode(moments, [0.0, w, 1e-160])
+    close((further.flip_time - path.flip_time) / (2 * np.log(1e10)), 1 / expected["growth_rate_about_B"])
+
+
+@pytest.mark.parametrize("identifier", golden.checks)
+def test_golden(identifier: str) -> None:
+    golden.run(identifier)
