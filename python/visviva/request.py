@@ -70,9 +70,9 @@ def _step(name: str, value: object) -> float:
     if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
         raise InvalidInput(
             name,
-            "expected one number, the length of every step, got several: a symplectic method whose steps change from one "
-            "to the next is no symplectic map, and its energy drifts; give one dt and a time_transformation, which lets "
-            "steps change in time and keeps the map, or name an adaptive method such as dop853",
+            "expected one number, the length of every step, got several: a symplectic method whose steps change from "
+            "one to the next is no symplectic map, and its energy drifts; give one dt and a time_transformation, which "
+            "lets steps change in time and keeps the map, or name an adaptive method such as dop853",
         )
     return number(name, value)
 

@@ -51,15 +51,16 @@ class Runnable(ABC, Generic[_Result]):
         dt : float, optional
             The length of the step of a fixed-step method. It may be negative only in a run backwards in time.
         time_transformation : {"potential_energy", "distance"}, optional
-            For the steps of a symplectic method to change without losing what it is for: they are equal not in time but in
-            another time s with dt/ds = 1/Ω, and `dt` is the first of them. ``"distance"`` has Ω = Σ 1/r over pairs of
-            bodies one of which has mass (softened, where the forces are) and over centers of fields; it is reversible
-            under any forces of positions (and time) [1]_. ``"potential_energy"`` has Ω = −V, for bodies with mass under
-            `Gravity` and attractive Coulomb `CentralField` alone; it is symplectic, and two bodies stay on their conic to
-            round-off and err in time only [2]_ [3]_. A close encounter then takes as many steps as a distant one. For
-            methods with ``Method.time_transformation``; anything else is refused. Made for few bodies: all of them share a
-            step, but a massless one, which goes in a time of its own as if it were alone with those that have mass. A
-            state at a time between steps costs four of them. Another run on from ``final`` begins with `dt` again.
+            For the steps of a symplectic method to change without losing what it is for: they are equal not in time
+            but in another time, dt ∝ 1/Ω, and `dt` is the first of them; close encounters are resolved. ``"distance"``:
+            Ω = Σ 1/r over pairs of bodies one of which has mass (softened as the forces are) and over centers of
+            fields; reversible under any forces of places and time [1]_. ``"potential_energy"``: Ω = −V, of bodies with
+            mass under `Gravity` or in an attractive Coulomb `CentralField` and nothing else; symplectic [2]_ [3]_. With
+            compositions of leapfrogs (which then begin with a drift) two bodies stay on their conic to round-off and
+            err in time alone, through a collision, too. For methods with ``Method.time_transformation``; anything else
+            is refused. Made for few bodies, which share a step; a massless one has a time of its own, as if it were
+            alone with those that have mass. A state between steps costs four of them. Run on from ``final``, `dt` is
+            again the first step.
         rtol : float, optional
             Relative tolerance of an adaptive method, at least 2.3e-14; a fixed-step method has no use for it.
         atol : float, optional

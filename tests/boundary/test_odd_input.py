@@ -64,7 +64,9 @@ def test_the_core_itself_refuses_no_copies(shape: tuple[int, int]) -> None:
         "record": list(COLUMNS),
         "events": [],
     }
-    request |= dict.fromkeys(("dt", "time_transformation", "atol", "max_step", "max_steps"))
+    request |= dict.fromkeys(
+        ("dt", "time_transformation", "atol", "max_step", "max_steps", "collisions", "restitution")
+    )
     for call in (_core.plan, lambda asked: _core.run(asked, threads=None, progress=None, ensemble=True)):
         with pytest.raises(vv.InvalidInput, match="mass: expected at least one copy"):
             call(request)

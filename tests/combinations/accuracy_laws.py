@@ -10,7 +10,7 @@ from drawing import METHODS
 from law_book import EPSILON, law
 from recipe import Recipe, Refused
 from running import execute
-from solutions import change, sizes, solution, tame
+from solutions import change, sizes, solution, states, tame
 
 import visviva as vv
 from visviva.invariants import kept_by_forces
@@ -32,6 +32,20 @@ def two_methods_agree(recipe: Recipe) -> None:
     assert apart_v <= error_v + other_v, (
         f"{recipe.method} and {other}: {apart_v:.1e} apart, bounds {error_v:.1e} + {other_v:.1e}"
     )
+
+
+@law
+def steps_in_another_time_lead_to_the_same_motion(recipe: Recipe) -> None:
+    """Within what a step of half the length changes, and the bound of the other."""
+    case = tame(recipe)
+    span = abs(case.t[-1] - case.members()[0].t0)
+    how = {"method": "kahan_li8", "time_transformation": recipe.transformation or "distance"}
+    coarse, fine = (states(case, **how, dt=span / steps) for steps in (32, 64))
+    x, v, error_x, error_v = solution(case, "auto")
+    length, speed = sizes(case)
+    bounds = (error_x + 128 * EPSILON * length, error_v + 128 * EPSILON * speed)
+    for found, halved, bound in zip(change(fine, (x, v)), change(coarse, fine), bounds, strict=True):
+        assert found <= halved + bound, f"{found:.1e} apart, bounds {halved:.1e} + {bound:.1e}"
 
 
 @law

@@ -164,12 +164,12 @@ def test_what_does_not_go_together_is_refused_by_name() -> None:
     for method in vv.methods():
         if not method.time_transformation:
             how = {} if method.adaptive else {"dt": 0.01}
-            with pytest.raises(vv.InvalidInput, match="expected one of .*leapfrog.*kahan_li8") as refused:
+            with pytest.raises(vv.InvalidInput, match=r"expected one of .*leapfrog.*kahan_li8") as refused:
                 scene.run(1.0, method=method, time_transformation="distance", **how)
             assert refused.value.argument == "time_transformation"
     with pytest.raises(vv.InvalidInput, match="time_transformation: auto chooses its steps"):
         scene.run(1.0, time_transformation="distance")
-    with pytest.raises(vv.InvalidInput, match="expected one of 'potential_energy', 'distance'|potential_energy"):
+    with pytest.raises(vv.InvalidInput, match="potential_energy"):
         scene.run(1.0, method="leapfrog", dt=0.01, time_transformation="potential")  # type: ignore[arg-type]
     with pytest.raises(vv.InvalidInput, match="dt: leapfrog has a fixed step"):
         scene.run(1.0, method="leapfrog", time_transformation="distance")
@@ -178,7 +178,7 @@ def test_what_does_not_go_together_is_refused_by_name() -> None:
     with pytest.raises(vv.InvalidInput, match="expected no Spring; use distance"):
         spring.run(1.0, **how)
     massless = vv.Scene(vv.Particles([1.0, 1.0, 0.0], np.eye(3)), gravity)
-    with pytest.raises(vv.InvalidInput, match="does not see massless bodies.* use distance"):
+    with pytest.raises(vv.InvalidInput, match=r"does not see massless bodies.* use distance"):
         massless.plan(1.0, **how)
     with pytest.raises(vv.InvalidInput, match="massless bodies"):
         scene.ensemble(mass=[[1.0, 0.25], [1.0, 0.0]]).run(1.0, **how)
@@ -201,7 +201,7 @@ def test_collisions_are_refused() -> None:
 
 @pytest.mark.parametrize("asked", [{"dt": [0.1, 0.2]}, {"dt": 0.1, "max_step": 0.2}, {"dt": 0.1, "atol": 1e-9}])
 def test_a_naive_change_of_steps_is_refused_with_an_explanation(asked: dict[str, object]) -> None:
-    with pytest.raises(vv.InvalidInput, match="is no symplectic map, and .* energy drifts.*time_transformation"):
+    with pytest.raises(vv.InvalidInput, match=r"is no symplectic map, and .* energy drifts.*time_transformation"):
         kepler(0.5).run(1.0, method="leapfrog", **asked)  # type: ignore[arg-type]
 
 

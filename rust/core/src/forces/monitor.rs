@@ -96,6 +96,11 @@ impl InverseDistances {
 impl Monitor<Lanes> for InverseDistances {
     fn at(&mut self, q: &[Lanes], gradient: &mut [Lanes]) -> Lanes {
         gradient.fill(Lanes::zero());
+        // A body by itself moves in no time but time.
+        let paired = !self.pairs.is_empty() && self.active > 0 && self.active + self.passive > 1;
+        if !paired && self.centers.is_empty() {
+            return Lanes::one();
+        }
         let mut sum = Lanes::zero();
         for &pairs in &self.pairs {
             sum += match self.arrangement {

@@ -151,7 +151,7 @@ impl Plan {
             && !touching
             && serves(method, active.len());
         if let Some((by, _)) = transformed {
-            transformation::check(by, &forces, (active.len(), passive.len()), groups == Groups::All)?;
+            transformation::check(by, scene, falls)?;
         }
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {

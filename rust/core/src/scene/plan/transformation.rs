@@ -1,26 +1,22 @@
 //! Whether the forces of a scene have what a time transformation watches.
 
+use super::super::Scene;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::term::Coupling;
 use crate::ode::transformation::Transformation;
 use std::sync::Arc;
 
-/// Refuses forces that leave nothing to watch, or whose potential energy nobody adds up on the way.
+/// Refuses forces that leave nothing to watch, or whose potential energy nobody adds up on the way. `falls`: uniform fields
+/// move the origin. By what the forces are, whatever they do to the bodies of a copy: its fellows must not matter.
 ///
 /// # Errors
 /// By name, with what works.
-pub(super) fn check(
-    by: Transformation,
-    forces: &[Arc<dyn ForceTerm>],
-    (active, passive): (usize, usize),
-    coupled: bool,
-) -> Result<()> {
+pub(super) fn check(by: Transformation, scene: &Scene, falls: bool) -> Result<()> {
     let refused = |message: String| Err(Error::invalid("time_transformation", message));
-    let by_distance = |force: &Arc<dyn ForceTerm>| {
-        (coupled && force.coupling() == Coupling::AllPairs) || force.center().is_some()
-    };
-    if !forces.iter().any(by_distance) {
+    let forces = || scene.forces.iter().filter(|force| !falls || force.as_uniform().is_none());
+    let between = |force: &Arc<dyn ForceTerm>| force.coupling() == Coupling::AllPairs;
+    if !forces().any(|force| between(force) || force.center().is_some()) {
         return refused(format!(
             "{} watches bodies that all act on each other, or a center: expected Gravity, another force between all \
              pairs or a CentralField, got none; leave time_transformation out",
@@ -34,20 +30,20 @@ pub(super) fn check(
         force.as_newtonian().is_some_and(|(constant, _)| constant > 0.0)
             || force.as_inverse_distance_center().is_some_and(|(k, _)| k < 0.0)
     };
-    if let Some(other) = forces.iter().find(|force| !attracts(force)) {
+    if let Some(other) = forces().find(|force| !attracts(force)) {
         return refused(format!(
             "potential_energy watches the attraction of Gravity and of CentralField with Coulomb, negative everywhere, and \
              nothing else may act: expected no {}; use distance, which takes any force",
             other.declaration().class_name
         ));
     }
-    if coupled && passive > 0 {
+    if forces().any(between) && scene.mass.contains(&0.0) {
         return refused(
             "potential_energy does not see massless bodies, which have no energy; use distance, which does"
                 .to_owned(),
         );
     }
-    if coupled && active < 2 {
+    if scene.particles < 2 && forces().all(between) {
         return refused("potential_energy needs two bodies with mass; use distance".to_owned());
     }
     Ok(())
