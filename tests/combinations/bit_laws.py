@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from law_book import law
 from recipe import COLUMNS, Case, Recipe, Refused
-from running import TIERS, Bits, differences, events, execute, outcome, worker
+from running import TIERS, Bits, collisions, differences, events, execute, outcome, worker
 
 import visviva as vv
 
@@ -111,6 +111,7 @@ def a_member_is_as_if_alone(recipe: Recipe) -> None:
             assert np.isnan(mine[rows:]).all()
         cost = {name: int(values[index]) for name, values in result.per_trajectory.items()}
         other = differences(events(result[index], case.how), events(alone, case.how))
+        other += differences(collisions(result[index], case.how), collisions(alone, case.how))
         assert not other, f"member {index} of {len(scenes)}: other {', '.join(other)} than alone"
         own_cost = {name: getattr(alone.stats, name) for name in cost if hasattr(alone.stats, name)}
         assert own_cost == {name: cost[name] for name in own_cost}, f"member {index}: {cost}, alone {own_cost}"
@@ -148,7 +149,7 @@ def other_outputs_change_no_bit(recipe: Recipe) -> None:
     end = outcome(case.start, case.t[-1:], case.how)
     # Where numbers cease to be, the last state is that of the last output that has some.
     gone = full.get("status", b"")[-1:] in {bytes([vv.Status.STEP_FAILURE]), bytes([vv.Status.OUTSIDE_DOMAIN])}
-    kept = ("events",) if gone else ("final", "events")
+    kept = ("events", "collisions") if gone else ("final", "events", "collisions")
     of = ("ended", "status", *(name for name in full if name.startswith(kept)))
     _same(full, end, "the end alone", of=tuple(name for name in of if name in full))
     result, ended = execute(case.start, case.t, case.how)
@@ -178,6 +179,7 @@ def saved_and_loaded_nothing_changes(recipe: Recipe) -> None:
     for name in result.recorded:
         assert getattr(loaded, name).tobytes() == getattr(result, name).tobytes(), f"{name} is not what was saved"
     assert not differences(events(loaded, case.how), events(result, case.how)), "events are not what was saved"
+    assert not differences(collisions(loaded, case.how), collisions(result, case.how)), "other collisions"
     if case.how.get("events"):
         assert loaded.events.definitions == case.how["events"]
     assert str(loaded.plan) == str(result.plan)
@@ -224,7 +226,8 @@ def a_run_goes_on_with_the_bits_of_the_whole(recipe: Recipe) -> None:
 
     Without events that end the run: each leg counts its zeros anew.
     """
-    case = replace(recipe, terminal=0).case()
+    # The steps after a collision begin there: the nodes are others.
+    case = replace(recipe, terminal=0, collisions="").case()
     step = case.how.get("dt")
     if step is None or "time_transformation" in case.how:
         raise Refused("no fixed step")

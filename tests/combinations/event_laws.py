@@ -122,7 +122,9 @@ def a_located_event_is_a_zero_at_its_state(recipe: Recipe) -> None:
 def a_terminal_event_only_cuts(recipe: Recipe) -> None:
     """Up to its end the run and the table are those without an end, and the end is the event."""
     recipe = _watched(recipe)
-    recipe = replace(recipe, terminal=recipe.terminal or 1)
+    # Spheres that end a run are another end.
+    others = "" if recipe.collisions == "stop" else recipe.collisions
+    recipe = replace(recipe, terminal=recipe.terminal or 1, collisions=others)
     case = recipe.case()
     stopped, whole = _ran(case, case.how), _ran(case, _with(case, terminal=0))
     sign = -1.0 if recipe.backward else 1.0
@@ -163,7 +165,8 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
 @law
 def a_stopped_run_ends_where_the_whole_run_passes(recipe: Recipe) -> None:
     """`final` is the state that the run without an end has at that time, to round-off."""
-    recipe = _watched(replace(recipe, tame=True, members=0))
+    others = "" if recipe.collisions == "stop" else recipe.collisions
+    recipe = _watched(replace(recipe, tame=True, members=0, collisions=others))
     recipe = replace(recipe, terminal=recipe.terminal or 1)
     case = recipe.case()
     stopped = _ran(case, case.how)

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 COLUMNS = ("position", "velocity", "energy", "momentum", "angular_momentum", "center_of_mass")
-OWN = ("position", "velocity", "mass", "parameters", "numbers")
+OWN = ("position", "velocity", "mass", "radius", "parameters", "numbers")
 MAX_STEPS = 1500
 
 
@@ -60,6 +60,8 @@ class Recipe:
     columns: tuple[str, ...] = ("position", "velocity")
     events: tuple[tuple[str, int], ...] = ()
     terminal: int = 0  # the zero of the first of them with which the run ends; 0: none
+    collisions: str = ""  # what spheres do that touch; none are without
+    restitution: float = 1.0
     t0: float = 0.0
     backward: bool = False
 
@@ -118,7 +120,19 @@ def _scene(recipe: Recipe) -> vv.Scene:
     if recipe.drifting:
         velocity = velocity + np.array([0.25, -0.125, 0.0])
     forces = [force(name, seed, count, tame=recipe.tame) for name, seed in recipe.forces]
-    return vv.Scene(vv.Particles(mass, position, velocity), *forces)
+    return vv.Scene(vv.Particles(mass, position, velocity, radius=_radii(recipe, position)), *forces)
+
+
+def _radii(recipe: Recipe, position: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Spheres that almost reach their neighbours, and points; those of some members overlap, which is refused."""
+    count = len(position)
+    if not recipe.collisions or count < 2:
+        return np.zeros(count)
+    rng = np.random.default_rng(recipe.seed + 7)
+    apart = np.linalg.norm(position[:, None] - position, axis=-1)
+    np.fill_diagonal(apart, np.inf)
+    radius: NDArray[np.float64] = 0.47 * apart.min(axis=1) * rng.uniform(0.2, 1.0, count) * rng.choice([0, 1, 1], count)
+    return radius
 
 
 def _span(scene: vv.Scene, *, tame: bool) -> float:
@@ -172,6 +186,10 @@ def _case(recipe: Recipe) -> Case:
         how["dt"] = step
         if recipe.transformation and method.time_transformation:
             how |= {"time_transformation": recipe.transformation, "max_steps": MAX_STEPS}
+    if recipe.collisions:
+        how["collisions"] = recipe.collisions
+    if recipe.collisions == "bounce":
+        how["restitution"] = recipe.restitution
     if recipe.events:
         looked_for = [event(name, seed, scene, sign * end) for name, seed in recipe.events]
         how["events"] = (replace(looked_for[0], terminal=recipe.terminal), *looked_for[1:])
@@ -249,6 +267,7 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
     members = draw(_some((3, st.just(0)), (2, st.integers(1, 12)), (1, st.integers(13, 40))))
     if members * bodies > 240:
         members = max(1, 240 // bodies)
+    collisions = draw(_some((3, st.just("")), (1, st.sampled_from(["bounce", "merge", "stop"]))))
     powers = st.integers(-60, 60) if mild else st.integers(-330, 330)
     names = sorted(FORCES)
     # By weights: a list of up to three is empty in half of the scenes.
@@ -285,6 +304,8 @@ def recipes(draw: st.DrawFn, *, tame: bool | None = None) -> Recipe:
         outputs=draw(st.integers(0, 6)),
         columns=tuple(draw(st.lists(st.sampled_from(COLUMNS), unique=True, min_size=1))),
         events=events,
+        collisions=collisions,
+        restitution=draw(st.sampled_from([1.0, 1.0, 0.5, 0.0])),
         terminal=draw(_some((2, st.just(0)), (1, st.integers(1, 2)))),
         t0=draw(_some((2, st.just(0.0)), (1, st.floats(-100.0, 100.0)))),
         backward=draw(_some((2, st.just(False)), (1, st.just(True)))),

@@ -58,7 +58,7 @@ def outcome(start: Any, t: tuple[float, ...], how: dict[str, Any]) -> Bits:
     if result is None:
         return {"ended": ended}
     columns = {name: getattr(result, name) for name in result.recorded}
-    found = _bits(t=result.t, **columns) | events(result, how)
+    found = _bits(t=result.t, **columns) | events(result, how) | collisions(result, how)
     if isinstance(start, vv.Scene):
         found |= {"ended": ended, **_bits(status=np.int8(result.status)), **final(result)}
         found["steps"] = f"{result.stats.steps} {result.stats.rejected} {result.stats.evaluations}"
@@ -76,12 +76,19 @@ def events(result: Any, how: dict[str, Any]) -> Bits:
     return {f"events {name}": value for name, value in _bits(**columns).items()}
 
 
+def collisions(result: Any, how: dict[str, Any]) -> Bits:
+    """The table of spheres that touched, if they were looked for."""
+    if not how.get("collisions"):
+        return {}
+    columns = {name: getattr(result.collisions, name) for name in ("t", "first", "second", "speed", "position")}
+    columns |= {name: getattr(result.collisions, name) for name in ("energy_lost", "survivor", "member")}
+    return {f"collisions {name}": value for name, value in _bits(**columns).items()}
+
+
 def final(result: Any) -> Bits:
     end = result.final
-    return {
-        f"final {name}": value
-        for name, value in _bits(t0=end.t0, position=end.particles.position, velocity=end.particles.velocity).items()
-    }
+    states = {name: getattr(end.particles, name) for name in ("mass", "radius", "position", "velocity")}
+    return {f"final {name}": value for name, value in _bits(t0=end.t0, **states).items()}
 
 
 def differences(first: Bits, second: Bits, *, of: tuple[str, ...] | None = None) -> list[str]:

@@ -125,5 +125,5 @@ def tame(recipe: Recipe) -> Case:
     offset = min(recipe.offset, 3) if fixed else recipe.offset
     # Run backward this drag makes a body infinitely fast in a finite time.
     forward = any(name == "QuadraticDrag" for name, _ in recipe.forces)
-    how: dict[str, Any] = {"ragged": False, "outputs": 0, "steps": 16, "decades": 9, "offset": offset}
+    how: dict[str, Any] = {"collisions": "", "ragged": False, "outputs": 0, "steps": 16, "decades": 9, "offset": offset}
     return replace(recipe, tame=True, backward=recipe.backward and not forward, **how).case()

@@ -36,6 +36,7 @@ pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tic
         None => plan_through(scene, &looking(scene, request.events.clone()), ticker)?,
     };
     rule.check(scene, plan.direction)?;
+    (0..scene.copies).try_for_each(|copy| check_overlaps(scene, copy, rule))?;
     Ok(plan)
 }
 
@@ -45,9 +46,6 @@ pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tic
 /// As [`run`](crate::scene::run::run); spheres that overlap at the start.
 pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Ticker<'_>) -> Result<Output> {
     let mut plan = plan(scene, request, rule, ticker)?;
-    for copy in 0..scene.copies {
-        check_overlaps(scene, copy, rule)?;
-    }
     let copies = scene.copies;
     let threads = if request.events.iter().any(Event::calls) { 1 } else { request.threads.min(copies) };
     if copies > 1 {
