@@ -29,7 +29,8 @@ def _transformed(case: Case, change: Callable[[vv.Scene], vv.Scene], *, time: fl
         raise Refused(error.argument) from error
     start: Any = scenes[0]
     if not case.alone:
-        stacked = {n: np.stack([getattr(s.particles, n) for s in scenes]) for n in ("mass", "position", "velocity")}
+        names = ("mass", "position", "velocity", "radius")
+        stacked = {name: np.stack([getattr(scene.particles, name) for scene in scenes]) for name in names}
         start = scenes[0].ensemble(**stacked)._own(tuple(scene.forces for scene in scenes))
     how = case.how | ({"dt": case.how["dt"] * time} if "dt" in case.how else {})
     return Case(start, tuple(t * time for t in case.t), how)
