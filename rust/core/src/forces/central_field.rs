@@ -2,7 +2,8 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
-use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm, check_force, outside};
+use super::limits::{check_force, outside};
+use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;

@@ -16,6 +16,7 @@ pub mod drag;
 pub mod driven_force;
 pub mod gravity;
 pub mod harmonic;
+mod limits;
 pub mod linear_drag;
 pub mod links;
 pub mod monitor;

@@ -10,7 +10,8 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context};
 use super::gravity::RING_MAX;
-use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm, check_force, outside};
+use super::limits::{check_force, outside};
+use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;

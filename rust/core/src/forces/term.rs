@@ -12,7 +12,6 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
-use crate::potentials::Potential;
 use crate::potentials::parameters::Declaration;
 use crate::units::Units;
 use crate::words::number;
@@ -340,34 +339,6 @@ pub fn check_masses(term: &dyn ForceTerm, bodies: &Bodies<'_>) -> Result<()> {
             ),
         )),
     }
-}
-
-/// Refuses a potential that jumps.
-///
-/// # Errors
-/// By name.
-pub(super) fn check_force(force: &str, potential: &dyn Potential) -> Result<()> {
-    if !potential.jumps() {
-        return Ok(());
-    }
-    let class = potential.declaration().class_name;
-    let expected = format!("{force} expected a potential with a finite force, and {class} jumps");
-    Err(Error::invalid("potential", format!("{expected}; use a smooth one, as SoftSphere or Morse")))
-}
-
-/// The refusal of bodies at a distance at which a potential is not.
-pub(super) fn outside(
-    force: &str,
-    potential: &dyn Potential,
-    (first, last): (f64, f64),
-    bodies: &str,
-) -> Error {
-    let class = potential.declaration().class_name;
-    let (first, last) = (number(first), number(last));
-    Error::invalid(
-        "position",
-        format!("{force} has a {class} that is known from {first} to {last} only, and {bodies}; move one"),
-    )
 }
 
 /// What all the forces together leave constant of these bodies.

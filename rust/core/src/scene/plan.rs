@@ -20,18 +20,16 @@ use super::frame::{Frame, Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
 use crate::ode::Method;
-use crate::ode::system::{Form, Needs};
 use crate::ode::transformation::Transformation;
 use crate::parallel::Ticker;
-use crate::registry::METHODS;
 use kinds::kinds_of_forces;
-use own::{Own, about, acting};
+use own::{Own, about, acting, check_method};
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -386,24 +384,6 @@ fn units(scene: &Scene, copy: usize, frame: Frame, groups: &Groups, span: f64) -
     let frame =
         if matches!(frame, Frame::Falling(_)) && *groups != Groups::Single { frame } else { Frame::Given };
     Units::of(scene, copy, &frame.origin(scene, copy, 0..scene.particles), span)
-}
-
-/// Refuses a method that cannot take what a force looks at.
-fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
-    // The numbers of a state do not matter here.
-    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
-    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
-    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
-    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
-    Err(Error::invalid(
-        "method",
-        format!(
-            "{} cannot take {}, which looks at velocities; expected one of {}",
-            method.name,
-            force.declaration().class_name,
-            others.collect::<Vec<_>>().join(", ")
-        ),
-    ))
 }
 
 /// Whether massless bodies feel the force along a path of the massive ones, or without them; listed pairs have mass.

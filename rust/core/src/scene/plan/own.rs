@@ -2,10 +2,11 @@
 
 use super::super::Scene;
 use super::super::frame::Frame;
-use super::check_method;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::Method;
+use crate::ode::system::{Form, Needs};
+use crate::registry::METHODS;
 use std::sync::Arc;
 
 /// The forces, of some, that do anything in this scene.
@@ -55,4 +56,22 @@ pub(super) fn about(forces: Vec<Arc<dyn ForceTerm>>, integrates: bool) -> (Vec<A
     let falls = matches!(frame, Frame::Falling(_));
     let left = forces.into_iter().filter(|force| !falls || force.as_uniform().is_none());
     (left.collect(), frame)
+}
+
+/// Refuses a method that cannot take what a force looks at.
+pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
+    // The numbers of a state do not matter here.
+    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
+    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
+    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
+    Err(Error::invalid(
+        "method",
+        format!(
+            "{} cannot take {}, which looks at velocities; expected one of {}",
+            method.name,
+            force.declaration().class_name,
+            others.collect::<Vec<_>>().join(", ")
+        ),
+    ))
 }
