@@ -84,6 +84,8 @@ def halved(
     case: Case, name: str, order: int, floors: tuple[float, float]
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], float, float]:
     """As `solution`, of a method with fixed steps: shorter ones are tried where the first do not resolve the scene."""
+    if rough(case):
+        raise Refused("a higher derivative jumps or is not finite, where no method has its order")
     span = abs(case.t[-1] - case.members()[0].t0)
     fall = 2.0 ** min(order, 6) / 2.0
     for counts in ((16, 32, 64), (64, 128, 256), (256, 512, 1024)):
@@ -109,16 +111,19 @@ def halved(
     return third[0], third[1], room * late[0] + floors[0], room * late[1] + floors[1]
 
 
+def rough(case: Case) -> bool:
+    """Whether a higher derivative of a potential, or of a drag, jumps or is not finite."""
+    forces = case.members()[0].forces
+    potentials = {type(getattr(force, "potential", None)).__name__ for force in forces}
+    return bool(potentials & ROUGH or {type(force).__name__ for force in forces} & ROUGH_FORCES)
+
+
 def change(first: Any, second: Any) -> tuple[float, float]:
     return tuple(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(first, second, strict=True))  # type: ignore[return-value]
 
 
 def tame(recipe: Recipe) -> Case:
     """The same scene at a span and a method of this law's choosing."""
-    if any(type(getattr(force, "potential", None)).__name__ in ROUGH for force in recipe.case().members()[0].forces):
-        raise Refused("a higher derivative of the potential jumps, where no method has its order")
-    if any(name in ROUGH_FORCES for name, _ in recipe.forces):
-        raise Refused("a higher derivative of the drag is not finite at rest, or jumps")
     drawn = [FORCES[name.partition("/")[0]] for name, _ in recipe.forces]
     # What is fixed in space fixes the origin: 1e8 away the given positions have digits to 1e-8 alone.
     fixed = any(parameter["kind"] == "point" for force in drawn for parameter in declared(force))

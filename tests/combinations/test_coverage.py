@@ -41,11 +41,14 @@ def refusal(law: str, recipe: Recipe) -> str:
 SEEDS = range(12)
 
 
-def declares(name: str, what: str) -> bool:
-    """Whether one of those forces leaves that constant, of bodies that all have mass. A damper may damp nothing."""
-    bodies = vv.Particles(np.ones(4), np.random.default_rng(1).normal(size=(4, 3)))
-    drawn = (force(name, seed, 4, tame=True) for seed in SEEDS)
-    return any(kept_by_forces(vv.Scene(bodies, one), np.zeros(3))[what] for one in drawn)
+def declares(name: str, what: str, *, acting: bool = False) -> bool:
+    """Whether one of those forces leaves that constant, of bodies that all have mass. A damper may damp nothing: those
+    that do nothing count, or not."""
+    bodies = vv.Particles(np.ones(4), np.random.default_rng(1).normal(size=(4, 3)), np.eye(4)[:, :3])
+    scenes = [vv.Scene(bodies, force(name, seed, 4, tame=True)) for seed in SEEDS]
+    if acting:
+        scenes = [scene for scene in scenes if accelerates(scene) and scene.acceleration().any()]
+    return any(kept_by_forces(scene, np.zeros(3))[what] for scene in scenes)
 
 
 def takes_massless(name: str) -> bool:
@@ -65,7 +68,7 @@ def accelerates(scene: vv.Scene) -> bool:
 # Of each law: what a force must declare to be asked, and why the others are not.
 SPARED: dict[str, tuple[Callable[[str], bool], str]] = {
     "action_is_reaction": (
-        lambda name: declares(name, "momentum"),
+        lambda name: declares(name, "momentum", acting=True),
         "what moves each body for itself has its reaction outside of the scene",
     ),
     "forces_follow_from_the_energy": (
@@ -144,9 +147,9 @@ def test_every_force_is_judged_with_every_method_that_takes_it(name: str) -> Non
     for method in METHODS:
         reasons = set()
         for seed in SEEDS:
-            reasons.add(
-                refusal("two_methods_agree", Recipe(method=method, bodies=3, forces=((name, seed),), seed=seed))
-            )
+            recipe = Recipe(method=method, bodies=3, forces=((name, seed),), seed=seed)
+            # Where a derivative jumps no fixed step has its order, but it has its frames.
+            reasons |= {refusal(law, recipe) for law in ("two_methods_agree", "a_scene_moves_alike_in_another_frame")}
             if "" in reasons:
                 break
         else:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -42,12 +43,11 @@ def action_is_reaction(recipe: Recipe) -> None:
     """
     drawn = [force(name, seed, 2, tame=recipe.tame) for name, seed in recipe.forces]
     pair = _alone(recipe, bodies=2, massless=0, forces=())
-    kept = [kept_by_forces(vv.Scene(pair.particles, one), np.zeros(3)) for one in _acting(drawn, pair)]
-    if not any(keeps["momentum"] for keeps in kept):
+    kept = [(one, kept_by_forces(vv.Scene(pair.particles, one), np.zeros(3))) for one in _acting(drawn, pair)]
+    between_bodies = [(one, keeps) for one, keeps in kept if keeps["momentum"]]
+    if not between_bodies:
         raise Refused("no force between bodies")
-    for one, keeps in zip(_acting(drawn, pair), kept, strict=True):
-        if not keeps["momentum"]:
-            continue
+    for one, keeps in between_bodies:
         given = _forces(vv.Scene(pair.particles, one, t0=pair.t0))
         if not np.isfinite(given).all():
             raise Refused("beyond float64")
@@ -75,14 +75,12 @@ def action_is_reaction(recipe: Recipe) -> None:
 
 
 def _acting(drawn: list[Any], pair: vv.Scene) -> list[Any]:
-    """Those that this pair is not refused by."""
+    """Those that refuse no body of this pair, and do something to one."""
     acting = []
     for one in drawn:
-        try:
-            vv.Scene(pair.particles, one).acceleration()
-        except vv.InvalidInput:
-            continue
-        acting.append(one)
+        with contextlib.suppress(vv.InvalidInput):
+            if vv.Scene(pair.particles, one).acceleration().any():
+                acting.append(one)
     return acting
 
 
