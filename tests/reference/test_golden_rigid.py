@@ -88,6 +88,55 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close((further.flip_time - path.flip_time) / (2 * np.log(1e10)), 1 / expected["growth_rate_about_B"])
 
 
+@golden("G9.14-inertia-tensor")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    masses, places = np.array(given["m"]), np.array(given["r"])
+    tensor = vv.rigid.inertia_tensor(masses, places)
+    close(tensor, expected["I"])
+    close(tensor @ given["omega"], expected["L"])
+    close(0.5 * np.dot(given["omega"], tensor @ given["omega"]), expected["T"])
+    close(vv.rigid.principal_axes(tensor).moments, expected["principal_moments"])
+    body = vv.rigid.particles(masses, places)
+    close(body.tensor, expected["I_cm"])
+    # The particles' center of mass comes to a of the new origin.
+    close(vv.rigid.parallel_axis(body.tensor, body.mass, given["a"]), expected["J_shifted"])
+
+
+@golden("G9.29-cube-corner")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    s = given["s"]
+    cube = vv.rigid.box(given["M"], s, s, s).moved([s / 2, s / 2, s / 2])
+    tensor = cube.about([0.0, 0.0, 0.0])
+    close(tensor.diagonal(), [expected["I_diag"]] * 3)
+    close([tensor[0, 1], tensor[1, 2], tensor[2, 0]], [expected["I_off"]] * 3)
+    close(vv.rigid.principal_axes(tensor).moments, expected["principal"])
+
+
+@golden("G9.14-solids")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    m, a, b, c = (given[name] for name in "Mabc")
+    radius, inner, h = given["R"], given["r"], given["h"]
+
+    def pair(body: vv.rigid.MassProperties, low: float = 0.0) -> list[float]:
+        tensor = body.about([0.0, 0.0, low])
+        return [tensor[0, 0], tensor[2, 2]]
+
+    close(vv.rigid.box(m, a, b, c).tensor.diagonal(), expected["cuboid"])
+    close(vv.rigid.ellipsoid(m, a, b, c).tensor.diagonal(), expected["solid_ellipsoid_semiaxes_abc"])
+    close(pair(vv.rigid.sphere(m, radius)), [expected["solid_sphere"]] * 2)
+    close(pair(vv.rigid.sphere(m, radius, inner_radius=radius)), [expected["shell"]] * 2)
+    close(pair(vv.rigid.cylinder(m, radius, h)), expected["solid_cylinder"])
+    close(pair(vv.rigid.cylinder(m, radius, h, inner_radius=inner))[1], expected["hollow_cylinder_axis"])
+    close(pair(vv.rigid.cone(m, radius, h), 0.75 * h), expected["solid_cone_apex"])
+    close(pair(vv.rigid.cone(m, radius, h)), expected["solid_cone_cm"])
+    close(pair(vv.rigid.rod(m, h))[0], expected["rod_centre_length_h"])
+    close(pair(vv.rigid.rod(m, h), h / 2)[0], expected["rod_end_length_h"])
+    close(pair(vv.rigid.disc(m, radius)), expected["disc"])
+    close(pair(vv.rigid.disc(m, radius, inner_radius=radius)), expected["ring"])
+    close(pair(vv.rigid.torus(m, radius, inner)), expected["torus_major_R_minor_r"])
+    close(pair(vv.rigid.hemisphere(m, radius)), expected["solid_hemisphere_cm"])
+
+
 @pytest.mark.parametrize("identifier", golden.checks)
 def test_golden(identifier: str) -> None:
     golden.run(identifier)

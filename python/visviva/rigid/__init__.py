@@ -1,4 +1,4 @@
-"""Rigid bodies: orientation, and the motions that are known at every time.
+"""Rigid bodies: mass properties, orientation, and the motions that are known at every time.
 
 Conventions: quaternions are (x, y, z, w), the scalar last, as SciPy has them; they rotate from the body to space. Euler
 angles are z–x–z (φ, θ, ψ) about axes that move with the body (``"ZXZ"``) unless another convention is named. Angles are
@@ -8,6 +8,17 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
+from visviva.rigid._mass import (
+    MassProperties,
+    PrincipalAxes,
+    composite,
+    inertia_tensor,
+    parallel_axis,
+    particles,
+    principal_axes,
+    rotate_tensor,
+)
+from visviva.rigid._mesh import load_mesh, mesh
 from visviva.rigid._orientation import (
     from_scipy,
     matrix,
@@ -20,28 +31,64 @@ from visviva.rigid._orientation import (
     to_scipy,
 )
 from visviva.rigid._polhode import Polhode, flip_time, period, polhode, precession_rate
+from visviva.rigid._solids import (
+    box,
+    capsule,
+    cone,
+    cylinder,
+    disc,
+    ellipsoid,
+    hemisphere,
+    plate,
+    rod,
+    sphere,
+    tetrahedron,
+    torus,
+)
 
 __all__ = [
     "FreeRotation",
+    "MassProperties",
     "Polhode",
+    "PrincipalAxes",
     "angular_velocity_from_euler",
+    "box",
+    "capsule",
+    "composite",
+    "cone",
+    "cylinder",
+    "disc",
+    "ellipsoid",
     "euler_angles",
     "euler_rates",
     "flip_time",
     "free_rotation",
     "from_scipy",
+    "hemisphere",
+    "inertia_tensor",
+    "load_mesh",
     "matrix",
+    "mesh",
+    "parallel_axis",
+    "particles",
     "period",
+    "plate",
     "polhode",
     "precession_rate",
+    "principal_axes",
     "quaternion_from_euler",
     "quaternion_from_matrix",
     "quaternion_from_rotation_vector",
     "quaternion_product",
+    "rod",
     "rotate",
     "rotate_back",
+    "rotate_tensor",
     "rotation_vector",
+    "sphere",
+    "tetrahedron",
     "to_scipy",
+    "torus",
 ]
 
 

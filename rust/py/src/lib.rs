@@ -13,6 +13,7 @@ mod errors;
 mod fitted;
 mod gate;
 mod info;
+mod mass;
 mod orbits;
 mod registry;
 mod rigid;
@@ -37,6 +38,11 @@ mod _core {
     use crate::fitted::{fitted, tabulated_drag};
     #[pymodule_export]
     use crate::info::info;
+    #[pymodule_export]
+    use crate::mass::{
+        bodies_together, mesh_enclosed, particles_tensor, principal_axes, solid_tensor, tensor_about,
+        tensor_rotated,
+    };
     #[pymodule_export]
     use crate::orbits::{
         conic_from_constants, conic_from_state, orbit_anomaly, orbit_elements, orbit_free_fall_time,

@@ -9,7 +9,6 @@ use super::quaternion::{Matrix, Quaternion, cross, dot, product};
 use crate::error::{Error, Result};
 use crate::numerics::angles::{atan2_parts, sin_cos};
 use crate::numerics::double_double::DoubleDouble;
-use core::f64::consts::PI;
 
 /// About which axes the three angles turn.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -38,9 +37,9 @@ fn turned(v: [f64; 3], about: usize, angle: f64) -> [f64; 3] {
 
 fn within_a_turn(angle: DoubleDouble) -> f64 {
     let turn = DoubleDouble::PI.scale(2.0);
-    if angle.high() > PI {
+    if angle > DoubleDouble::PI {
         (angle - turn).to_f64()
-    } else if angle.high() <= -PI {
+    } else if angle <= -DoubleDouble::PI {
         (angle + turn).to_f64()
     } else {
         angle.to_f64()
@@ -173,7 +172,7 @@ impl Convention {
 mod tests {
     use super::super::quaternion::{conjugate, matrix, rotated};
     use super::*;
-    use core::f64::consts::FRAC_PI_2;
+    use core::f64::consts::{FRAC_PI_2, PI};
 
     fn all() -> Vec<String> {
         let mut names = Vec::new();

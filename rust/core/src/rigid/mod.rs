@@ -2,5 +2,8 @@
 
 pub mod conventions;
 pub mod free;
+pub mod mesh;
 pub mod moments;
 pub mod quaternion;
+pub mod solids;
+pub mod tensor;

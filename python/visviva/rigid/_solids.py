@@ -1,0 +1,396 @@
+"""Solids and shells of uniform density, with their centers of mass at the origin and their axes along z."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import float_array, number, positive
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.rigid._mass import MassProperties
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+
+def _solid(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
+    if not isinstance(shell, bool | np.bool_):
+        raise InvalidInput("shell", f"expected True or False, got {shell!r}")
+    weight = positive("mass", mass, "mass")
+    checked = [number(name, value) for name, value in lengths.items()]
+    tensor = _core.solid_tensor(kind + "_shell" if shell else kind, weight, checked)
+    return MassProperties(weight, np.zeros(3), tensor)
+
+
+@known_keywords
+def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> MassProperties:
+    """Give a box with sides a, b, c along x, y, z; as a shell, its six faces.
+
+    Parameters
+    ----------
+    mass, a, b, c : float
+        Positive.
+    shell : bool
+        Whether the mass is on the surface, evenly.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.box(12.0, 1.0, 2.0, 3.0).principal_axes().moments
+    array([ 5., 10., 13.])
+    """
+    return _solid("box", mass, shell=shell, a=a, b=b, c=c)
+
+
+@known_keywords
+def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
+    """Give a sphere, solid, hollow, or with ``inner_radius=radius`` a thin shell.
+
+    Parameters
+    ----------
+    mass, radius : float
+        Positive.
+    inner_radius : float
+        Of the hollow, from 0 to the radius.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length out of range.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.sphere(5.0, 1.0).tensor[0, 0], vv.rigid.sphere(3.0, 1.0, inner_radius=1.0).tensor[0, 0]
+    (np.float64(2.0), np.float64(2.0))
+    """
+    return _solid("sphere", mass, radius=radius, inner_radius=inner_radius)
+
+
+@known_keywords
+def hemisphere(mass: float, radius: float) -> MassProperties:
+    """Give a solid half of a sphere; its center of mass is 3/8 of the radius from the disc.
+
+    Parameters
+    ----------
+    mass, radius : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the center of mass.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.hemisphere(5.0, 1.0).tensor.diagonal()
+    array([1.296875, 1.296875, 2.      ])
+    """
+    return _solid("hemisphere", mass, radius=radius)
+
+
+@known_keywords
+def ellipsoid(mass: float, a: float, b: float, c: float) -> MassProperties:
+    """Give a solid ellipsoid with the semi-axes a, b, c along x, y, z.
+
+    Parameters
+    ----------
+    mass, a, b, c : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.ellipsoid(5.0, 1.0, 2.0, 3.0).tensor.diagonal()
+    array([13., 10.,  5.])
+    """
+    return _solid("ellipsoid", mass, a=a, b=b, c=c)
+
+
+@known_keywords
+def cylinder(
+    mass: float, radius: float, height: float, *, inner_radius: float = 0.0, shell: bool = False
+) -> MassProperties:
+    """Give a cylinder: solid, a pipe with an inner radius, or as a shell the wall with both discs.
+
+    Parameters
+    ----------
+    mass, radius, height : float
+        Positive.
+    inner_radius : float
+        Of a pipe, from 0 to the radius; with the radius itself, a thin wall without discs.
+    shell : bool
+        Whether the mass is on the whole surface, evenly.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length out of range, or a shell with an inner radius.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.cylinder(12.0, 1.0, 2.0).tensor.diagonal()
+    array([7., 7., 6.])
+    """
+    if not shell:
+        return _solid("cylinder", mass, shell=shell, radius=radius, height=height, inner_radius=inner_radius)
+    if inner_radius != 0.0:
+        raise InvalidInput("inner_radius", f"expected 0 of a shell, got {inner_radius!r}")
+    return _solid("cylinder", mass, shell=shell, radius=radius, height=height)
+
+
+@known_keywords
+def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> MassProperties:
+    """Give a cone with its apex up; its center of mass is 1/4 of the height (of a shell 1/3) above its base.
+
+    Parameters
+    ----------
+    mass, radius, height : float
+        Positive.
+    shell : bool
+        Whether the mass is on the side, evenly, without the base.
+
+    Returns
+    -------
+    MassProperties
+        About the center of mass.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.cone(80.0, 1.0, 2.0).tensor.diagonal()
+    array([24., 24., 24.])
+    """
+    return _solid("cone", mass, shell=shell, radius=radius, height=height)
+
+
+@known_keywords
+def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -> MassProperties:
+    """Give a cylinder of that height between two half spheres.
+
+    Parameters
+    ----------
+    mass, radius, height : float
+        Positive; the height is that of the cylinder alone.
+    shell : bool
+        Whether the mass is on the surface, evenly.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.capsule(10.0, 1.0, 2.0).tensor.diagonal().round(12)
+    array([12.1, 12.1,  4.6])
+    """
+    return _solid("capsule", mass, shell=shell, radius=radius, height=height)
+
+
+@known_keywords
+def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool = False) -> MassProperties:
+    """Give a ring of circular cross-section about z.
+
+    Parameters
+    ----------
+    mass, major_radius, minor_radius : float
+        Positive: the radius of the circle that the middle of the ring is, and that of its cross-section, which is not
+        larger.
+    shell : bool
+        Whether the mass is on the surface, evenly.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length out of range.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.torus(8.0, 2.0, 1.0).tensor.diagonal()
+    array([21., 21., 38.])
+    """
+    return _solid("torus", mass, shell=shell, major_radius=major_radius, minor_radius=minor_radius)
+
+
+@known_keywords
+def rod(mass: float, length: float) -> MassProperties:
+    """Give a thin rod along z, which has no moment about itself.
+
+    Parameters
+    ----------
+    mass, length : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the middle.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.rod(12.0, 1.0).tensor.diagonal()
+    array([1., 1., 0.])
+    """
+    return _solid("rod", mass, length=length)
+
+
+@known_keywords
+def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
+    """Give a thin disc across z, with a hole of the inner radius; with ``inner_radius=radius`` a thin ring.
+
+    Parameters
+    ----------
+    mass, radius : float
+        Positive.
+    inner_radius : float
+        From 0 to the radius.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length out of range.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.disc(4.0, 1.0).tensor.diagonal()
+    array([1., 1., 2.])
+    """
+    return _solid("disc", mass, radius=radius, inner_radius=inner_radius)
+
+
+@known_keywords
+def plate(mass: float, a: float, b: float) -> MassProperties:
+    """Give a thin rectangle with sides a, b along x, y.
+
+    Parameters
+    ----------
+    mass, a, b : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.plate(12.0, 1.0, 2.0).tensor.diagonal()
+    array([4., 1., 5.])
+    """
+    return _solid("plate", mass, a=a, b=b)
+
+
+@known_keywords
+def tetrahedron(mass: float, vertices: ArrayLike) -> MassProperties:
+    """Give a solid tetrahedron.
+
+    Parameters
+    ----------
+    mass : float
+        Positive.
+    vertices : array_like, shape (4, 3)
+        Its corners, in any order; flat ones are taken as the limit they are.
+
+    Returns
+    -------
+    MassProperties
+        With its center of mass where it is.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass that is not positive, or another shape.
+
+    Notes
+    -----
+    Second moments of a tetrahedron are those of m/20 at each corner and 4m/5 at the center (Tonon 2005).
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> vv.rigid.tetrahedron(80.0, [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]]).tensor.round(12)
+    array([[6., 1., 1.],
+           [1., 6., 1.],
+           [1., 1., 6.]])
+    """
+    weight, corners = positive("mass", mass, "mass"), float_array("vertices", vertices, (4, 3))
+    five = np.vstack([corners, corners[0] + (corners - corners[0]).mean(axis=0)])
+    masses = weight * np.array([0.05, 0.05, 0.05, 0.05, 0.8])
+    _, center, tensor = _core.bodies_together(masses, five, np.zeros((5, 9)))
+    return MassProperties(weight, center, tensor)

@@ -1,0 +1,312 @@
+"""Mass properties: against integrals by quadrature, against each other, far from the origin, and what is refused."""
+
+import itertools
+import sys
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+
+import visviva as vv
+
+EPSILON = np.finfo(float).eps
+RADIUS, HEIGHT, INNER = 0.7, 1.3, 0.4
+
+
+def revolved(weight, across, along, center=0.0):
+    """Moments (transverse, axial) about the center of mass, per mass, of ∫ weight ds with such second moments."""
+    mass, first = quad(weight, 0, 1)[0], quad(lambda s: weight(s) * along(s), 0, 1)[0]
+    middle = first / mass
+    assert middle == pytest.approx(center, abs=1e-12)
+    x = quad(lambda s: weight(s) * across(s), 0, 1)[0] / mass
+    z = quad(lambda s: weight(s) * (along(s) - middle) ** 2, 0, 1)[0] / mass
+    return x + z, 2 * x
+
+
+def stacked(radius, low, high, hole=lambda z: 0.0, center=0.0):
+    """Of discs (with holes) from low to high."""
+
+    def place(s):
+        return low + (high - low) * s
+
+    def area(s):
+        return radius(place(s)) ** 2 - hole(place(s)) ** 2
+
+    return revolved(area, lambda s: (radius(place(s)) ** 2 + hole(place(s)) ** 2) / 4, place, center)
+
+
+def capsule_radius(z):
+    past = max(abs(z) - HEIGHT / 2, 0.0)
+    return np.sqrt(max(RADIUS**2 - past**2, 0.0))
+
+
+def ring(sign):
+    return lambda z: RADIUS + sign * np.sqrt(max(INNER**2 - z * z, 0.0))
+
+
+SOLIDS = {
+    "sphere": (
+        vv.rigid.sphere(1.0, RADIUS, inner_radius=INNER),
+        stacked(lambda z: np.sqrt(RADIUS**2 - z * z), -RADIUS, RADIUS, lambda z: np.sqrt(max(INNER**2 - z * z, 0.0))),
+    ),
+    "hemisphere": (
+        vv.rigid.hemisphere(1.0, RADIUS),
+        stacked(lambda z: np.sqrt(RADIUS**2 - z * z), 0.0, RADIUS, center=0.375 * RADIUS),
+    ),
+    "ellipsoid": (
+        vv.rigid.ellipsoid(1.0, RADIUS, RADIUS, HEIGHT),
+        stacked(lambda z: RADIUS * np.sqrt(max(1 - (z / HEIGHT) ** 2, 0.0)), -HEIGHT, HEIGHT),
+    ),
+    "pipe": (
+        vv.rigid.cylinder(1.0, RADIUS, HEIGHT, inner_radius=INNER),
+        stacked(lambda z: RADIUS, -HEIGHT / 2, HEIGHT / 2, lambda z: INNER),
+    ),
+    "cone": (
+        vv.rigid.cone(1.0, RADIUS, HEIGHT),
+        stacked(lambda z: RADIUS * (HEIGHT - z) / HEIGHT, 0.0, HEIGHT, center=HEIGHT / 4),
+    ),
+    "cone shell": (
+        vv.rigid.cone(1.0, RADIUS, HEIGHT, shell=True),
+        revolved(lambda s: s, lambda s: (RADIUS * s) ** 2 / 2, lambda s: HEIGHT * (1 - s), HEIGHT / 3),
+    ),
+    "capsule": (
+        vv.rigid.capsule(1.0, RADIUS, HEIGHT),
+        stacked(capsule_radius, -HEIGHT / 2 - RADIUS, HEIGHT / 2 + RADIUS),
+    ),
+    "torus": (vv.rigid.torus(1.0, RADIUS, INNER), stacked(ring(1), -INNER, INNER, ring(-1))),
+    "torus shell": (
+        vv.rigid.torus(1.0, RADIUS, INNER, shell=True),
+        revolved(
+            lambda s: RADIUS + INNER * np.cos(2 * np.pi * s),
+            lambda s: (RADIUS + INNER * np.cos(2 * np.pi * s)) ** 2 / 2,
+            lambda s: INNER * np.sin(2 * np.pi * s),
+        ),
+    ),
+    "disc": (
+        vv.rigid.disc(1.0, RADIUS, inner_radius=INNER),
+        revolved(
+            lambda s: INNER + (RADIUS - INNER) * s, lambda s: (INNER + (RADIUS - INNER) * s) ** 2 / 2, lambda s: 0.0
+        ),
+    ),
+    "rod": (vv.rigid.rod(1.0, HEIGHT), revolved(lambda s: 1.0, lambda s: 0.0, lambda s: HEIGHT * (s - 0.5))),
+}
+
+
+@pytest.mark.parametrize("name", SOLIDS)
+def test_solids_are_their_integrals(name):
+    body, (transverse, axial) = SOLIDS[name]
+    # The quadrature meets kinks: 1.3e-8 at those of a hollow sphere.
+    assert body.tensor == pytest.approx(np.diag([transverse, transverse, axial]), rel=3e-8, abs=1e-12)
+
+
+def test_shells_are_their_parts():
+    wall = vv.rigid.cylinder(HEIGHT, RADIUS, HEIGHT, inner_radius=RADIUS)
+    disc = vv.rigid.disc(RADIUS / 2, RADIUS)
+    parts = [wall, disc.moved([0, 0, HEIGHT / 2]), disc.moved([0, 0, -HEIGHT / 2])]
+    whole = vv.rigid.cylinder(HEIGHT + RADIUS, RADIUS, HEIGHT, shell=True)
+    assert vv.rigid.composite(parts).tensor == pytest.approx(whole.tensor, rel=1e-14, abs=1e-16)
+    # A capsule: the wall and a sphere cut in two, each half moved by half the height.
+    ball = vv.rigid.sphere(2 * RADIUS, RADIUS, inner_radius=RADIUS)
+    half = vv.rigid.MassProperties(RADIUS, [0, 0, RADIUS / 2], ball.tensor / 2 - np.diag([1, 1, 0]) * RADIUS**3 / 4)
+    other = half.rotated([1, 0, 0, 0])
+    assert (half + other).tensor == pytest.approx(ball.tensor, rel=1e-14, abs=1e-16)
+    whole = wall + half.moved([0, 0, HEIGHT / 2]) + other.moved([0, 0, -HEIGHT / 2])
+    capsule = vv.rigid.capsule(HEIGHT + 2 * RADIUS, RADIUS, HEIGHT, shell=True)
+    assert whole.tensor == pytest.approx(capsule.tensor, rel=1e-13, abs=1e-15)
+    a, b, c = 0.3, 0.5, 0.8
+    faces = []
+    for axes, sides in (((0, 1, 2), (a, b, c)), ((1, 2, 0), (b, c, a)), ((2, 0, 1), (c, a, b))):
+        tensor = np.zeros((3, 3))
+        plate = vv.rigid.plate(sides[0] * sides[1], sides[0], sides[1]).tensor
+        tensor[np.ix_(axes, axes)] = plate
+        face = vv.rigid.MassProperties(sides[0] * sides[1], [0, 0, 0], tensor)
+        faces += [face.moved(sign * sides[2] / 2 * np.eye(3)[axes[2]]) for sign in (1, -1)]
+    shell = vv.rigid.composite(faces)
+    assert vv.rigid.box(shell.mass, a, b, c, shell=True).tensor == pytest.approx(shell.tensor, rel=1e-14, abs=1e-16)
+
+
+def box_mesh(a, b, c):
+    corners = np.array(list(itertools.product((0.0, a), (0.0, b), (0.0, c))))
+    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
+    return corners, np.array([triangle for p, q, r, s in quads for triangle in ((p, q, r), (p, r, s))])
+
+
+def sphere_mesh(divisions):
+    corners, faces = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]), []
+    for x, y, z in itertools.product((0, 1), (2, 3), (4, 5)):
+        faces.append((x, y, z) if (x + y + z) % 2 == 0 else (x, z, y))
+    faces = np.array(faces)
+    for _ in range(divisions):
+        edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
+        unique, inverse = np.unique(edges, axis=0, return_inverse=True)
+        middles = corners[unique].mean(axis=1)
+        middles /= np.linalg.norm(middles, axis=1)[:, None]
+        m = len(corners) + inverse.reshape(-1, 3)
+        corners = np.vstack([corners, middles])
+        a, b, c = faces.T
+        ab, bc, ca = m.T
+        faces = np.vstack([np.array(t).T for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
+    return corners, faces
+
+
+@pytest.mark.parametrize("offset", [0.0, 2.0**10, 2.0**20, 1e6])
+@pytest.mark.parametrize("inside_out", [False, True])
+def test_a_box_anywhere(offset, inside_out):
+    """Sides that are exact so far away: the error is that of the sums alone, 1e-15."""
+    corners, faces = box_mesh(0.5, 0.75, 1.25)
+    if inside_out:
+        faces = faces[:, ::-1]
+    move = offset * np.array([1.0, -2.0, 3.0])
+    body = vv.rigid.mesh(corners + move, faces, density=2.0)
+    exact = vv.rigid.box(2 * 0.5 * 0.75 * 1.25, 0.5, 0.75, 1.25)
+    assert body.mass == pytest.approx(exact.mass, rel=1e-14)
+    assert body.tensor == pytest.approx(exact.tensor, rel=1e-14, abs=1e-15)
+    assert body.center - move == pytest.approx([0.25, 0.375, 0.625], rel=1e-9 if offset else 1e-15)
+
+
+def test_a_sphere_mesh_far_away_is_the_one_here():
+    """Corners on a grid of 2⁻³⁰, so that moving them rounds nothing: to 1e-12 (sums of 30 000 triangles)."""
+    corners, faces = sphere_mesh(6)
+    corners = np.round(corners * 2**30) / 2**30
+    here = vv.rigid.mesh(corners, faces)
+    there = vv.rigid.mesh(corners + 2.0**20 * np.array([1.0, -2.0, 1.0]), faces)
+    assert there.mass == pytest.approx(here.mass, rel=1e-13)
+    assert there.tensor == pytest.approx(here.tensor, rel=1e-12, abs=1e-13)
+    # The polyhedron is inside the sphere: 4³ more triangles, 4³ nearer.
+    assert here.tensor == pytest.approx(vv.rigid.sphere(here.mass, 1.0).tensor, rel=1e-3, abs=1e-12)
+    by_mass = vv.rigid.mesh(corners, faces, mass=3.0)
+    assert by_mass.mass == 3.0
+    assert by_mass.tensor == pytest.approx(here.tensor * 3.0 / here.mass, rel=1e-15)
+    # Each triangle with corners of its own, as an STL file has them.
+    soup = vv.rigid.mesh(corners[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3))
+    assert np.array_equal(soup.tensor, here.tensor)
+
+
+def test_a_cavity():
+    outer, faces = box_mesh(2.0, 2.0, 2.0)
+    inner = outer / 2 + 0.5
+    body = vv.rigid.mesh(np.vstack([outer, inner]), np.vstack([faces, faces[:, ::-1] + 8]))
+    whole, hole = vv.rigid.box(8.0, 2.0, 2.0, 2.0), vv.rigid.box(1.0, 1.0, 1.0, 1.0)
+    assert body.mass == pytest.approx(7.0, rel=1e-14)
+    assert body.tensor == pytest.approx(whole.tensor - hole.tensor, rel=1e-14, abs=1e-14)
+
+
+def test_tetrahedra():
+    rng = np.random.default_rng(5)
+    for _ in range(20):
+        corners = rng.normal(size=(4, 3))
+        solid = vv.rigid.tetrahedron(2.0, corners)
+        meshed = vv.rigid.mesh(corners, [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], mass=2.0)
+        assert solid.center == pytest.approx(meshed.center, rel=1e-12, abs=1e-13)
+        assert solid.tensor == pytest.approx(meshed.tensor, rel=1e-11, abs=1e-12)
+
+
+positions = st.lists(st.tuples(*[st.floats(-2, 2)] * 3), min_size=2, max_size=8)
+
+
+@settings(max_examples=100, deadline=None)
+@given(positions, st.tuples(*[st.floats(-3, 3)] * 3), st.tuples(*[st.floats(-1, 1)] * 4))
+def test_particles_and_what_is_done_with_them(places, point, turn):
+    places, point = np.array(places), np.array(point)
+    masses = 1.0 + np.arange(len(places))
+    body = vv.rigid.particles(masses, places)
+    # 1e-14 of the size of what is summed, 36 masses at 4 lengths.
+    close = {"rel": 1e-13, "abs": 1e-11}
+    assert body.about([0, 0, 0]) == pytest.approx(vv.rigid.inertia_tensor(masses, places), **close)
+    assert body.about(point) == pytest.approx(vv.rigid.inertia_tensor(masses, places - point), **close)
+    if np.linalg.norm(turn) > 1e-2:
+        q = np.array(turn) / np.linalg.norm(turn)
+        turned = vv.rigid.particles(masses, vv.rigid.rotate(q, places))
+        assert body.rotated(q).tensor == pytest.approx(turned.tensor, **close)
+        assert body.rotated(q).center == pytest.approx(turned.center, **close)
+    split = vv.rigid.particles(masses[:1], places[:1]) + vv.rigid.particles(masses[1:], places[1:])
+    assert split.tensor == pytest.approx(body.tensor, **close)
+    moments, axes = body.principal_axes()
+    assert np.all(np.diff(moments) >= 0)
+    assert axes @ np.diag(moments) @ axes.T == pytest.approx(body.tensor, **close)
+    assert np.linalg.det(axes) == pytest.approx(1.0, rel=1e-14)
+    assert moments[2] <= (moments[0] + moments[1]) * (1 + 1e-12)
+
+
+def test_degenerate_bodies():
+    point = vv.rigid.particles([2.0], [[1.0, 2.0, 3.0]])
+    assert np.array_equal(point.tensor, np.zeros((3, 3)))
+    assert np.array_equal(point.principal_axes().axes, np.eye(3))
+    line = vv.rigid.particles([1.0, 1.0], [[0, 0, 0], [1.0, 1.0, 1.0]])
+    moments, axes = line.principal_axes()
+    assert moments == pytest.approx([0.0, 1.5, 1.5], abs=1e-15)
+    assert moments[0] >= 0.0
+    assert axes[:, 0] == pytest.approx(np.full(3, np.sqrt(1 / 3)), rel=1e-15)
+    plane = vv.rigid.principal_axes(vv.rigid.plate(1.0, 1.0, 2.0).tensor)
+    assert plane.moments[2] == pytest.approx(plane.moments[0] + plane.moments[1], rel=1e-15)
+    moments, axes = vv.rigid.principal_axes(np.diag([3.0, 2.0, 3.0]))
+    assert np.array_equal(moments, [2.0, 3.0, 3.0])
+    assert np.array_equal(np.abs(axes), np.eye(3)[:, [1, 0, 2]])
+    far = vv.rigid.particles([1.0, 1.0], [[1e12, 0, 0], [1e12 + 2, 0, 0]])
+    assert np.array_equal(far.tensor, np.diag([0.0, 2.0, 2.0]))
+    large = vv.rigid.principal_axes(np.diag([1e300, 1.5e300, 2e300]))
+    assert np.array_equal(large.moments, [1e300, 1.5e300, 2e300])
+
+
+def test_free_rotation_of_a_body_made_of_parts():
+    """From a T-handle's parts to its flips: the moments go in as they come out."""
+    handle = vv.rigid.cylinder(0.2, 0.01, 0.1).rotated([0.5, 0.5, 0.5, 0.5])
+    shaft = vv.rigid.cylinder(0.1, 0.01, 0.06).moved([0, 0, 0.04])
+    moments, _ = (handle + shaft).principal_axes()
+    path = vv.rigid.polhode(moments, [1e-3, 10.0, 1e-3])
+    assert path.kind in ("about_largest", "about_smallest")
+    assert 0.1 < path.flip_time < 10.0
+
+
+BOX = box_mesh(1.0, 1.0, 1.0)
+ONE = vv.rigid.sphere(1.0, 1.0)
+
+
+@pytest.mark.parametrize(
+    ("call", "argument", "words"),
+    [
+        (lambda: vv.rigid.inertia_tensor([-1.0], [[0, 0, 0]]), "mass", "at least 0"),
+        (lambda: vv.rigid.inertia_tensor([1.0, 1.0], [[0, 0, 0]]), "position", "N = 2"),
+        (lambda: vv.rigid.particles([0.0], [[0, 0, 0]]), "mass", "expected some mass"),
+        (lambda: vv.rigid.principal_axes(np.diag([1, 1, 3])), "tensor", "larger by 1.0"),
+        (lambda: vv.rigid.principal_axes(np.diag([1, 1, -1])), "tensor", "at least 0"),
+        (lambda: vv.rigid.principal_axes([[1, 0.1, 0], [0, 1, 0], [0, 0, 1]]), "tensor", "symmetric"),
+        (lambda: vv.rigid.parallel_axis(np.eye(3), 0.0, [1, 0, 0]), "mass", "positive mass"),
+        (lambda: vv.rigid.sphere(1.0, -1.0), "radius", "positive length"),
+        (lambda: vv.rigid.sphere(0.0, 1.0), "mass", "positive mass"),
+        (lambda: vv.rigid.sphere(1.0, 1.0, inner_radius=1.1), "inner_radius", "at most radius = 1.0"),
+        (lambda: vv.rigid.torus(1.0, 1.0, 1.1), "minor_radius", "meets itself"),
+        (lambda: vv.rigid.box(1.0, 1.0, 1.0, 1.0, shell="no"), "shell", "True or False"),
+        (lambda: vv.rigid.cylinder(1, 1, 1, inner_radius=0.5, shell=True), "inner_radius", "expected 0 of a shell"),
+        (lambda: vv.rigid.composite([]), "bodies", "list of MassProperties"),
+        (lambda: vv.rigid.composite([ONE, 3]), "bodies", r"bodies\[1\] is 3"),
+        (lambda: vv.rigid.mesh(BOX[0], BOX[1][:-1]), "faces", "3 of its 18 edges are on the border of a hole"),
+        (lambda: vv.rigid.mesh(BOX[0], BOX[1][:0]), "faces", "encloses a volume"),
+        (
+            lambda: vv.rigid.mesh(BOX[0], np.vstack([BOX[1][:-1], BOX[1][-1:, ::-1]])),
+            "faces",
+            "on 3 of the 18 edges two neighbours run against each other",
+        ),
+        (lambda: vv.rigid.mesh(BOX[0], BOX[1] + 1), "faces", "numbers of the 8 vertices"),
+        (lambda: vv.rigid.mesh(BOX[0], BOX[1] - 1), "faces", "numbers of the 8 vertices"),
+        (lambda: vv.rigid.mesh(BOX[0] * [1, 1, 0], BOX[1]), "faces", "flat"),
+        (lambda: vv.rigid.mesh(BOX[0], BOX[1] * 1.0), "faces", "whole numbers"),
+        (lambda: vv.rigid.mesh(*BOX, mass=1.0, density=1.0), "density", "got both"),
+        (lambda: vv.rigid.mesh(*BOX, density=-1.0), "density", "positive"),
+    ],
+)
+def test_bad_input(call, argument, words):
+    with pytest.raises(vv.InvalidInput, match=words) as caught:
+        call()
+    assert caught.value.argument == argument
+
+
+def test_files_are_read_by_trimesh(monkeypatch):
+    corners, faces = BOX
+    found = SimpleNamespace(vertices=corners, faces=faces)
+    reader = SimpleNamespace(load_mesh=lambda path, process: found)
+    monkeypatch.setitem(sys.modules, "trimesh", reader)
+    assert vv.rigid.mesh(*vv.rigid.load_mesh("box.stl")).mass == pytest.approx(1.0, rel=1e-15)
