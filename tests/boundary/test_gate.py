@@ -25,6 +25,7 @@ PLAIN = {
     "info",
     "methods",
     "nearest",
+    "polhode",
     "potentials",
     "rutherford_half_distance",
     "screening_length",

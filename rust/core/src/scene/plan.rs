@@ -149,7 +149,7 @@ impl Plan {
             && !touching
             && serves(method, active.len());
         if let Some((by, _)) = transformed {
-            transformation::check(by, scene, falls)?;
+            transformation::check(by, scene, matches!(frame, Frame::Falling(_)))?;
         }
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {
