@@ -138,7 +138,7 @@ impl Prepared {
             units,
             scratch: RefCell::default(),
         };
-        if plan.method.adaptive() {
+        if plan.has_own_times() {
             match prepared.measure(plan, ticker) {
                 // Nothing is integrated any more, but its start can be recorded.
                 Ok(()) | Err(Error::Interrupted) => {}
