@@ -86,7 +86,7 @@ fn adaptive<S: Controlled + ClosedKernel>(problem: Problem<S>) -> Vec<(&'static 
                 let outcome =
                     trial.attempt(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
                 trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
-                trial.at(&state, outcome.h, S::splat(0.5), &mut between);
+                trial.at(&outcome, &mut dynamics, &state, S::splat(0.5), &mut between, &mut ticker).unwrap();
                 trial.keep(outcome.accepted, &mut state);
             }
         };

@@ -25,7 +25,8 @@ fn dense(method: &'static Method, make: Make, h: f64, theta: f64) -> [State<Doub
     assert!(outcome.accepted && !outcome.finished && !outcome.stuck);
     trial.dense(&outcome, &mut dynamics, &state, &mut ticker).unwrap();
     let mut between = state.clone();
-    trial.at(&state, outcome.h, DoubleDouble::from(theta), &mut between);
+    let theta = DoubleDouble::from(theta);
+    trial.at(&outcome, &mut dynamics, &state, theta, &mut between, &mut ticker).unwrap();
     let next = trial.next().clone();
     [between, state, next]
 }
