@@ -44,6 +44,7 @@ class _Bodies:
     position: list[NDArray[np.float64]]
     velocity: list[NDArray[np.float64]]
     names: tuple[str, ...]
+    radius: list[float]
 
 
 def from_elements(
@@ -56,6 +57,8 @@ def from_elements(
     given: dict[str, Any],
 ) -> Particles:
     """`Particles.from_elements`; `given` has the mass and the elements by name, None for what was not given."""
+    from visviva.particles import radius_array
+
     there = _there(make, central)
     size = _one_of(given, _SIZES)
     if size is None:
@@ -78,7 +81,8 @@ def from_elements(
     _check_mu(mu, all_names[-count:], len(there.mass))
     r, v = _relative(mu, of, size, direction, place, number("t0", t0))
     mass, position, velocity = _put(there, of["mass"], parents, r, v)
-    return make(mass, position, velocity, all_names or None)
+    own = radius_array(given["radius"], (count,), {"N": (count, size)})
+    return make(mass, position, velocity, all_names or None, [*there.radius, *own.tolist()])
 
 
 def _there(make: Callable[..., Particles], central: Any) -> _Bodies:
@@ -88,7 +92,9 @@ def _there(make: Callable[..., Particles], central: Any) -> _Bodies:
         central = make([number("central", central)], np.zeros((1, 3)))
     if not len(central):
         raise InvalidInput("central", "expected at least one body to orbit, got none")
-    return _Bodies(central.mass.tolist(), list(central.position), list(central.velocity), central.names)
+    return _Bodies(
+        central.mass.tolist(), list(central.position), list(central.velocity), central.names, central.radius.tolist()
+    )
 
 
 def _one_of(given: dict[str, Any], names: tuple[str, ...]) -> str | None:

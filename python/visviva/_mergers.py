@@ -15,10 +15,27 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from visviva.particles import Particles
     from visviva.scene import Scene
     from visviva.trajectory import Trajectory
 
-__all__ = ["by_era", "eras", "merged"]
+__all__ = ["by_era", "eras", "hosts", "merged"]
+
+
+def hosts(bodies: Particles) -> NDArray[np.int64] | None:
+    """The body of which each is a part, as mergers leave them; None if all are by themselves.
+
+    A part has no mass and no radius, is in the place of a sphere, and moves with it.
+    """
+    nothing = (bodies.mass == 0.0) & (bodies.radius == 0.0)
+    if not (nothing.any() and bodies.radius.any()):
+        return None
+    states = np.hstack([bodies.position, bodies.velocity]) + 0.0
+    spheres = {states[body].tobytes(): body for body in np.flatnonzero(bodies.radius).tolist()}
+    found = np.arange(len(bodies))
+    for body in np.flatnonzero(nothing).tolist():
+        found[body] = spheres.get(states[body].tobytes(), body)
+    return found if (found != np.arange(len(bodies))).any() else None
 
 
 def merged(run: Any) -> bool:
@@ -30,11 +47,15 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
     """Rows, the scene of the bodies that are there, and which of those of the run they are; None for all of them."""
     from visviva.particles import Particles
 
-    if not merged(run):
+    bodies = run.scene.particles
+    parts = hosts(bodies) if run._result.get("collisions") else None
+    if parts is None and not merged(run):
         yield slice(0, len(run.t)), run.scene, None
         return
-    bodies, table = run.scene.particles, run._result["collisions"]
+    table = run._result["collisions"]
     mass, left = bodies.mass.copy(), np.ones(len(bodies), dtype=bool)
+    if parts is not None:
+        left = parts == np.arange(len(bodies))
     # A row at the time of a merger is of before.
     ends = [*np.searchsorted(run.t, table["t"], side="right").tolist(), len(run.t)]
     start = 0
@@ -45,7 +66,7 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
             particles = Particles(mass[there], position, velocity)
             yield slice(start, end), run.scene._like(particles, run.scene.forces, run.scene.t0), there.tolist()
             start = end
-        if line < len(table["t"]):
+        if line < len(table["t"]) and table["survivor"][line] >= 0:
             first, second = int(table["first"][line]), int(table["second"][line])
             survivor = int(table["survivor"][line])
             gone = first + second - survivor

@@ -66,7 +66,7 @@ class BodyMotion:
 
     @property
     def mass(self) -> NDArray[np.float64]:
-        """Its mass, a number, or (B,)."""
+        """Its mass at the start, a number, or (B,)."""
         mass: NDArray[np.float64] = self._run._start._keywords["mass"][..., self.index]
         return mass if self._run._start._is_ensemble else mass[0]
 

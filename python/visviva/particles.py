@@ -151,6 +151,7 @@ class Particles:
         time_of_pericenter: ArrayLike | None = None,
         t0: float = 0.0,
         names: Sequence[str] | None = None,
+        radius: ArrayLike = 0.0,
     ) -> Particles:
         """Bodies on given orbits about others: ellipses, parabolas and hyperbolas.
 
@@ -189,6 +190,8 @@ class Particles:
             The time of the state, from which `time_of_pericenter` is counted: the scene's `t0`.
         names : sequence of str, optional
             Of the new bodies; if `central` is a mass, its name first.
+        radius : array_like, a number or shape (N,), optional
+            Radii of the new bodies.
 
         Returns
         -------
@@ -229,6 +232,7 @@ class Particles:
             "mean_anomaly": mean_anomaly,
             "mean_longitude": mean_longitude,
             "time_of_pericenter": time_of_pericenter,
+            "radius": radius,
         }
         return from_elements(cls, central, G, about, t0, names, given)
 

@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from itertools import chain
 from typing import TYPE_CHECKING, Any, Literal
 
+import numpy as np
+
 from visviva import _core
 from visviva import forces as force_classes
 from visviva._arrays import number
@@ -26,7 +28,6 @@ from visviva.trajectory import Trajectory
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.advice import Advice
@@ -241,7 +242,14 @@ class Scene(Runnable[Trajectory], Framed):
         >>> vv.Scene(vv.Particles([8.0, 0.0], [[0, 0, 0], [2, 0, 0]]), vv.Gravity(G=1.0)).acceleration()[1]
         array([-2.,  0.,  0.])
         """
+        from visviva._mergers import hosts
+
         p = self.particles
+        parts = hosts(p)
+        if parts is not None:
+            whole = np.unique(parts)
+            place = np.searchsorted(whole, parts)
+            return self._like(p[whole.tolist()], self.forces, self.t0).acceleration()[place]
         return _core.acceleration(
             mass=p.mass, forces=self._keywords["forces"], position=p.position, velocity=p.velocity, t0=self.t0
         )

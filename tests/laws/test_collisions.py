@@ -274,6 +274,26 @@ def test_planetesimals_become_one_and_columns_know_it() -> None:
         out.elements()
 
 
+def test_what_mergers_leave_goes_on() -> None:
+    random = np.random.default_rng(7)
+    x = np.array([[i % 3, (i // 3) % 3, 0.0] for i in range(9)])
+    scene = spheres(random.uniform(0.5, 1.5, 9), x, 0.6 * random.normal(size=(9, 3)), 0.2, vv.Gravity(G=1.0))
+    first = scene.run(0.7, collisions="merge")
+    left = first.final
+    gone = left.particles.mass == 0.0
+    assert 0 < gone.sum() < 8
+    few = vv.Scene(left.particles[~gone], *left.forces, t0=left.t0)
+    assert left.invariants().energy == few.invariants().energy
+    assert np.array_equal(left.acceleration()[~gone], few.acceleration())
+    times = [0.7, 0.9, 1.2]
+    on, alone = left.run(times, collisions="merge", rtol=1e-12), few.run(times, collisions="merge", rtol=1e-12)
+    assert np.array_equal(on.position[:, ~gone], alone.position)
+    assert np.array_equal(on.energy, alone.energy)
+    assert on.conservation().momentum.max < 1e-13
+    with pytest.raises(vv.InvalidInput, match="distinct positions"):
+        left.run(1.0)
+
+
 @pytest.mark.parametrize("rule", ["bounce", "merge"])
 @pytest.mark.parametrize("options", [{"method": "kahan_li8", "dt": 0.0625}, {"method": "stormer13", "dt": 0.03125}])
 def test_a_run_goes_on_to_the_bits_of_one(rule: str, options: dict[str, Any]) -> None:
@@ -449,3 +469,14 @@ def test_radii_go_with_their_bodies() -> None:
     moved = vv.Scene(bodies).with_state(2 * np.eye(3), np.zeros((3, 3)))
     assert moved.particles.radius.tolist() == [0.1, 0.2, 0.3]
     assert not bodies.radius.flags.writeable
+    star = vv.Particles([1.0], [[0, 0, 0]], radius=0.005)
+    both = vv.Particles.from_elements(star, [0.0, 1e-6], G=1.0, semi_major_axis=[1.0, 2.0], radius=[0.0, 1e-4])
+    assert both.radius.tolist() == [0.005, 0.0, 1e-4]
+
+
+def test_events_miss_no_short_approach_either() -> None:
+    for speed in (1.0, 1e4, 1e8):
+        scene = spheres([1, 2], [[-3, 0.1, 0], [3, 0, 0]], [[speed, 0, 0], [-speed, 0, 0]], 0.0)
+        for options in ({"method": "dop853"}, {"method": "leapfrog", "dt": 1.0}):
+            out = scene.run(100.0, events=[vv.events.distance(0, 1, below=0.2)], **options)
+            assert out.events.t == pytest.approx([(6.0 - np.sqrt(0.03)) / (2.0 * speed)], rel=1e-14)

@@ -139,7 +139,9 @@ impl Impact {
 
     /// They bounce; the collision, and how fast they part.
     pub fn bounce(&mut self, (i, j): (usize, usize), restitution: f64, t: f64) -> (Collision, f64) {
-        let meeting = self.meeting(i, j);
+        let mut meeting = self.meeting(i, j);
+        // Spheres that graze each other may be parting already, by rounding.
+        meeting.speed = meeting.speed.max(0.0);
         let mut collision = self.collision((i, j), t, &meeting);
         let change = (1.0 + restitution) * meeting.speed * self.direction;
         for (body, sign, share) in [(i, -1.0, meeting.shares[0]), (j, 1.0, meeting.shares[1])] {
