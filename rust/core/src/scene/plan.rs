@@ -5,6 +5,7 @@ mod events;
 mod explain;
 mod kinds;
 mod own;
+mod quiet;
 mod solutions;
 mod transformation;
 
@@ -30,6 +31,7 @@ use crate::ode::transformation::Transformation;
 use crate::parallel::Ticker;
 use kinds::kinds_of_forces;
 use own::{Own, about, acting, check_method};
+use quiet::Quiet;
 use std::sync::Arc;
 
 /// From this many pairs per evaluation on, one force evaluation is shared out over threads.
@@ -98,6 +100,8 @@ pub struct Plan {
     pub events: Arc<[Event]>,
     /// Columns to be computed.
     pub record: Vec<String>,
+    /// What might serve a long run better than the method that was chosen for it.
+    quiet: Option<Quiet>,
     /// The time of the scene.
     pub t0: f64,
     /// The node that the run goes on from; 0 is the scene.
@@ -190,6 +194,7 @@ impl Plan {
             outputs_between: outputs_between(scene, request),
             events: request.events.clone().into(),
             record: request.record.clone(),
+            quiet: None,
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
@@ -199,6 +204,9 @@ impl Plan {
         };
         plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
+        if automatic && plan.solutions.integrates() {
+            plan.quiet = quiet::quiet(scene, &plan.forces, direction * whole);
+        }
         Ok(plan)
     }
 

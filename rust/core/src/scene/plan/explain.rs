@@ -2,10 +2,12 @@
 
 use super::super::layout::Layout;
 use super::super::request::columns;
+use super::quiet::{METHOD, Quiet};
 use super::{Groups, Plan};
 use crate::forces::term::Coupling;
 use crate::ode::Scheme;
 use crate::ode::transformation::Transformation;
+use crate::words::number;
 use core::fmt;
 
 /// A line of the plan.
@@ -56,6 +58,14 @@ impl Plan {
                     }
                 };
                 row("time transformation", by.name().to_owned(), told.to_owned());
+            }
+            if let Some(Quiet { periods, dt }) = self.quiet {
+                let why = format!(
+                    "auto stays with steps that follow an encounter, whenever one comes; where none does, {METHOD} with \
+                     dt={} is more exact in less time: scene.advise(t, accuracy=...) tries it",
+                    number(dt)
+                );
+                row("long span", format!("{periods:.0} of the shortest period"), why);
             }
             if self.from > 0 {
                 let why = "the scene ended a run with this method and step: its bits are those of one run";
