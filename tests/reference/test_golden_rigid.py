@@ -137,6 +137,72 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(pair(vv.rigid.hemisphere(m, radius)), expected["solid_hemisphere_cm"])
 
 
+def heavy_top(given: dict[str, Any]) -> vv.rigid.HeavyTop:
+    if "MgR" in given:
+        return vv.rigid.HeavyTop(given["A"], given["C"], given["MgR"], 1.0, 1.0)
+    return vv.rigid.HeavyTop(given["A"], given["C"], given["M"], given["g"], given["R"])
+
+
+@golden("G9.48-weak-torque")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    # The limit A Ω ≪ C ω₃: of a top that is light across its axis, the slow precession at the horizontal.
+    top = vv.rigid.HeavyTop(given["C"], given["C"], given["M"], given["g"], given["R"])
+    slow = top.steady_precession(np.pi / 2, given["omega3"]).slow
+    close(slow, expected["Omega"])
+    close(2 * np.pi / slow, expected["period"])
+    close(slow * given["C"] * given["omega3"], expected["torque_horizontal_max"])
+
+
+@golden("G9.55-steady-precession")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    top = heavy_top(given)
+    slow, fast = top.steady_precession(given["alpha"], given["omega3"])
+    close([slow, fast], [expected["Omega_slow"], expected["Omega_fast"]])
+    close(top.least_spin(given["alpha"]), expected["omega3_min"])
+    frequencies = top.nutation_frequency(given["alpha"], given["omega3"])
+    close(frequencies, [expected["nutation_omega_slow"], expected["nutation_omega_fast"]])
+    close(fast + slow, expected["approx_fast"])
+    # Small nutations about the fast one have that period, to the square of the displacement.
+    psi_dot = given["omega3"] - fast * np.cos(given["alpha"])
+    small = top.nutation(given["alpha"], theta_dot=1e-6, phi_dot=fast, psi_dot=psi_dot)
+    assert abs(2 * np.pi / small.period / expected["nutation_omega_fast"] - 1) < 1e-12
+
+
+@golden("G9.55-steady-precession-horizontal")
+@golden("G9.55-steady-precession-hanging")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    slow, fast = heavy_top(given).steady_precession(given["alpha"], given["omega3"])
+    close(slow, expected["Omega_slow"])
+    if "Omega_fast" in expected:
+        close(fast, expected["Omega_fast"])
+    else:
+        # cos of the binary64 number nearest to π/2 is 6e-17.
+        assert fast > 1e17
+
+
+@golden("G9.71-nutation-cusp")
+@golden("G9.71-nutation-loop")
+@golden("G9.71-nutation-wavy")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    rates = {name: given[name + "0"] for name in ("theta_dot", "phi_dot", "psi_dot")}
+    found = heavy_top(given).nutation(given["theta0"], **rates)
+    close(found.roots, expected["u_roots"])
+    close(found.turning, expected["u_star"])
+    close([found.theta_min, found.theta_max], [expected["theta_min"], expected["theta_max"]])
+    close(found.period, expected["nutation_period"])
+    assert found.kind == {"wavy": "wave"}.get(expected["kind"], expected["kind"])
+
+
+@golden("G9.79-sleeping-top")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    top = heavy_top(given)
+    close(top.sleeping_threshold, expected["omega3_crit"])
+    # Above it the axis stays near the vertical, below it does not.
+    for factor, stays in ((1.01, True), (0.99, False)):
+        found = top.nutation(1e-6, psi_dot=factor * expected["omega3_crit"])
+        assert (found.theta_max < 1e-4) is stays
+
+
 @pytest.mark.parametrize("identifier", golden.checks)
 def test_golden(identifier: str) -> None:
     golden.run(identifier)

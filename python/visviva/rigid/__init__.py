@@ -8,6 +8,7 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
+from visviva.rigid._heavy_top import HeavyTop, Nutation, SteadyPrecession
 from visviva.rigid._mass import (
     MassProperties,
     PrincipalAxes,
@@ -48,9 +49,12 @@ from visviva.rigid._solids import (
 
 __all__ = [
     "FreeRotation",
+    "HeavyTop",
     "MassProperties",
+    "Nutation",
     "Polhode",
     "PrincipalAxes",
+    "SteadyPrecession",
     "angular_velocity_from_euler",
     "box",
     "capsule",

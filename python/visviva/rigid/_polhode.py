@@ -14,7 +14,7 @@ from visviva._keywords import known_keywords
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-Kind = Literal["steady", "symmetric", "about_smallest", "about_largest", "separatrix"]
+_Kind = Literal["steady", "symmetric", "about_smallest", "about_largest", "separatrix"]
 
 
 @known_keywords
@@ -47,7 +47,7 @@ class Polhode:
         The largest angular momentum along each axis of the body, with the sign that it has at time 0.
     """
 
-    kind: Kind
+    kind: _Kind
     axis: int | None
     middle_axis: int | None
     rate: float

@@ -12,6 +12,7 @@ mod drag;
 mod errors;
 mod fitted;
 mod gate;
+mod heavy_top;
 mod info;
 mod mass;
 mod orbits;
@@ -36,6 +37,8 @@ mod _core {
     use crate::drag::{drag_crossover_speed, drag_quadratic, drag_reynolds_number, drag_stokes, drag_throw};
     #[pymodule_export]
     use crate::fitted::{fitted, tabulated_drag};
+    #[pymodule_export]
+    use crate::heavy_top::{top_least_spin, top_nutation, top_sleeping_threshold, top_steady_precession};
     #[pymodule_export]
     use crate::info::info;
     #[pymodule_export]

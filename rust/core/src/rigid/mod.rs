@@ -2,6 +2,7 @@
 
 pub mod conventions;
 pub mod free;
+pub mod heavy_top;
 pub mod mesh;
 pub mod moments;
 pub mod quaternion;

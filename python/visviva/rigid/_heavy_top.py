@@ -1,0 +1,224 @@
+"""A symmetric top with a fixed point, in uniform gravity."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal, NamedTuple
+
+from visviva import _core
+from visviva._arrays import number
+from visviva._keywords import known_keywords
+
+
+class SteadyPrecession(NamedTuple):
+    """The two rates at which a top precesses steadily; the fast one may be infinite.
+
+    Attributes
+    ----------
+    slow, fast : float
+        Rates about the vertical, signed as the spin is. The slow one is M g R/(C ω) for a fast top.
+    """
+
+    slow: float
+    fast: float
+
+
+@known_keywords
+@dataclass(frozen=True, kw_only=True, slots=True)
+class Nutation:
+    """How the axis of a top nods; what `HeavyTop.nutation` returns.
+
+    Attributes
+    ----------
+    theta_min, theta_max : float
+        Between which angles from the vertical.
+    period : float
+        From one to the other and back; infinite if that takes for ever.
+    kind : str
+        ``"loop"``, ``"cusp"`` or ``"wave"``, by whether the precession turns round on the way, stops at the top of it,
+        or neither; ``"plane"`` of a pendulum that neither spins nor goes round; ``"steady"`` if the angle does not
+        change.
+    roots : tuple of float
+        The three roots u = cos θ of u̇² = 0, ascending.
+    turning : float
+        The height u = p_φ/p_ψ at which the precession turns round; not always one that is reached, and infinite or NaN
+        without spin.
+    """
+
+    theta_min: float
+    theta_max: float
+    period: float
+    kind: Literal["loop", "cusp", "wave", "plane", "steady"]
+    roots: tuple[float, float, float]
+    turning: float
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class HeavyTop:
+    """A symmetric top that turns about a fixed point on its axis, in uniform gravity.
+
+    Angles are Euler's, z–x–z: θ from the vertical up to the axis, φ about the vertical, ψ about the axis. The spin is
+    ω₃ = ψ̇ + φ̇ cos θ, which stays what it is.
+
+    Parameters
+    ----------
+    A, C : float
+        Moments of inertia about the fixed point, across the axis and along it.
+    mass, g, R : float
+        Mass, acceleration of gravity, and distance of the center of mass from the fixed point.
+
+    Raises
+    ------
+    InvalidInput
+        For a number that is not positive, C larger than 2A, or no torque of gravity (R = 0 or g = 0), with which the
+        body turns freely and none of these questions has an answer.
+
+    Notes
+    -----
+    Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. § 5.7.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> top.sleeping_threshold
+    20.0
+    >>> top.steady_precession(0.3, spin=50.0)
+    SteadyPrecession(slow=0.416578700573935, fast=10.050937314806921)
+    """
+
+    A: float
+    C: float
+    mass: float
+    g: float
+    R: float
+
+    def __post_init__(self) -> None:
+        for name in ("A", "C", "mass", "g", "R"):
+            object.__setattr__(self, name, number(name, getattr(self, name)))
+        _core.top_sleeping_threshold(self._numbers)
+
+    @property
+    def _numbers(self) -> tuple[float, float, float, float, float]:
+        return self.A, self.C, self.mass, self.g, self.R
+
+    @property
+    def sleeping_threshold(self) -> float:
+        """The spin above which the top stays upright: (C ω₃)² = 4 A M g R."""
+        return _core.top_sleeping_threshold(self._numbers)
+
+    def least_spin(self, theta: float) -> float:
+        """Give the least spin of a steady precession at an angle: 2√(A M g R cos θ)/C, and 0 from the horizontal down.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).least_spin(2.0)
+        0.0
+        """
+        return _core.top_least_spin(self._numbers, number("theta", theta))
+
+    def steady_precession(self, theta: float, spin: float) -> SteadyPrecession:
+        """Give both rates of steady precession: A cos θ Ω² − C ω₃ Ω + M g R = 0.
+
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical; beyond π/2 the top hangs.
+        spin : float
+            ω₃, of either sign.
+
+        Returns
+        -------
+        SteadyPrecession
+            ``slow`` and ``fast``; of a hanging top they have opposite signs.
+
+        Raises
+        ------
+        InvalidInput
+            For a spin below `least_spin`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> round(top.steady_precession(2.4, 50.0).fast, 12)
+        -13.950126683391
+        """
+        rates, _ = self._precessions(theta, spin)
+        return SteadyPrecession(*rates)
+
+    def nutation_frequency(self, theta: float, spin: float) -> SteadyPrecession:
+        """Give the frequencies of small nutations about the slow and the fast steady precession.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> round(top.nutation_frequency(0.3, 50.0).slow, 9)
+        9.204877599
+        """
+        _, frequencies = self._precessions(theta, spin)
+        return SteadyPrecession(*frequencies)
+
+    def _precessions(self, theta: float, spin: float) -> tuple[list[float], list[float]]:
+        return _core.top_steady_precession(self._numbers, number("theta", theta), number("spin", spin))
+
+    def nutation(self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0) -> Nutation:
+        """Give the nutation of a top from where it is and how it turns.
+
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical, in [0, π].
+        psi_dot, theta_dot, phi_dot : float
+            Rates of Euler's angles.
+
+        Returns
+        -------
+        Nutation
+            Its range, period and kind; roots of the cubic in double-double.
+
+        Raises
+        ------
+        InvalidInput
+            For an angle outside [0, π], NaN or infinity.
+
+        Examples
+        --------
+        A top that is let go falls, and comes up again to a cusp:
+
+        >>> import visviva as vv
+        >>> found = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).nutation(0.3, psi_dot=50.0)
+        >>> found.kind, round(found.theta_min, 12), round(found.period, 12)
+        ('cusp', 0.3, 0.682256015831)
+        """
+        rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
+        found = _core.top_nutation(self._numbers, number("theta", theta), *rates)
+        low, high = found["theta"]
+        one, two, three = found["roots"]
+        return Nutation(
+            theta_min=low,
+            theta_max=high,
+            period=found["period"],
+            kind=found["kind"],
+            roots=(one, two, three),
+            turning=found["turning"],
+        )
+
+    def nutation_range(
+        self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0
+    ) -> tuple[float, float]:
+        """Give the least and the greatest angle from the vertical; see `nutation`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> low, high = top.nutation_range(0.3, psi_dot=50.0)
+        >>> round(low, 12), round(high, 12)
+        (0.3, 0.326733714645)
+        """
+        found = self.nutation(theta, psi_dot=psi_dot, theta_dot=theta_dot, phi_dot=phi_dot)
+        return found.theta_min, found.theta_max
