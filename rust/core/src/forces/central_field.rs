@@ -4,7 +4,7 @@ use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::limits::{check_force, outside};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::Lanes;
@@ -178,5 +178,8 @@ impl Force<Lanes> for Kernel {
     ) -> Result<()> {
         self.potential.around(&self.field, phase.q, a, first);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

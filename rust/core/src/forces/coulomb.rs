@@ -7,7 +7,7 @@ use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
 use super::gravity::{energy, newton};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
@@ -74,6 +74,27 @@ impl Coulomb {
     fn charge(&self, particle: usize) -> f64 {
         of_body(&self.charge, particle)
     }
+    /// The exponent of the largest charge, by which all are brought near one: its square must not overflow.
+    fn unit(&self) -> i32 {
+        exponent(self.largest)
+    }
+    /// A charge in that unit.
+    fn near(&self, particle: usize) -> f64 {
+        scale(self.charge(particle), -self.unit())
+    }
+    /// −k qᵢ/mᵢ, of k in that unit squared.
+    fn factors(&self, context: &Context<'_>) -> Vec<Lanes> {
+        context.per_body(|system, slot| {
+            let own = context.own(self, system);
+            match own.near(system.bodies[slot]) {
+                0.0 => 0.0,
+                charge => {
+                    -scale(own.k, 2 * own.unit() - context.units.exponent(CONSTANT)) * charge
+                        / system.mass[slot]
+                }
+            }
+        })
+    }
 }
 
 impl ForceTerm for Coulomb {
@@ -81,24 +102,20 @@ impl ForceTerm for Coulomb {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        // In units of the largest charge, whose square must not overflow.
-        let near = |system: &System<'_>, slot: usize| {
-            let own = context.own(self, system);
-            scale(own.charge(system.bodies[slot]), -exponent(own.largest))
-        };
-        let k = |system: &System<'_>| {
-            let own = context.own(self, system);
-            scale(own.k, 2 * exponent(own.largest) - context.units.exponent(CONSTANT))
-        };
-        let factor = context.per_body(|system, slot| match near(system, slot) {
-            0.0 => 0.0,
-            charge => -k(system) * charge / system.mass[slot],
-        });
+        let near = |system: &System<'_>, slot: usize| context.own(self, system).near(system.bodies[slot]);
         Box::new(Kernel {
             field: newton::attraction(context, near, self.softening),
             scratch: vec![Lanes::zero(); context.shape.len()],
-            factor,
+            factor: self.factors(context),
         })
+    }
+    /// Gravity has the distances, if it is softened alike.
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        let (constant, softening) = other.as_newtonian()?;
+        let ring = newton::ring(context, constant, softening).filter(|_| softening == self.softening)?;
+        let system = context.first();
+        let charges: Vec<f64> = system.bodies.iter().map(|&body| self.near(body)).collect();
+        Some(Box::new(ring.beside(&charges, self.factors(context)[0])))
     }
     fn potential_and_virial(
         &self,
@@ -233,5 +250,8 @@ impl Force<Lanes> for Kernel {
     }
     fn stops_midway(&self) -> bool {
         self.field.stops_midway()
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

@@ -11,7 +11,7 @@ pub mod sampled;
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8};
@@ -214,5 +214,8 @@ impl<L: Law> Force<Lanes> for Kernel<L> {
     }
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

@@ -3,7 +3,7 @@
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
 use super::term::{Bodies, Drive, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::cosine::cosine;
 use crate::numerics::double_double::{DoubleDouble, two_product, two_sum};
@@ -172,5 +172,8 @@ impl Force<Lanes> for Kernel {
     }
     fn needs(&self) -> Needs {
         Needs { time: true, ..Needs::default() }
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

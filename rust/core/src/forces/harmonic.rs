@@ -3,7 +3,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
@@ -159,5 +159,8 @@ impl Force<Lanes> for Kernel {
     ) -> Result<()> {
         kernel_tier(self, phase.q, a, first);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

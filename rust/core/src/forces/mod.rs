@@ -57,6 +57,19 @@ pub struct Phase<'a, S> {
     pub v: &'a [S],
 }
 
+/// How a force adds to an acceleration: where two add once, either may come first, since a sum of two numbers is the same in
+/// either order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Adds {
+    /// Several numbers to a coordinate, in its order.
+    Severally,
+    /// One number to each coordinate.
+    Once,
+    /// One number, that it waits long for: what another has added before is there by then, and what another does
+    /// meanwhile costs little.
+    OnceAtLast,
+}
+
 /// One force of a scene, ready to run.
 pub trait Force<S: Element>: Send {
     /// Writes its accelerations into `a` if `first`, else adds them.
@@ -76,6 +89,11 @@ pub trait Force<S: Element>: Send {
         Needs::default()
     }
 
+    /// How it adds to an acceleration.
+    fn adds(&self) -> Adds {
+        Adds::Severally
+    }
+
     /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
     fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
         let _ = (h, v);
@@ -92,7 +110,7 @@ pub trait Force<S: Element>: Send {
 pub struct Dynamics<S: Element> {
     /// How the coordinates lie.
     pub shape: Shape,
-    /// The forces, in the scene's order, which is the order of summation.
+    /// The forces, in the scene's order, which is the order of summation; but the first two may be exchanged.
     forces: Vec<Box<dyn Force<S>>>,
     /// The only force, if the bodies it acts between are all there are.
     closed: Option<FewBodies<S>>,
@@ -103,7 +121,11 @@ pub struct Dynamics<S: Element> {
 
 impl<S: Element> Dynamics<S> {
     /// From the forces of a scene.
-    pub fn new(shape: Shape, forces: Vec<Box<dyn Force<S>>>) -> Self {
+    pub fn new(shape: Shape, mut forces: Vec<Box<dyn Force<S>>>) -> Self {
+        let adds = |at: usize| forces.get(at).map(|force| force.adds());
+        if adds(0) == Some(Adds::OnceAtLast) && adds(1) == Some(Adds::Once) {
+            forces.swap(0, 1);
+        }
         let needs = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
         Self { shape, forces, closed: None, needs, evaluations: 0, monitor: None }
     }

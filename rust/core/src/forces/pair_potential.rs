@@ -12,7 +12,7 @@ use super::context::{Arrangement, Context};
 use super::gravity::RING_MAX;
 use super::limits::{check_force, outside};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::points::distance;
@@ -260,5 +260,8 @@ impl Force<Lanes> for Kernel {
     }
     fn stops_midway(&self) -> bool {
         self.pairs.shape.rows >= LONG_ROWS && matches!(self.way, Way::Shards(_))
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

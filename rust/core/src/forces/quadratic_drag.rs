@@ -3,7 +3,7 @@
 use super::bodies::PreciseBodies;
 use super::context::{Context, of_body};
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8};
@@ -146,5 +146,8 @@ impl Force<Lanes> for Kernel {
     }
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

@@ -3,7 +3,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
@@ -186,5 +186,8 @@ impl Force<Lanes> for Kernel {
     }
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

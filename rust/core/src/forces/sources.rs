@@ -8,11 +8,11 @@
 //! vector that is read soon after waits long for them.
 
 use super::context::{Arrangement, Context, packed_place};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
@@ -42,6 +42,8 @@ struct Source {
     others: Vec<Lanes>,
     /// If packed, 1/mass in its lane and zero in the others.
     alone: Lanes,
+    /// If packed, its lane, eight times.
+    lane: [i64; WIDTH],
 }
 
 /// The forces of some sources.
@@ -80,6 +82,7 @@ impl<L: Law> Kernel<L> {
                 index,
                 place,
                 alone,
+                lane: [place.1 as i64; WIDTH],
                 strength: of(&|mass| constant * mass),
                 // Some ensemble members may have it without mass: there it does nothing.
                 inverse_mass: of(&inverse),
@@ -117,37 +120,50 @@ fn difference<S: Real>(to: [S; 3], from: [S; 3]) -> [S; 3] {
 const TURNS: [[i64; WIDTH]; 3] =
     [[1, 0, 3, 2, 5, 4, 7, 6], [2, 3, 0, 1, 6, 7, 4, 5], [4, 5, 6, 7, 0, 1, 2, 3]];
 
-/// Bodies of one system: a row of them at a time.
+/// Bodies of one system: a row of them at a time, or `ONE` row alone. What is known when compiled stays in registers.
 #[inline(always)]
-fn packed<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) {
-    let Shape { rows, components } = kernel.shape;
-    let stride = rows * WIDTH;
-    let massive = kernel.active.div_ceil(WIDTH);
-    let (a, mass) = (V::view_mut(a), V::view(&kernel.mass));
+fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>(
+    kernel: &Kernel<L>,
+    q: &[Lanes],
+    v: &[Lanes],
+    a: &mut [Lanes],
+) {
+    let rows = if ONE { 1 } else { kernel.shape.rows };
+    let massive = if ONE { 1 } else { kernel.active.div_ceil(WIDTH) };
+    let components = if PLANAR { 2 } else { 3 };
+    let (mass, q) = (&V::view(&kernel.mass)[..rows], &V::view(q)[..components * rows]);
+    let v = &V::view(v)[..if L::VELOCITY { components * rows } else { 0 }];
+    let a = &mut V::view_mut(a)[..components * rows];
     for source in &kernel.sources {
-        let own = source.place.0 * WIDTH + source.place.1;
+        let own = if ONE { 0 } else { source.place.0 };
         let (mut place, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
         for c in 0..components {
-            place[c] = V::splat(as_numbers(q)[c * stride + own]);
+            place[c] = q[c * rows + own].permute(&source.lane);
             if L::VELOCITY {
-                speed[c] = V::splat(as_numbers(v)[c * stride + own]);
+                speed[c] = v[c * rows + own].permute(&source.lane);
             }
         }
         let strength = V::load(source.strength[0]);
         let mut sum = [V::zero(); 3];
+        // Of the row that the source is in, which waits for the reaction.
+        let mut beside = [V::zero(); 3];
         for row in 0..rows {
             let there = V::zero().less(V::load(source.others[row]));
-            let mut d = difference(vector(V::view(q), row, rows, components), place);
+            let mut d = difference(vector(q, row, rows, components), place);
             let mut w = [V::zero(); 3];
             if L::VELOCITY {
-                w = difference(vector(V::view(v), row, rows, components), speed);
+                w = difference(vector(v, row, rows, components), speed);
             }
             // Where nobody else is, a place that gives a number.
             d[0] = V::select(there, d[0], V::one());
             let pull = kernel.law.pull(source.index, strength, d, w);
             for c in 0..components {
                 let term = V::select(there, pull[c], V::zero());
-                a[c * rows + row] += term;
+                if row == own {
+                    beside[c] = term;
+                } else {
+                    a[c * rows + row] += term;
+                }
                 if row < massive {
                     let mut part = mass[row] * term;
                     for turn in &TURNS {
@@ -160,8 +176,7 @@ fn packed<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: 
         let inverse_mass = V::load(source.alone);
         let itself = V::zero().less(inverse_mass);
         for c in 0..components {
-            let a = &mut a[c * rows + source.place.0];
-            *a = V::select(itself, *a + -(sum[c] * inverse_mass), *a);
+            a[c * rows + own] += V::select(itself, -(sum[c] * inverse_mass), beside[c]);
         }
     }
 }
@@ -220,10 +235,12 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
 
 #[inline(always)]
 fn kernel<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v: &[Lanes], a: &mut [Lanes]) {
-    if kernel.packed {
-        packed::<V, L>(kernel, q, v, a);
-    } else {
-        batched::<V, L>(kernel, q, v, a);
+    match (kernel.packed, kernel.shape.components == 2, kernel.shape.rows == 1) {
+        (false, ..) => batched::<V, L>(kernel, q, v, a),
+        (true, false, false) => packed::<V, L, false, false>(kernel, q, v, a),
+        (true, false, true) => packed::<V, L, false, true>(kernel, q, v, a),
+        (true, true, false) => packed::<V, L, true, false>(kernel, q, v, a),
+        (true, true, true) => packed::<V, L, true, true>(kernel, q, v, a),
     }
 }
 
@@ -244,6 +261,9 @@ impl<L: Law> Force<Lanes> for Kernel<L> {
         }
         kernel_tier(self, phase.q, phase.v, a);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        if self.sources.len() <= 1 { Adds::Once } else { Adds::Severally }
     }
     fn needs(&self) -> Needs {
         Needs { velocity: L::VELOCITY, ..Needs::default() }

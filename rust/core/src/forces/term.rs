@@ -138,6 +138,11 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     /// The kernel for lanes laid out and scaled as the context says.
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>>;
 
+    /// One kernel of another force and then this one, where the work of the other serves both.
+    fn kernel_after(&self, _other: &dyn ForceTerm, _: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        None
+    }
+
     /// Its potential energy of these bodies, zero if it has none, and Σ r·F; the same on any number of threads.
     ///
     /// # Errors

@@ -3,7 +3,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Lanes, Vector8};
@@ -169,5 +169,8 @@ impl Force<Lanes> for Kernel {
     ) -> Result<()> {
         kernel_tier(self, a, first);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

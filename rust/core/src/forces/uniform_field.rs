@@ -3,7 +3,7 @@
 use super::bodies::{Of, PreciseBodies, joined, vector_sum};
 use super::context::{Context, System};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
-use super::{Force, Phase};
+use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::points::distance;
@@ -100,5 +100,8 @@ impl Force<Lanes> for Kernel {
             *a = if first { g } else { *a + g };
         }
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
     }
 }

@@ -8,7 +8,7 @@
 use super::pair::squared_distance;
 use super::passive::attraction;
 use crate::error::Result;
-use crate::forces::{Force, Phase};
+use crate::forces::{Adds, Force, Phase};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Shape};
 use crate::numerics::inverse_cube::InverseCube;
@@ -268,6 +268,9 @@ impl Force<Lanes> for FewBodies<Lanes> {
     ) -> Result<()> {
         lanes_tier(self, phase.q, a, first);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        Adds::OnceAtLast
     }
 }
 

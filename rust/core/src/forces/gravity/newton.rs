@@ -72,6 +72,17 @@ fn few(
     FewBodies::new(context.shape, context.blocks(), strength, context.units.take(softening, [1, 0, 0]))
 }
 
+/// The ring of the bodies of one system, if it has few and all attract.
+pub fn ring(context: &Context<'_>, constant: f64, softening: f64) -> Option<Ring> {
+    let system = context.first();
+    let few = context.active <= RING_MAX && context.active == system.bodies.len();
+    (few && context.arrangement == Arrangement::Packed).then(|| {
+        let constant = context.units.take(constant, CONSTANT);
+        let strength = system.mass.iter().map(|mass| constant * mass).collect();
+        Ring::new(context.shape, strength, context.units.take(softening, [1, 0, 0]))
+    })
+}
+
 /// The kernel of Σ strengthⱼ (rⱼ − rᵢ)/(r² + softening²)^{3/2} on every body, from those of all that come first.
 pub fn attraction(
     context: &Context<'_>,

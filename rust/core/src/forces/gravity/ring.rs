@@ -7,7 +7,7 @@
 use super::pair::squared_distance;
 use super::passive::packed_attraction;
 use crate::error::Result;
-use crate::forces::{Force, Phase};
+use crate::forces::{Adds, Force, Phase};
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
@@ -19,10 +19,37 @@ use crate::tiered;
 struct Turn {
     forward: [i64; WIDTH],
     backward: [i64; WIDTH],
-    /// `G·m` of the body ahead, zero in the lanes without a body.
-    strength_ahead: Lanes,
-    /// `G·m` of the body behind; `None` when ahead and behind are the same body.
-    strength_behind: Option<Lanes>,
+    /// Of `G·m`.
+    strength: Weight,
+}
+
+/// A number of the bodies that a turn brings together.
+#[derive(Debug)]
+struct Weight {
+    /// Of the body ahead, zero in the lanes without a body.
+    ahead: Lanes,
+    /// Of the body behind; not looked at when ahead and behind are the same body.
+    behind: Lanes,
+}
+
+impl Weight {
+    /// Of so many turns, from the numbers of the bodies.
+    fn of_turns(numbers: &[f64]) -> Vec<Self> {
+        let n = numbers.len();
+        let weight = |distance: usize| {
+            Lanes(core::array::from_fn(|lane| if lane < n { numbers[(lane + distance) % n] } else { 0.0 }))
+        };
+        (1..=n / 2).map(|k| Self { ahead: weight(k), behind: weight(n - k) }).collect()
+    }
+}
+
+/// Another force along the same directions, by the same power of the distance.
+#[derive(Debug)]
+struct Beside {
+    /// In the place of `G·m`, turn by turn.
+    weights: Vec<Weight>,
+    /// What each body multiplies its sum by; zero for none, whatever the sum is.
+    factor: Lanes,
 }
 
 /// Gravity among the first `n ≤ 8` bodies (row 0) and on the massless ones (rows from 1).
@@ -34,6 +61,7 @@ pub struct Ring {
     /// `ε²`, and 1 in the lanes without a body, which keeps their distance to themselves from being 0.
     softening2_first_row: Lanes,
     softening2: f64,
+    beside: Option<Beside>,
 }
 
 impl Ring {
@@ -41,38 +69,62 @@ impl Ring {
     pub fn new(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
         let n = strength.len();
         let body = |lane: usize, distance: usize| if lane < n { (lane + distance) % n } else { lane };
-        let weight = |lane: usize, distance: usize| {
-            if lane < n { strength[(lane + distance) % n] } else { 0.0 }
-        };
         let turns = (1..=n / 2)
-            .map(|k| Turn {
+            .zip(Weight::of_turns(&strength))
+            .map(|(k, strength)| Turn {
                 forward: core::array::from_fn(|lane| body(lane, k) as i64),
                 backward: core::array::from_fn(|lane| body(lane, n - k) as i64),
-                strength_ahead: Lanes(core::array::from_fn(|lane| weight(lane, k))),
-                strength_behind: (2 * k != n)
-                    .then(|| Lanes(core::array::from_fn(|lane| weight(lane, n - k)))),
+                strength,
             })
             .collect();
         let softening2 = softening * softening;
         let softening2_first_row =
             Lanes(core::array::from_fn(|lane| if lane < n { softening2 } else { 1.0 }));
-        Self { shape, turns, strength, softening2_first_row, softening2 }
+        Self { shape, turns, strength, softening2_first_row, softening2, beside: None }
+    }
+
+    /// With another force of these numbers, added after gravity, where there are no massless bodies.
+    pub fn beside(self, numbers: &[f64], factor: Lanes) -> Self {
+        Self { beside: Some(Beside { weights: Weight::of_turns(numbers), factor }), ..self }
+    }
+}
+
+/// Adds the pulls of a turn, along `d` and, unless it is `half` a turn, back.
+#[inline(always)]
+fn add_turn<V: Vector8, const PLANAR: bool>(
+    sum: &mut [V; 3],
+    (d, back): (&[V; 3], &[V; 3]),
+    weight: &Weight,
+    half: bool,
+) {
+    let components = if PLANAR { 2 } else { 3 };
+    let ahead = V::load(weight.ahead);
+    for c in 0..components {
+        sum[c] = ahead.multiply_add(d[c], sum[c]);
+    }
+    if !half {
+        let behind = V::load(weight.behind);
+        for c in 0..components {
+            sum[c] = behind.multiply_subtract_from(back[c], sum[c]);
+        }
     }
 }
 
 #[inline(always)]
-fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize>(
+fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
     ring: &Ring,
     q: &[Lanes],
     a: &mut [Lanes],
     first: bool,
 ) {
     let rows = ring.shape.rows;
+    // Not copied: a copy is made with narrower instructions than it is read with.
+    let (places, sums) = (V::view(q), V::view_mut(&mut *a));
     let softening2 = V::load(ring.softening2_first_row);
     let components = if PLANAR { 2 } else { 3 };
     let mut place = [V::zero(); 3];
     for c in 0..components {
-        place[c] = V::load(q[c * rows]);
+        place[c] = places[c * rows];
     }
     let turns = &ring.turns[..TURNS];
     let mut d = [[V::zero(); 3]; TURNS];
@@ -84,23 +136,37 @@ fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize>(
         r2[k] = squared_distance::<V, PLANAR, true>(d[k], softening2);
     }
     let w = V::inverse_cubes(r2);
-    let mut sum = [V::zero(); 3];
+    let mut back = [[V::zero(); 3]; TURNS];
     for (k, turn) in turns.iter().enumerate() {
-        let ahead = V::load(turn.strength_ahead);
         for c in 0..components {
             d[k][c] = d[k][c] * w[k];
-            sum[c] = ahead.multiply_add(d[k][c], sum[c]);
-        }
-        if let Some(behind) = turn.strength_behind {
-            let behind = V::load(behind);
-            for c in 0..components {
-                sum[c] = behind.multiply_subtract_from(d[k][c].permute(&turn.backward), sum[c]);
+            if !(EVEN && k + 1 == TURNS) {
+                back[k][c] = d[k][c].permute(&turn.backward);
             }
         }
     }
+    let mut sum = [V::zero(); 3];
+    for (k, turn) in turns.iter().enumerate() {
+        add_turn::<V, PLANAR>(&mut sum, (&d[k], &back[k]), &turn.strength, EVEN && k + 1 == TURNS);
+    }
+    if !first {
+        for c in 0..components {
+            sum[c] = sums[c * rows] + sum[c];
+        }
+    }
+    if let Some(beside) = &ring.beside {
+        let mut other = [V::zero(); 3];
+        for (k, weight) in beside.weights[..TURNS].iter().enumerate() {
+            add_turn::<V, PLANAR>(&mut other, (&d[k], &back[k]), weight, EVEN && k + 1 == TURNS);
+        }
+        let factor = V::load(beside.factor);
+        let nothing = factor.abs().less_equal(V::zero());
+        for c in 0..components {
+            sum[c] += V::select(nothing, V::zero(), factor * other[c]);
+        }
+    }
     for c in 0..components {
-        let a = &mut a[c * rows];
-        *a = if first { sum[c] } else { V::load(*a) + sum[c] }.store();
+        sums[c * rows] = sum[c];
     }
     if rows > 1 {
         if ring.softening2 > 0.0 {
@@ -140,18 +206,21 @@ fn passive_rows<V: Vector8 + InverseCube, const PLANAR: bool, const SOFT: bool>(
 fn apply<V: Vector8 + InverseCube>(ring: &Ring, q: &[Lanes], a: &mut [Lanes], first: bool) {
     let planar = ring.shape.components == 2;
     macro_rules! select {
-        ($($turns:literal)+) => {
-            match (ring.turns.len(), planar) {
+        ($($bodies:literal)+) => {
+            match (ring.strength.len(), planar) {
                 $(
-                    ($turns, false) => kernel::<V, false, $turns>(ring, q, a, first),
-                    ($turns, true) => kernel::<V, true, $turns>(ring, q, a, first),
+                    ($bodies, false) => select!($bodies, false),
+                    ($bodies, true) => select!($bodies, true),
                 )+
                 // More than RING_MAX bodies never come here.
                 _ => {}
             }
         };
+        ($bodies:literal, $planar:literal) => {
+            kernel::<V, $planar, { $bodies / 2 }, { $bodies % 2 == 0 }>(ring, q, a, first)
+        };
     }
-    select!(0 1 2 3 4);
+    select!(0 1 2 3 4 5 6 7 8);
 }
 
 tiered! {
@@ -168,5 +237,9 @@ impl Force<Lanes> for Ring {
     ) -> Result<()> {
         apply_tier(self, phase.q, a, first);
         Ok(())
+    }
+    fn adds(&self) -> Adds {
+        // What is beside is added after gravity, which is then first.
+        if self.beside.is_some() { Adds::Severally } else { Adds::OnceAtLast }
     }
 }

@@ -63,16 +63,24 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
     if let (true, Some(few)) = (plan.relative, few_bodies(&context)) {
         return Dynamics::closed(few);
     }
-    let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
+    let forces = systems.first().map_or(&[][..], |system| system.forces);
+    let mut kernels = Vec::with_capacity(forces.len());
+    if let [one, other, ..] = forces {
+        // Which of two comes first their sum does not tell.
+        kernels.extend(one.kernel_after(&**other, &context));
+        if kernels.is_empty() {
+            context.term = 1;
+            kernels.extend(other.kernel_after(&**one, &context));
+        }
+    }
+    let taken = 2 * kernels.len();
+    for (term, force) in forces.iter().enumerate().skip(taken) {
         context.term = term;
-        force.kernel(&context)
-    };
-    let dynamics = Dynamics::new(shape, described(&systems).map(kernel).collect());
+        kernels.push(force.kernel(&context));
+    }
+    let dynamics = Dynamics::new(shape, kernels);
     match plan.transformed {
         None => dynamics,
-        Some((by, _)) => {
-            let forces = plan.forces_of(units[0].unit.copy);
-            dynamics.watched_by(Box::new(InverseDistances::new(by, forces, &context)))
-        }
+        Some((by, _)) => dynamics.watched_by(Box::new(InverseDistances::new(by, forces, &context))),
     }
 }
