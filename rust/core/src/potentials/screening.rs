@@ -19,11 +19,11 @@ use crate::numerics::power::{Power, Powers};
 use crate::words::unknown;
 
 /// Amplitudes and rates of a sum of exponentials.
-type Terms = &'static [[f64; 2]];
+type Terms<const N: usize> = [[f64; 2]; N];
 
-static ZBL: [[f64; 2]; 4] = [[0.18175, 3.1998], [0.50986, 0.94229], [0.28022, 0.40290], [0.02817, 0.20162]];
-static MOLIERE: [[f64; 2]; 3] = [[0.35, 0.3], [0.55, 1.2], [0.10, 6.0]];
-static KR_C: [[f64; 2]; 3] = [[0.190945, 0.278544], [0.473674, 0.637174], [0.335381, 1.919249]];
+static ZBL: Terms<4> = [[0.18175, 3.1998], [0.50986, 0.94229], [0.28022, 0.40290], [0.02817, 0.20162]];
+static MOLIERE: Terms<3> = [[0.35, 0.3], [0.55, 1.2], [0.10, 6.0]];
+static KR_C: Terms<3> = [[0.190945, 0.278544], [0.473674, 0.637174], [0.335381, 1.919249]];
 /// The factor of x and the coefficients of y², y³, y⁴.
 const LENZ_JENSEN: [f64; 4] = [9.67, 0.3344, 0.0485, 0.002647];
 
@@ -36,7 +36,8 @@ const FAR: f64 = 1e40;
 /// A screening function.
 #[derive(Clone, Debug)]
 pub(super) enum Screening {
-    Exponentials(Terms),
+    Four(&'static Terms<4>),
+    Three(&'static Terms<3>),
     LenzJensen,
     ThomasFermi(Box<ThomasFermi>),
 }
@@ -58,11 +59,11 @@ pub fn screening_length(name: &str, numbers: [f64; 2]) -> Result<f64> {
 impl Screening {
     pub(super) fn of(name: &str) -> Self {
         match name {
-            "moliere" => Self::Exponentials(&MOLIERE),
-            "kr_c" => Self::Exponentials(&KR_C),
+            "moliere" => Self::Three(&MOLIERE),
+            "kr_c" => Self::Three(&KR_C),
             "lenz_jensen" => Self::LenzJensen,
             "thomas_fermi" => Self::ThomasFermi(Box::new(ThomasFermi::new())),
-            _ => Self::Exponentials(&ZBL),
+            _ => Self::Four(&ZBL),
         }
     }
 
@@ -70,13 +71,8 @@ impl Screening {
     #[inline(always)]
     pub(super) fn value<S: Analytic>(&self, x: S) -> S {
         match self {
-            Self::Exponentials(terms) => {
-                let mut sum = S::zero();
-                for &[amplitude, rate] in *terms {
-                    sum += S::splat(amplitude) * (-(x * S::splat(rate))).exp();
-                }
-                sum
-            }
+            Self::Four(terms) => exponentials(terms, x, 0),
+            Self::Three(terms) => exponentials(terms, x, 0),
             Self::LenzJensen => lenz_jensen(x)[0],
             Self::ThomasFermi(function) => function.all(x)[0],
         }
@@ -85,14 +81,8 @@ impl Screening {
     #[inline(always)]
     pub(super) fn with_slope<S: Analytic>(&self, x: S) -> S {
         match self {
-            Self::Exponentials(terms) => {
-                let mut sum = S::zero();
-                for &[amplitude, rate] in *terms {
-                    let u = x.min(S::splat(FAR)) * S::splat(rate);
-                    sum += S::splat(amplitude) * (-u).exp() * (S::one() + u);
-                }
-                sum
-            }
+            Self::Four(terms) => exponentials(terms, x, 1),
+            Self::Three(terms) => exponentials(terms, x, 1),
             Self::LenzJensen => {
                 let [value, slope, _] = lenz_jensen(x);
                 value + slope
@@ -108,14 +98,8 @@ impl Screening {
     pub(super) fn with_bend<S: Analytic>(&self, x: S) -> S {
         let two = S::splat(2.0);
         match self {
-            Self::Exponentials(terms) => {
-                let mut sum = S::zero();
-                for &[amplitude, rate] in *terms {
-                    let u = x.min(S::splat(FAR)) * S::splat(rate);
-                    sum += S::splat(amplitude) * (-u).exp() * (two + u * (two + u));
-                }
-                sum
-            }
+            Self::Four(terms) => exponentials(terms, x, 2),
+            Self::Three(terms) => exponentials(terms, x, 2),
             Self::LenzJensen => {
                 let [value, slope, bend] = lenz_jensen(x);
                 two * (value + slope) + bend
@@ -126,6 +110,28 @@ impl Screening {
             }
         }
     }
+}
+
+/// Σ aᵢ e^−u wᵢ, u = x times the rate, of φ and of what its first and second derivative make: w = 1, 1 + u, 2 + 2u + u².
+#[inline(always)]
+fn exponentials<S: Analytic, const N: usize>(terms: &Terms<N>, x: S, order: usize) -> S {
+    let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
+    let mut u = [x; N];
+    for i in 0..N {
+        u[i] = x * S::splat(terms[i][1]);
+    }
+    let falling = S::falling_exps(u);
+    let mut sum = S::zero();
+    for i in 0..N {
+        let amplitude = S::splat(terms[i][0]);
+        let weight = match order {
+            0 => amplitude,
+            1 => u[i].multiply_add(amplitude, amplitude),
+            _ => amplitude * u[i].multiply_add(u[i] + S::splat(2.0), S::splat(2.0)),
+        };
+        sum = falling[i].multiply_add(weight, sum);
+    }
+    sum
 }
 
 /// φ, −x φ′ and x² φ″ of Lenz and Jensen. With φ = e^−y P: dφ/dx = (9.67/2) e^−y Q, Q = (P′ − P)/y.

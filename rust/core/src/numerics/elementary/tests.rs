@@ -47,6 +47,45 @@ fn exp_at_the_ends_of_its_domain() {
     assert_eq!(Exponential::exp(1e-300), 1.0);
 }
 
+#[inline(always)]
+fn falling_body<V: Vector8 + Exponential>(x: Lanes) -> Lanes {
+    let [one, other] = V::falling_exps([V::load(x), V::load(x) + V::one()]);
+    (one + other).store()
+}
+
+crate::tiered! {
+    fn falling_lanes[][](x: Lanes) -> Lanes = falling_body;
+}
+
+/// Measured over 1e6 arguments: 0.78 ulp.
+const FALLING_ULPS: f64 = 0.85;
+
+#[test]
+fn falling_exponentials_are_within_a_unit() {
+    let mut worst = 0.0_f64;
+    for at in 0..200_000 {
+        let x = 708.0 * (f64::from(at) / 2e5).powi(3);
+        let [value] = f64::falling_exps([x]);
+        worst = worst.max(ulps(value, (-DoubleDouble::from(x)).exp()));
+        if at % 1000 == 0 {
+            let sum = |x: f64| {
+                let [one, other] = f64::falling_exps([x, x + 1.0]);
+                one + other
+            };
+            same_bits([x; WIDTH], sum, [falling_lanes, falling_body::<Lanes>]);
+        }
+    }
+    assert!(worst < FALLING_ULPS, "{worst}");
+}
+
+#[test]
+fn falling_exponentials_at_the_ends() {
+    let values = f64::falling_exps([0.0, -0.0, 708.0, 708.1, f64::MAX, f64::INFINITY, f64::NAN]);
+    assert_eq!([values[0], values[1]], [1.0, 1.0]);
+    assert!(ulps(values[2], (-DoubleDouble::from(708.0)).exp()) < FALLING_ULPS);
+    assert_eq!(values[3..], [0.0; 4]);
+}
+
 /// (x, high and low part of eˣ), from mpmath with 60 digits.
 const EXP: [(f64, f64, f64); 15] = [
     (-708.3, 2.450295530965988e-308, 0.0),
