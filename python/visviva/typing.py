@@ -60,6 +60,7 @@ MethodName: TypeAlias = Literal[
     "sofroniou_spaletta8",
     "stormer13",
     "symplectic_euler",
+    "taylor",
     "tsitouras54",
     "verner98",
     "yoshida4",

@@ -13,7 +13,8 @@ use crate::ode::methods::{
     blanes_moan_rkn4, blanes_moan_rkn6_11, blanes_moan_rkn6_14, blanes_moan_s6, blanes_moan_s10,
     bogacki_shampine32, boris, boris4, dop853, dormand_prince54, euler, heun, kahan_li6, kahan_li8, leapfrog,
     leapfrog_dkd, mclachlan4, midpoint, pefrl4, rk4, ruth3, sofroniou_spaletta6, sofroniou_spaletta8,
-    sofroniou_spaletta10, stormer13, symplectic_euler, tsitouras54, verner98, yoshida4, yoshida6, yoshida8,
+    sofroniou_spaletta10, stormer13, symplectic_euler, taylor, tsitouras54, verner98, yoshida4, yoshida6,
+    yoshida8,
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{
@@ -33,6 +34,7 @@ pub static METHODS: &[&Method] = &[
     &tsitouras54::METHOD,
     &dop853::METHOD,
     &verner98::METHOD,
+    &taylor::METHOD,
     &symplectic_euler::METHOD,
     &leapfrog::METHOD,
     &leapfrog_dkd::METHOD,

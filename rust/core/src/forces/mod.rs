@@ -25,6 +25,7 @@ pub mod pair_potential;
 pub mod post_newtonian;
 pub mod quadratic_drag;
 pub mod rotating_frame;
+pub mod series;
 mod sources;
 pub mod spheres;
 pub mod spring;
@@ -38,6 +39,7 @@ pub use term::{ForceDeclaration, ForceTerm};
 use crate::error::Result;
 use crate::numerics::element::{Element, PairMut, Shape};
 use crate::ode::Method;
+use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::stepper::Stepper;
 use crate::ode::system::{Form, Needs, System};
@@ -114,6 +116,8 @@ pub struct Dynamics<S: Element> {
     forces: Vec<Box<dyn Force<S>>>,
     /// The only force, if the bodies it acts between are all there are.
     closed: Option<FewBodies<S>>,
+    /// The same forces as series, for a method that asks for them.
+    series: Option<series::AllSeries<S>>,
     needs: Needs,
     evaluations: u64,
     monitor: Option<Box<dyn Monitor<S>>>,
@@ -127,7 +131,7 @@ impl<S: Element> Dynamics<S> {
             forces.swap(0, 1);
         }
         let needs = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
-        Self { shape, forces, closed: None, needs, evaluations: 0, monitor: None }
+        Self { shape, forces, closed: None, needs, evaluations: 0, series: None, monitor: None }
     }
 
     /// With what tells a time transformation how fast time goes.
@@ -192,6 +196,10 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
             a.fill(S::zero());
         }
         Ok(())
+    }
+
+    fn expand(&mut self, jet: &mut Jet<S>, _: &mut Ticker<'_>) -> Result<()> {
+        self.expand_series(jet)
     }
 
     /// Rotations about several axes do not commute: half of each in turn, then in the reverse order, which keeps the

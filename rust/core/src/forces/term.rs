@@ -7,6 +7,7 @@
 use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
+use super::series::Series;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::scaled::Scaled;
@@ -141,6 +142,16 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     /// One kernel of another force and then this one, where the work of the other serves both.
     fn kernel_after(&self, _other: &dyn ForceTerm, _: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         None
+    }
+
+    /// The same for a method of Taylor series, if the force [has](Self::has_series) one.
+    fn series(&self, _: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        None
+    }
+
+    /// Whether motions under it can be expanded in Taylor series.
+    fn has_series(&self) -> bool {
+        false
     }
 
     /// Its potential energy of these bodies, zero if it has none, and Σ r·F; the same on any number of threads.

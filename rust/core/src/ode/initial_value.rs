@@ -240,7 +240,11 @@ impl Request {
                 }
                 Ok(Work::Equal(Box::new(EqualSteps::new(tableau, self.direction() * dt, system, state))))
             }
-            Scheme::Splitting(_) | Scheme::NystromSplitting(_) | Scheme::Boris(_) | Scheme::Multistep(_) => {
+            Scheme::Splitting(_)
+            | Scheme::NystromSplitting(_)
+            | Scheme::Boris(_)
+            | Scheme::Multistep(_)
+            | Scheme::Taylor(_) => {
                 refused("method", format!("{} takes no equations y' = f(t, y)", method.name))
             }
         }

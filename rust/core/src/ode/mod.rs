@@ -24,12 +24,14 @@ mod order_conditions;
 pub mod passes;
 pub mod run;
 pub mod runge_kutta;
+pub mod series;
 pub mod splitting;
 pub mod state;
 pub mod step_control;
 pub mod stepper;
 pub mod system;
 pub mod table;
+pub mod taylor;
 pub mod transformation;
 pub mod transformed;
 pub mod trial;
@@ -76,6 +78,17 @@ pub enum Scheme {
     Embedded(Embedded),
     /// Störmer's multistep method, with what starts it.
     Multistep(Multistep),
+    /// Taylor series of the motion itself.
+    Taylor(Taylor),
+}
+
+/// The orders of a method of Taylor series; the tolerance says which.
+#[derive(Clone, Copy, Debug)]
+pub struct Taylor {
+    /// The lowest.
+    pub lowest: usize,
+    /// The highest.
+    pub highest: usize,
 }
 
 /// `kick[0] drift[0] kick[1] drift[1] … drift[s-1] kick[s]`, coefficients in units of the step.
@@ -162,6 +175,7 @@ impl Scheme {
                 ("second_differences", vec![table.second_differences]),
                 ("velocity", vec![table.velocity]),
             ],
+            Self::Taylor(_) => Vec::new(),
         }
     }
 }
@@ -169,14 +183,19 @@ impl Scheme {
 impl Method {
     /// Whether the method chooses its own steps.
     pub const fn adaptive(&self) -> bool {
-        matches!(self.scheme, Scheme::Embedded(_))
+        matches!(self.scheme, Scheme::Embedded(_) | Scheme::Taylor(_))
+    }
+
+    /// Whether it is a table of coefficients; a series has those of the motion, and the order that the tolerance asks for.
+    pub const fn has_table(&self) -> bool {
+        !matches!(self.scheme, Scheme::Taylor(_))
     }
 
     /// The most blocks, each of as many numbers as an evaluation gives, that its steps hold at a node besides the state
     /// ([`Stepper::memory`](stepper::Stepper::memory)).
     pub const fn held(&self) -> usize {
         match self.scheme {
-            Scheme::RungeKutta(_) | Scheme::Embedded(_) | Scheme::Boris(_) => 0,
+            Scheme::RungeKutta(_) | Scheme::Embedded(_) | Scheme::Boris(_) | Scheme::Taylor(_) => 0,
             // The acceleration of the last kick.
             Scheme::Splitting(_) | Scheme::NystromSplitting(_) => 1,
             // Beside second differences: three blocks of accelerations, a compensated difference of coordinates, and
@@ -194,6 +213,7 @@ impl Method {
                 matches!(form, Form::SecondOrder(_)) && !needs.velocities()
             }
             Scheme::Boris(_) => matches!(form, Form::SecondOrder(_)) && !needs.velocity,
+            Scheme::Taylor(_) => matches!(form, Form::SecondOrder(_)),
         }
     }
 }

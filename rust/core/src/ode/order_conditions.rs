@@ -76,9 +76,10 @@ enum Subject {
 }
 
 impl Subject {
-    fn new(method: &Method, trees: &[Tree]) -> Self {
+    /// `None` of a method without a table.
+    fn new(method: &Method, trees: &[Tree]) -> Option<Self> {
         let (step, dense) = (method.order as usize, method.dense_order as usize);
-        match &method.scheme {
+        Some(match &method.scheme {
             Scheme::Splitting(table) | Scheme::Boris(table) => Self::Splitting(table.into(), step),
             Scheme::NystromSplitting(table) => Self::NystromSplitting(nystrom::Table(table.into()), step),
             Scheme::RungeKutta(table) => {
@@ -90,7 +91,8 @@ impl Subject {
                 Self::RungeKutta(table, Orders { step, dense, estimates })
             }
             Scheme::Multistep(table) => Self::Multistep(table.into(), step),
-        }
+            Scheme::Taylor(_) => return None,
+        })
     }
 
     fn misses(&self, trees: &[Tree]) -> Vec<Family> {
@@ -138,9 +140,11 @@ impl Subject {
 /// All trees that a Runge–Kutta method's conditions need: one order more than it has.
 fn trees_of(method: &Method) -> Vec<Tree> {
     match method.scheme {
-        Scheme::Multistep(_) | Scheme::Splitting(_) | Scheme::NystromSplitting(_) | Scheme::Boris(_) => {
-            vec![]
-        }
+        Scheme::Multistep(_)
+        | Scheme::Splitting(_)
+        | Scheme::NystromSplitting(_)
+        | Scheme::Boris(_)
+        | Scheme::Taylor(_) => vec![],
         _ => trees_to_order(method.order as usize + 1),
     }
 }
@@ -149,7 +153,8 @@ fn trees_of(method: &Method) -> Vec<Tree> {
 fn every_table_satisfies_its_order_conditions_to_thirty_digits() {
     for method in METHODS {
         let trees = trees_of(method);
-        for family in Subject::new(method, &trees).misses(&trees) {
+        let Some(subject) = Subject::new(method, &trees) else { continue };
+        for family in subject.misses(&trees) {
             // Both as a share of the terms and outright: the worst measured is 4.0e-31, in the second
             // estimate of DOP853, whose terms reach 100.
             assert!(family.share < HOLDS && family.miss < 1e-30, "{}: {family:?}", method.name);
@@ -161,7 +166,8 @@ fn every_table_satisfies_its_order_conditions_to_thirty_digits() {
 fn no_table_satisfies_the_conditions_of_the_next_order() {
     for method in METHODS {
         let trees = trees_of(method);
-        let families = match Subject::new(method, &trees) {
+        let Some(subject) = Subject::new(method, &trees) else { continue };
+        let families = match subject {
             Subject::Splitting(table, order) => table.misses(order + 1),
             Subject::NystromSplitting(table, order) => table.misses(order + 1),
             Subject::RungeKutta(table, orders) => {
@@ -181,7 +187,7 @@ fn no_table_satisfies_the_conditions_of_the_next_order() {
 fn a_change_in_the_twelfth_digit_of_any_coefficient_is_noticed() {
     for method in METHODS {
         let trees = trees_of(method);
-        let subject = Subject::new(method, &trees);
+        let Some(subject) = Subject::new(method, &trees) else { continue };
         let mut index = 0;
         while let Some(changed) = subject.changed(index) {
             let families = changed.misses(&trees);
@@ -213,7 +219,8 @@ fn the_step_control_raises_the_error_to_the_power_its_estimates_have() {
 fn a_method_is_what_it_declares() {
     for method in METHODS {
         let name = method.name;
-        let stages = match Subject::new(method, &trees_of(method)) {
+        let Some(subject) = Subject::new(method, &trees_of(method)) else { continue };
+        let stages = match subject {
             Subject::Splitting(table, _) | Subject::NystromSplitting(nystrom::Table(table), _) => {
                 assert!(method.symplectic, "{name}: kicks and drifts are symplectic");
                 assert_eq!(method.reversible, table.is_palindrome(), "{name}");

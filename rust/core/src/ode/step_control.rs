@@ -7,6 +7,7 @@
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::element::Element;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
+use crate::numerics::power_of_two::{exponent, power_of_two};
 use crate::numerics::real::{Mask, Real};
 use crate::tiered;
 
@@ -166,6 +167,14 @@ pub(super) fn root<S: Real>(square: S, rule: &Rule<S>) -> S {
     product
 }
 
+/// Its cube, and one over that, still are numbers.
+const WIDEST: i32 = 300;
+
+/// As [`Controlled::power_below`].
+fn power_below(value: f64) -> f64 {
+    power_of_two(exponent(value).clamp(-WIDEST, WIDEST))
+}
+
 /// Scalars whose steps can be controlled.
 pub trait Controlled: Element {
     /// The next step of the running lanes, 0 in the others.
@@ -178,6 +187,11 @@ pub trait Controlled: Element {
     /// The sum of the lanes, in every lane.
     #[must_use]
     fn sum_of_lanes(self) -> Self;
+    /// The first lane, as a double.
+    fn first_lane(self) -> f64;
+    /// The power of two that is at most the size of a normal number, or the least or greatest of a wide range.
+    #[must_use]
+    fn power_below(self) -> Self;
 }
 
 macro_rules! controlled {
@@ -196,6 +210,12 @@ macro_rules! controlled {
             }
             fn sum_of_lanes(self) -> Self {
                 self
+            }
+            fn first_lane(self) -> f64 {
+                DoubleDouble::from(self).to_f64()
+            }
+            fn power_below(self) -> Self {
+                Self::splat(power_below(self.first_lane()))
             }
         }
     )+};
@@ -256,6 +276,12 @@ impl Controlled for Lanes {
     }
     fn sum_of_lanes(self) -> Self {
         Self::splat(self.0.iter().sum())
+    }
+    fn first_lane(self) -> f64 {
+        self.0[0]
+    }
+    fn power_below(self) -> Self {
+        self.map(power_below)
     }
 }
 

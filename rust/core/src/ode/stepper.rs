@@ -166,7 +166,7 @@ pub fn stepper<S: Element>(
         }
         Scheme::RungeKutta(tableau) => Box::new(RungeKuttaStep::new(tableau, h, system, state)),
         Scheme::Multistep(table) => Box::new(MultistepStep::new(table, h, system, state)),
-        Scheme::Embedded(_) => {
+        Scheme::Embedded(_) | Scheme::Taylor(_) => {
             return Err(Error::invalid("dt", format!("{} chooses its own steps; leave dt out", method.name)));
         }
     })

@@ -4,6 +4,7 @@
 //! run, never per step, so a kernel that fuses much stays whole behind one virtual call.
 
 use super::Method;
+use super::series::Jet;
 use super::state::State;
 use super::stepper::Stepper;
 use super::transformation::Monitor;
@@ -112,6 +113,15 @@ pub trait System<S: Element>: Send {
     /// As [`rate`](Self::rate).
     fn kick(&mut self, t: &S, q: &[S], a: &mut [S], ticker: &mut Ticker<'_>) -> Result<()> {
         self.acceleration(t, q, &[], a, ticker)
+    }
+
+    /// Expands the motion from the state that the jet begins with, up to its order.
+    ///
+    /// # Errors
+    /// As [`rate`](Self::rate); of a system that has no series.
+    fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {
+        let _ = (jet, ticker);
+        Err(Error::Internal("the system has no series".to_owned()))
     }
 
     /// Turns velocities exactly as what rotates them does in the time `h`.

@@ -8,9 +8,11 @@ use super::Method;
 use super::Scheme;
 use super::embedded::EmbeddedStep;
 use super::norm::Norm;
+use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Settled};
 use super::system::System;
+use super::taylor::TaylorStep;
 use crate::error::{Error, Result};
 use crate::parallel::Ticker;
 
@@ -103,6 +105,11 @@ pub trait Trial<S: Controlled>: Send {
         let _ = (coordinate, into);
     }
 
+    /// The Taylor coefficients of the step tried last, if the method is made of them.
+    fn series(&self) -> Option<&Jet<S>> {
+        None
+    }
+
     /// How many terms the continuous extension has.
     fn terms(&self) -> usize {
         0
@@ -127,6 +134,7 @@ pub fn trial<S: Controlled>(
 ) -> Result<Box<dyn Trial<S>>> {
     match &method.scheme {
         Scheme::Embedded(table) => Ok(Box::new(EmbeddedStep::new(table, system, state, max_step))),
+        Scheme::Taylor(orders) => Ok(Box::new(TaylorStep::new(*orders, system, state, max_step))),
         _ => Err(Error::invalid("dt", format!("{} needs a step dt", method.name))),
     }
 }

@@ -114,7 +114,9 @@ pub fn run_units(job: &Job<'_>, units: Vec<Unit>, ticker: &mut Ticker<'_>) -> Re
                 let (guides, followers) = guided.chunk(chunk);
                 adaptive::run(job, guides, followers, inside, ticker)
             }
-            (Some(chunk), Scheme::Embedded(_)) => adaptive::run(job, runs[chunk], &[], inside, ticker),
+            (Some(chunk), Scheme::Embedded(_) | Scheme::Taylor(_)) => {
+                adaptive::run(job, runs[chunk], &[], inside, ticker)
+            }
             (Some(chunk), _) if job.plan.transformed.is_some() => {
                 adaptive::run(job, runs[chunk], &[], inside, ticker)
             }

@@ -6,6 +6,7 @@ mod explain;
 mod kinds;
 mod own;
 mod quiet;
+mod series;
 mod solutions;
 mod transformation;
 
@@ -26,8 +27,8 @@ use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
 use crate::forces::term::Coupling;
-use crate::ode::Method;
 use crate::ode::transformation::Transformation;
+use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
 use kinds::kinds_of_forces;
 use own::{Own, about, acting, check_method};
@@ -139,6 +140,7 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
+        series::check(method, &forces, &active, &passive, &groups)?;
         // Events are looked for on steps.
         let closed_forms = automatic && request.events.is_empty();
         let solutions =
@@ -198,7 +200,11 @@ impl Plan {
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
-            kinds: kinds_of_forces(scene, transformed.is_some()),
+            // Series and what a transformation watches are made of the forces on one copy.
+            kinds: kinds_of_forces(
+                scene,
+                transformed.is_some() || matches!(method.scheme, Scheme::Taylor(_)),
+            ),
             copies: scene.copies,
             particles: scene.particles,
         };

@@ -10,7 +10,7 @@ mod record;
 mod rows;
 mod size;
 
-pub use forces::{dynamics, uncoupled};
+pub use forces::{Kernel, dynamics, uncoupled};
 
 use super::Scene;
 use super::frame::{Origin, Units};

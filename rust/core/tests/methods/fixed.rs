@@ -82,7 +82,7 @@ fn round_off(method: &'static Method, compensated: bool) -> f64 {
 
 #[test]
 fn round_off_of_a_hundred_thousand_steps_stays_small_and_compensation_does_it() {
-    for method in METHODS {
+    for method in METHODS.iter().filter(|method| method.has_table()) {
         let (with, without) = (round_off(method, true), round_off(method, false));
         println!("{}: round-off {with:.1e}, without compensation {without:.1e}", method.name);
         assert!(with < 1e-15, "{}: {with:e}", method.name);

@@ -50,7 +50,7 @@ fn symplectic_defect(method: &'static Method, make: Make, h: f64) -> f64 {
 #[test]
 fn symplectic_methods_keep_the_symplectic_form_and_the_others_do_not() {
     for (name, make, _) in PROBLEMS {
-        for method in METHODS {
+        for method in METHODS.iter().filter(|method| method.has_table()) {
             let defect = symplectic_defect(method, make, 0.5);
             println!("{name}, {}: |MᵀJM − J| = {defect:.1e}", method.name);
             if method.symplectic {
@@ -66,7 +66,7 @@ fn symplectic_methods_keep_the_symplectic_form_and_the_others_do_not() {
 #[test]
 fn reversible_methods_return_and_the_others_do_not() {
     for (name, make, _) in PROBLEMS {
-        for method in METHODS {
+        for method in METHODS.iter().filter(|method| method.has_table()) {
             let Problem { mut state, mut dynamics, .. } = make();
             let start = state.clone();
             advance(method, 0.5, 4, &mut state, &mut dynamics);
@@ -134,13 +134,14 @@ fn magnitude(method: &Method) -> f64 {
         Scheme::RungeKutta(table) => table.b,
         Scheme::Embedded(table) => table.tableau.b,
         Scheme::Multistep(table) => table.start.b,
+        Scheme::Taylor(_) => &[],
     };
     weights.iter().map(|weight| weight.to_f64().abs()).sum()
 }
 
 #[test]
 fn momentum_is_kept_by_all_and_angular_momentum_by_the_symplectic() {
-    for method in METHODS {
+    for method in METHODS.iter().filter(|method| method.has_table()) {
         let [linear, angular] = drift(method, 1.0 / 16.0, 4000);
         println!("{}: momentum {linear:.1e}, angular momentum {angular:.1e}", method.name);
         // Measured 1e-16 to 1.7e-16; 4e-16 for yoshida8, whose kicks add up to 9 in magnitude, and 1e-15 for dop853 and

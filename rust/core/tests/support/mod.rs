@@ -3,7 +3,9 @@
 
 use visviva_core::Result;
 use visviva_core::forces::gravity::closed::ClosedKernel;
+use visviva_core::forces::gravity::series::EachPair;
 use visviva_core::forces::gravity::{FewBodies, Ring};
+use visviva_core::forces::series::Series;
 use visviva_core::forces::{Dynamics, Force, Phase};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::{Element, Shape};
@@ -11,6 +13,7 @@ use visviva_core::numerics::lanes::Lanes;
 use visviva_core::ode::fixed::Recorder;
 use visviva_core::ode::norm::Norm;
 use visviva_core::ode::runge_kutta::RungeKuttaStep;
+use visviva_core::ode::series::Jet;
 use visviva_core::ode::state::State;
 use visviva_core::ode::step_control::{Clock, Controlled};
 use visviva_core::ode::stepper::{Stepper, stepper};
@@ -30,6 +33,20 @@ impl<S: Element> Force<S> for HenonHeiles {
             *a = if first { term } else { *a + term };
         }
         Ok(())
+    }
+}
+
+impl<S: Element> Series<S> for HenonHeiles {
+    fn coefficient(&mut self, n: usize, jet: &Jet<S>, a: &mut [S], first: bool) {
+        let product = |i: usize, j: usize| {
+            (0..=n).fold(S::zero(), |sum, k| sum + jet.position(k)[i] * jet.position(n - k)[j])
+        };
+        let (x, y) = (jet.position(n)[0], jet.position(n)[1]);
+        let terms = [-x - S::splat(2.0) * product(0, 1), product(1, 1) - product(0, 0) - y];
+        for (a, term) in a.iter_mut().zip(terms) {
+            let term = term * jet.unit * jet.unit;
+            *a = if first { term } else { *a + term };
+        }
     }
 }
 
@@ -60,7 +77,7 @@ fn splat<S: Element>(values: &[f64]) -> Vec<S> {
 pub fn henon_heiles<S: Element>() -> Problem<S> {
     let shape = Shape { rows: 1, components: 2 };
     Problem {
-        dynamics: Dynamics::new(shape, vec![Box::new(HenonHeiles)]),
+        dynamics: Dynamics::new(shape, vec![Box::new(HenonHeiles)]).with_series(vec![Box::new(HenonHeiles)]),
         state: State::new(&splat(&[0.12, 0.3]), &splat(&[0.35, -0.2])),
         mass: vec![1.0; 2],
     }
@@ -93,9 +110,11 @@ where
     FewBodies<S>: Force<S>,
 {
     let shape = Shape { rows: mass.len(), components: 3 };
-    let strength = splat(mass);
+    let strength: Vec<S> = splat(mass);
+    let series = EachPair::new(shape, strength.clone(), softening);
     Problem {
-        dynamics: Dynamics::closed(FewBodies::new(shape, 1, strength, softening)),
+        dynamics: Dynamics::closed(FewBodies::new(shape, 1, strength, softening))
+            .with_series(vec![Box::new(series)]),
         state: State::new(&splat(q), &splat(v)),
         mass: mass.iter().copied().cycle().take(shape.len()).collect(),
     }

@@ -19,6 +19,7 @@ mod pair;
 pub mod passive;
 mod relative;
 pub mod ring;
+pub mod series;
 pub mod tiles;
 
 pub use few::FewBodies;

@@ -1,10 +1,11 @@
 //! Newton's law between all pairs: what a scene describes.
 
-use super::{FewBodies, RING_MAX, Ring, Tiles, energy};
+use super::{FewBodies, RING_MAX, Ring, Tiles, energy, series};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
 use crate::forces::context::{Arrangement, Context, System};
+use crate::forces::series::Series;
 use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
 use crate::numerics::power_of_two::exponent;
@@ -114,6 +115,15 @@ impl ForceTerm for Gravity {
             context.units.take(context.own(self, system).constant, CONSTANT) * system.mass[slot]
         };
         attraction(context, strength, self.softening)
+    }
+
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        let constant = context.units.take(self.constant, CONSTANT);
+        Some(series::attraction(context, |system, slot| constant * system.mass[slot], self.softening))
+    }
+
+    fn has_series(&self) -> bool {
+        true
     }
 
     fn potential_and_virial(

@@ -26,6 +26,7 @@ pub mod sofroniou_spaletta6;
 pub mod sofroniou_spaletta8;
 pub mod stormer13;
 pub mod symplectic_euler;
+pub mod taylor;
 pub mod tsitouras54;
 pub mod verner98;
 pub mod yoshida4;

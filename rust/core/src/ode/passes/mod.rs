@@ -4,5 +4,6 @@ pub mod errors;
 pub mod extension;
 pub mod multistep;
 pub mod rates;
+pub mod series;
 pub mod stages;
 pub mod updates;

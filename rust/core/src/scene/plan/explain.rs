@@ -214,9 +214,13 @@ impl Plan {
 
     fn describe_solution(&self) -> (String, String) {
         let integration = match self.method.scheme {
-            Scheme::Embedded(_) if self.touching => "spheres that touch are looked for step by step",
-            Scheme::Embedded(_) if !self.events.is_empty() => "events are looked for step by step",
-            Scheme::Embedded(_) => "no closed form applies, or a method was named",
+            Scheme::Embedded(_) | Scheme::Taylor(_) if self.touching => {
+                "spheres that touch are looked for step by step"
+            }
+            Scheme::Embedded(_) | Scheme::Taylor(_) if !self.events.is_empty() => {
+                "events are looked for step by step"
+            }
+            Scheme::Embedded(_) | Scheme::Taylor(_) => "no closed form applies, or a method was named",
             _ => "the method was named",
         };
         match self.solutions.counts()[..] {

@@ -4,9 +4,14 @@ use super::{Layout, Plan, Prepared};
 use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::gravity::newton::few_bodies;
 use crate::forces::monitor::InverseDistances;
+use crate::forces::series::Series;
 use crate::forces::{Dynamics, Force, ForceTerm};
 use crate::numerics::lanes::Lanes;
+use crate::ode::Scheme;
 use std::sync::Arc;
+
+/// A force, and the same as a series if it has one and the method asks for it.
+pub type Kernel = (Box<dyn Force<Lanes>>, Option<Box<dyn Series<Lanes>>>);
 
 /// The systems that units are, each with its own forces.
 fn systems<'a>(plan: &'a Plan, units: &'a [&Prepared]) -> Vec<System<'a>> {
@@ -24,7 +29,7 @@ fn described<'a>(systems: &[System<'a>]) -> impl Iterator<Item = (usize, &'a Arc
 }
 
 /// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of gravity.
-pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Box<dyn Force<Lanes>>>> {
+pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
     let systems = systems(plan, units);
     let mut context = Context {
         arrangement: Arrangement::Batched,
@@ -36,9 +41,11 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Box<dyn Force<L
         t0: plan.t0,
         threads: 1,
     };
+    let expands = matches!(plan.method.scheme, Scheme::Taylor(_));
     let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
         context.term = term;
-        force.as_newtonian().is_none().then(|| force.kernel(&context))
+        let series = if expands { force.series(&context) } else { None };
+        force.as_newtonian().is_none().then(|| (force.kernel(&context), series))
     };
     described(&systems).map(kernel).collect()
 }
@@ -79,6 +86,9 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
         kernels.push(force.kernel(&context));
     }
     let dynamics = Dynamics::new(shape, kernels);
+    if matches!(plan.method.scheme, Scheme::Taylor(_)) {
+        return dynamics.with_series(forces.iter().filter_map(|force| force.series(&context)).collect());
+    }
     match plan.transformed {
         None => dynamics,
         Some((by, _)) => dynamics.watched_by(Box::new(InverseDistances::new(by, forces, &context))),

@@ -7,15 +7,21 @@ use super::super::super::plan::Plan;
 use super::super::super::unit::{Prepared, uncoupled};
 use crate::error::Result;
 use crate::forces::gravity::passive::Pull;
+use crate::forces::gravity::series::passive::PullSeries;
+use crate::forces::series::Series;
 use crate::forces::{Force, Phase};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::{Bits, Lanes};
 use crate::numerics::real::Real;
+use crate::ode::series::Jet;
 use crate::ode::state::State;
 use crate::ode::system::{Form, Needs, System};
 use crate::ode::trial::Trial;
 use crate::parallel::Ticker;
 use std::sync::Arc;
+
+mod series;
+use series::{Coefficients, Shifted};
 
 /// Where massive bodies are during a step of theirs, one system in each lane or the same in all: for each coordinate
 /// `q + (e + θ(f0 + (1-θ)(f1 + θ(f2 + …))))` at the fraction θ of the step.
@@ -27,6 +33,8 @@ pub(super) struct Path {
     numbers: usize,
     /// A block of numbers for `q`, one for `e` and one for each `f`.
     blocks: Vec<Lanes>,
+    /// The same as series, of a method that has them.
+    coefficients: Option<Coefficients>,
 }
 
 impl Path {
@@ -43,19 +51,25 @@ impl Path {
         trial.extension(state, h, &mut blocks);
         let numbers = unit.unit.active * unit.shape.components;
         if packed {
-            let rows = q.len() / unit.shape.components;
-            let mut apart = Vec::with_capacity(blocks.len() / q.len() * numbers);
-            for block in blocks.chunks(q.len()) {
-                for component in block.chunks(rows) {
-                    for slot in 0..unit.unit.active {
-                        let (row, lane) = unit.locate(slot, 0);
-                        apart.push(Lanes::splat(component[row].0[lane]));
-                    }
+            blocks = Self::apart(unit, &blocks, q.len());
+        }
+        let coefficients = trial.series().map(|jet| Coefficients::new(unit, jet, packed));
+        Self { h, numbers, blocks, coefficients }
+    }
+
+    /// Of packed bodies each in all lanes: their numbers in blocks of a length.
+    fn apart(unit: &Prepared, blocks: &[Lanes], len: usize) -> Vec<Lanes> {
+        let rows = len / unit.shape.components;
+        let mut apart = Vec::with_capacity(blocks.len() / len * unit.unit.active * unit.shape.components);
+        for block in blocks.chunks(len) {
+            for component in block.chunks(rows) {
+                for slot in 0..unit.unit.active {
+                    let (row, lane) = unit.locate(slot, 0);
+                    apart.push(Lanes::splat(component[row].0[lane]));
                 }
             }
-            blocks = apart;
         }
-        Self { h, numbers, blocks }
+        apart
     }
 
     /// Writes where the bodies are at the time `t` since the start of the step.
@@ -74,7 +88,7 @@ impl Pass<Lanes> for At<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let Path { numbers, blocks, h } = self.path;
+        let Path { numbers, blocks, h, .. } = self.path;
         let (blocks, into) = (V::view(blocks), V::view_mut(self.into));
         let theta = V::load(*self.t) / V::load(*h);
         let mut start = 0;
@@ -115,9 +129,9 @@ fn at<V: Real, const G: usize>(blocks: &[V], numbers: usize, start: usize, theta
 /// One of the forces on massless bodies.
 enum Term {
     /// The massive ones pull, with these `G·m`.
-    Pull { strength: Vec<Lanes>, softening2: f64 },
+    Pull { strength: Vec<Lanes>, softening2: f64, series: PullSeries },
     /// Another, which does not couple them.
-    Other(Box<dyn Force<Lanes>>),
+    Other(Box<dyn Force<Lanes>>, Option<Box<dyn Series<Lanes>>>),
 }
 
 /// The forces on a massless body in each lane, while massive ones move along their step.
@@ -131,6 +145,8 @@ pub(super) struct Guided {
     needs: Needs,
     /// Where the massive bodies are at the time of an evaluation.
     places: Vec<Lanes>,
+    /// Their series about that time.
+    shifted: Shifted,
     evaluations: u64,
 }
 
@@ -143,26 +159,29 @@ impl Guided {
             match (force.as_newtonian(), kernel) {
                 (Some((_, softening)), _) => {
                     let softening = plan.units.take(softening, [1, 0, 0]);
+                    let softening2 = softening * softening;
                     terms.push(Term::Pull {
+                        series: PullSeries::new(guide.unit.active, guide.shape.components, softening2),
                         strength: vec![Lanes::zero(); guide.unit.active],
-                        softening2: softening * softening,
+                        softening2,
                     });
                 }
-                (None, other) => terms.extend(other.map(Term::Other)),
+                (None, other) => terms.extend(other.map(|(force, series)| Term::Other(force, series))),
             }
         }
         let needs = terms.iter().fold(Needs { time: true, ..Needs::default() }, |needs, term| match term {
             Term::Pull { .. } => needs,
-            Term::Other(force) => needs.and(force.needs()),
+            Term::Other(force, _) => needs.and(force.needs()),
         });
         let blocks = vec![Lanes::zero(); 3 * numbers];
         Self {
             components: guide.shape.components,
-            path: Arc::new(Path { h: Lanes::one(), numbers, blocks }),
+            path: Arc::new(Path { h: Lanes::one(), numbers, blocks, coefficients: None }),
             base: Lanes::zero(),
             terms,
             needs,
             places: vec![Lanes::zero(); numbers],
+            shifted: Shifted::default(),
             evaluations: 0,
         }
     }
@@ -183,8 +202,8 @@ impl Guided {
     pub(super) fn take_up(&mut self, plan: &Plan, units: &[&Prepared]) {
         let kernels = plan.forces.iter().zip(uncoupled(plan, units));
         for (term, (_, kernel)) in self.terms.iter_mut().zip(kernels) {
-            if let (Term::Other(force), Some(kernel)) = (term, kernel) {
-                *force = kernel;
+            if let (Term::Other(force, series), Some(own)) = (term, kernel) {
+                (*force, *series) = own;
             }
         }
     }
@@ -240,9 +259,14 @@ impl System<Lanes> for Guided {
                     a: &mut *a,
                     first: index == 0,
                 }),
-                Term::Other(force) => force.apply(&phase, a, index == 0, ticker)?,
+                Term::Other(force, _) => force.apply(&phase, a, index == 0, ticker)?,
             }
         }
         Ok(())
+    }
+
+    fn expand(&mut self, jet: &mut Jet<Lanes>, _: &mut Ticker<'_>) -> Result<()> {
+        self.evaluations += 1;
+        self.expand_series(jet)
     }
 }

@@ -1,0 +1,123 @@
+//! Where a Taylor series leads: states at fractions of a step, and the choice of the step.
+//!
+//! A step is long, so its increment is formed with care: its first two terms by exact products and sums, what they
+//! leave out carried into the compensation of the state.
+
+use crate::numerics::double_double::two_sum;
+use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
+use crate::numerics::real::Real;
+
+/// `y + (c1 x + c2 x² + …) factor`, compensated, the coefficients being blocks of `len` numbers.
+pub(in crate::ode) struct Sum<'a, S> {
+    /// The state.
+    pub(in crate::ode) y: Pair<'a, S>,
+    /// Blocks of coefficients, from order 0 on.
+    pub(in crate::ode) blocks: &'a [S],
+    /// What the block of order 1 leaves out, if it is known.
+    pub(in crate::ode) rest: Option<&'a [S]>,
+    /// The highest order, at least 2.
+    pub(in crate::ode) highest: usize,
+    /// The time, in the unit of the coefficients.
+    pub(in crate::ode) x: &'a S,
+    /// A power of two.
+    pub(in crate::ode) factor: &'a S,
+    /// The result.
+    pub(in crate::ode) into: PairMut<'a, S>,
+}
+
+impl<S: Element> Pass<S> for Sum<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let (y, e) = V::pair(self.y);
+        let (into, into_e) = V::pair_mut(self.into);
+        let sum = Sums {
+            blocks: V::view(self.blocks),
+            len: y.len(),
+            highest: self.highest,
+            x: V::load(*self.x),
+            factor: V::load(*self.factor),
+        };
+        let rest = match self.rest {
+            Some(rest) => V::view(rest),
+            None => &[],
+        };
+        let mut start = 0;
+        macro_rules! groups {
+            ($($size:literal)+) => {$(
+                while y.len() - start >= $size {
+                    let increments = sum.increments::<$size>(start, rest);
+                    for g in 0..$size {
+                        let (high, low) = increments[g];
+                        let (value, error) = two_sum(y[start + g], high);
+                        let low = error + (low + e[start + g]);
+                        into[start + g] = value + low;
+                        into_e[start + g] = low - (into[start + g] - value);
+                    }
+                    start += $size;
+                }
+            )+};
+        }
+        groups!(6 3 2 1);
+    }
+}
+
+struct Sums<'a, V> {
+    blocks: &'a [V],
+    len: usize,
+    highest: usize,
+    x: V,
+    factor: V,
+}
+
+impl<V: Real> Sums<'_, V> {
+    /// Of `G` numbers from `start` on, each with what it leaves out.
+    #[inline(always)]
+    fn increments<const G: usize>(&self, start: usize, rest: &[V]) -> [(V, V); G] {
+        let Self { blocks, len, highest, x, factor } = *self;
+        let mut tails = [V::zero(); G];
+        let mut order = highest;
+        while order > 1 {
+            let block = &blocks[order * len + start..][..G];
+            for g in 0..G {
+                tails[g] = if order == highest { block[g] } else { tails[g].multiply_add(x, block[g]) };
+            }
+            order -= 1;
+        }
+        let mut increments = [(V::zero(), V::zero()); G];
+        let first = &blocks[len + start..][..G];
+        for g in 0..G {
+            let (second, second_rest) = product(tails[g], x);
+            let (sum, sum_rest) = two_sum(first[g], second);
+            let mut low = sum_rest + second_rest;
+            if !rest.is_empty() {
+                low = low + rest[start + g];
+            }
+            let (high, product_rest) = product(sum, x);
+            let low = low.multiply_add(x, product_rest);
+            increments[g] = (high * factor, low * factor);
+        }
+        increments
+    }
+}
+
+/// `a * b` exactly, as a product and what it leaves out.
+#[inline(always)]
+fn product<V: Real>(a: V, b: V) -> (V, V) {
+    let product = a * b;
+    (product, a.multiply_add(b, -product))
+}
+
+/// The nested terms `f` of `y(θ) = y + θ(f0 + (1-θ)(f1 + θ(f2 + …)))` from the coefficients of θ, θ², …, in place.
+pub(in crate::ode) fn nest<S: Real>(coefficients: &mut [S]) {
+    for start in (0..coefficients.len()).step_by(2) {
+        // At θ = 1 it is the sum, and the other factor's coefficients are sums of those after; at θ = 0 it is the first.
+        let rest = &mut coefficients[start..];
+        for index in (1..rest.len()).rev() {
+            rest[index - 1] = rest[index - 1] + rest[index];
+        }
+        for later in &mut rest[1..] {
+            *later = -*later;
+        }
+    }
+}

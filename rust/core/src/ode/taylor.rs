@@ -1,0 +1,249 @@
+//! A motion by its Taylor series, step by step: as long as the last coefficients allow, of an order that suits the
+//! tolerance.
+//!
+//! The one idea: the coefficients that make the step also say how long it may be, before it is taken, so none is refused;
+//! and they are the continuous extension. Orders and steps: Jorba & Zou, Experimental Mathematics 14 (2005) 99.
+
+use super::Taylor;
+use super::norm::{Change, Norm};
+use super::passes::errors::{HUGE, PairTerm};
+use super::passes::series::{Sum, nest};
+use super::series::Jet;
+use super::state::State;
+use super::step_control::{Clock, Controlled, Rule, Settled, root};
+use super::system::{Form, System};
+use super::trial::{Cost, Trial};
+use crate::error::{Error, Result};
+use crate::numerics::element::Element;
+use crate::numerics::real::Mask;
+use crate::parallel::Ticker;
+
+/// Of a step that does not end well, so much is tried next.
+const SHRINK: f64 = 1.0 / 256.0;
+/// Looser tolerances leave the series without its convergence.
+const LOOSEST: f64 = 1e-3;
+
+/// Taylor series at work on one state (of one or of eight trajectories).
+pub struct TaylorStep<S: Element> {
+    orders: Taylor,
+    jet: Jet<S>,
+    /// The unit of time of the next expansion.
+    unit: S,
+    /// The step tried last.
+    h: S,
+    rule: Rule<S>,
+    next: State<S>,
+}
+
+impl<S: Controlled> TaylorStep<S> {
+    /// For a system and states like `state`, with steps of at most `max_step`.
+    pub fn new(orders: Taylor, system: &dyn System<S>, state: &State<S>, max_step: S) -> Self {
+        let len = system.form().evaluated();
+        let mut rule = Rule::new(1, max_step);
+        // The step is chosen before it is taken; what settles it leaves it alone.
+        rule.limits = (SHRINK, 1.0);
+        let jet = Jet::new(len, orders.highest);
+        Self { orders, jet, unit: S::one(), h: S::zero(), rule, next: state.clone() }
+    }
+
+    /// The order for a tolerance.
+    fn order(&self, rtol: f64) -> usize {
+        let order = (1.0 - rtol.ln() / 2.0).ceil();
+        (order as usize).clamp(self.orders.lowest, self.orders.highest)
+    }
+
+    /// The squared scaled sizes of the coefficients of two orders.
+    fn sizes(&self, orders: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> [S; 2] {
+        let Jet { q, v, len, unit, .. } = &self.jet;
+        let term = |of: usize| {
+            let weight = |order| if of == order { S::one() } else { S::zero() };
+            PairTerm { stage: of, weights: [weight(orders[0]), weight(orders[1])] }
+        };
+        let terms = [term(orders[0]), term(orders[1])];
+        let change = |k, factor| Change { k, stride: *len, terms: &terms, factor };
+        norm.sizes(state, state, elapsed, &[change(q, S::one()), change(v, S::one() / *unit)])
+    }
+
+    /// The longest step that the coefficients allow, and whether there is one.
+    fn longest(&self, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> (S, S::Mask) {
+        let order = self.jet.order;
+        let mut inverse = S::zero();
+        let mut sound = S::Mask::splat(true);
+        let mut highest = order;
+        // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact.
+        while highest > 3 && inverse.less_equal(S::zero()).any() {
+            let pair = [highest, highest - 1];
+            let sizes = self.sizes(pair, state, elapsed, norm);
+            let mut found = S::zero();
+            for (of, size) in pair.into_iter().zip(sizes) {
+                sound = sound.and(size.less(S::splat(HUGE)));
+                let rule = Rule::new(of as u32, self.rule.max_step);
+                found = found.max(root(size, &rule));
+            }
+            inverse = S::select(inverse.less_equal(S::zero()), found, inverse);
+            highest -= 2;
+        }
+        let loose = LOOSEST / norm.rtol.first_lane();
+        let factor = if loose < 1.0 { loose.powf(1.0 / order as f64) } else { 1.0 };
+        (S::splat(factor) * self.unit / inverse, sound)
+    }
+
+    /// The state at the time `x` after the expansion.
+    fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
+        let Jet { q, v, order, rests, unit, .. } = jet;
+        let x = &(x / *unit);
+        let (of_q, of_v) = into.halves_mut();
+        S::pass(Sum {
+            y: state.position(),
+            blocks: q,
+            rest: Some(&rests[1]),
+            highest: order + 1,
+            x,
+            factor: &S::one(),
+            into: of_q,
+        });
+        let factor = &(S::one() / *unit);
+        S::pass(Sum { y: state.velocity(), blocks: v, rest: None, highest: *order, x, factor, into: of_v });
+    }
+
+    /// The coefficients of one number of a block, of the orders from one on, in powers of the fraction of the step, times
+    /// `factor`.
+    fn monomials(&self, blocks: &[S], (from, to): (usize, usize), number: usize, factor: S) -> Vec<S> {
+        let ratio = self.h / self.jet.unit;
+        let mut power = factor;
+        (from..=to)
+            .map(|order| {
+                let coefficient = blocks[order * self.jet.len + number] * power;
+                power = power * ratio;
+                coefficient
+            })
+            .collect()
+    }
+}
+
+impl<S: Controlled> Trial<S> for TaylorStep<S> {
+    /// The unit of time is that in which the state changes by its own size.
+    fn start(
+        &mut self,
+        fresh: S::Mask,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        norm: &Norm<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        if !matches!(system.form(), Form::SecondOrder(_)) {
+            return Err(Error::Internal("a Taylor series of a system of the first order".to_owned()));
+        }
+        self.jet.order = self.order(norm.rtol.first_lane());
+        let mut a = vec![S::zero(); self.jet.len];
+        system.acceleration(&clock.elapsed, state.q(), state.v(), &mut a, ticker)?;
+        let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
+        let change = |k| Change { k, stride: self.jet.len, terms: &terms, factor: S::one() };
+        let slope2 = norm.sizes(state, state, &clock.elapsed, &[change(state.v()), change(&a)])[0];
+        let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
+        let time = S::one() / (norm.rtol * slope2.sqrt());
+        let time = S::select(time.less(span), time, span);
+        self.unit = S::select(fresh, time.power_below(), self.unit);
+        Ok(())
+    }
+
+    fn attempt(
+        &mut self,
+        running: S::Mask,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        norm: &Norm<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Settled<S>> {
+        self.jet.begin(state, clock.elapsed, self.unit);
+        system.expand(&mut self.jet, ticker)?;
+        let (longest, sound) = self.longest(state, &clock.elapsed, norm);
+        let longest = S::select(sound, longest, self.unit).min(self.rule.max_step);
+        let span = (clock.end - clock.elapsed).abs();
+        // What no coefficient limits goes to the end.
+        let longest = longest.min(span + span);
+        let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
+        clock.h = S::select(running, longest * direction, clock.h);
+        self.h = S::next_step(clock, running);
+        Self::state_at(&self.jet, state, self.h, &mut self.next);
+        let size2 = S::select(sound, S::zero(), S::splat(HUGE));
+        let outcome = S::settle(clock, running, size2, &self.rule);
+        let next = S::select(sound, longest, clock.h);
+        self.unit = S::select(running, next.power_below(), self.unit);
+        Ok(outcome)
+    }
+
+    fn next(&self) -> &State<S> {
+        &self.next
+    }
+
+    fn dense(
+        &mut self,
+        _: &Settled<S>,
+        _: &mut dyn System<S>,
+        _: &State<S>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        Ok(())
+    }
+
+    fn at(
+        &mut self,
+        outcome: &Settled<S>,
+        _: &mut dyn System<S>,
+        state: &State<S>,
+        theta: S,
+        into: &mut State<S>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        Self::state_at(&self.jet, state, theta * outcome.h, into);
+        Ok(())
+    }
+
+    fn extension(&self, _: &State<S>, h: S, into: &mut Vec<S>) {
+        let (len, terms) = (self.jet.len, self.terms());
+        let from = into.len();
+        into.resize(from + len * terms, S::zero());
+        for number in 0..len {
+            let mut coefficients = self.monomials(&self.jet.q, (1, terms), number, h / self.jet.unit);
+            nest(&mut coefficients);
+            for (term, coefficient) in coefficients.into_iter().enumerate() {
+                into[from + term * len + number] = coefficient;
+            }
+        }
+    }
+
+    fn polynomial(&self, coordinate: usize, into: &mut Vec<[S; 2]>) {
+        let (terms, unit) = (self.terms(), S::one() / self.jet.unit);
+        // A coordinate moves by its velocity besides, and both are in units of the step.
+        let mut of_q = self.monomials(&self.jet.q, (2, terms), coordinate, unit * unit);
+        let mut of_v = self.monomials(&self.jet.v, (1, terms - 1), coordinate, unit * unit);
+        of_q.insert(0, S::zero());
+        of_v.push(S::zero());
+        nest(&mut of_q);
+        nest(&mut of_v);
+        into.extend(of_q.into_iter().zip(of_v).map(|(q, v)| [q, v]));
+    }
+
+    fn series(&self) -> Option<&Jet<S>> {
+        Some(&self.jet)
+    }
+
+    fn terms(&self) -> usize {
+        self.jet.order + 1
+    }
+
+    fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
+        if accepted.all() {
+            core::mem::swap(state, &mut self.next);
+        } else {
+            state.take_over(&self.next, accepted);
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        Cost { start: 1, tried: 1, kept: 0, dense: 0, read: 0 }
+    }
+}
