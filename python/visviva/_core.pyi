@@ -42,7 +42,7 @@ class _Request(_Scene):
     dt: float | None
     time_transformation: str | None
     rtol: float
-    atol: float | None
+    atol: tuple[list[float] | None, list[float] | None] | None
     max_step: float | None
     max_steps: int | None
     record: list[str]

@@ -9,7 +9,7 @@ by the core (signs, ranges, names, order of times) is left to the core.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
 from functools import wraps
 from inspect import Parameter, Signature, signature
@@ -66,6 +66,23 @@ def _words(name: str, value: object) -> list[str]:
     return [_word(name, word) for word in value]
 
 
+def _tolerances(name: str, value: object) -> tuple[list[float] | None, list[float] | None]:
+    """Of positions and of velocities: one number for all bodies, or one for each."""
+    if isinstance(value, Mapping):
+        kinds = ("position", "velocity")
+        if not value or not set(value) <= set(kinds):
+            raise InvalidInput(name, f"expected the keys 'position' and 'velocity', or one of them, got {list(value)}")
+        given = {kind: _numbers(f"{name}[{kind!r}]", value[kind]) for kind in value}
+        return given.get(kinds[0]), given.get(kinds[1])
+    both = _numbers(name, value)
+    return both, both
+
+
+def _numbers(name: str, value: object) -> list[float]:
+    several = getattr(value, "ndim", int(isinstance(value, list | tuple))) > 0
+    return float_array(name, value, (None,)).tolist() if several else [number(name, value)]  # type: ignore[arg-type]
+
+
 def _step(name: str, value: object) -> float:
     if isinstance(value, list | tuple) or getattr(value, "ndim", 0) > 0:
         raise InvalidInput(
@@ -103,7 +120,7 @@ class PlanRequest:
     dt: float | None = field(default=None, metadata=_told(_or_none(_step)))
     time_transformation: TransformationName | None = field(default=None, metadata=_told(_or_none(_word)))
     rtol: float = field(default=1e-9, metadata=_told(number))
-    atol: float | None = field(default=None, metadata=_told(_or_none(number)))
+    atol: ArrayLike | Mapping[str, ArrayLike] | None = field(default=None, metadata=_told(_or_none(_tolerances)))
     max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
     max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
     record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))

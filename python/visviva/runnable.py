@@ -63,9 +63,11 @@ class Runnable(ABC, Generic[_Result]):
             again the first step.
         rtol : float, optional
             Relative tolerance of an adaptive method, at least 2.3e-14; a fixed-step method has no use for it.
-        atol : float, optional
-            Absolute tolerance of an adaptive method; by default `rtol` times the size of each kind of quantity
-            at the start. A fixed-step method refuses it.
+        atol : float, array_like of shape (N,), or dict, optional
+            Absolute tolerance of an adaptive method, of all bodies or of each; ``{"position": ..., "velocity": ...}``
+            has one for each kind. By default, and for a kind left out, `rtol` times the size of the kind at the start.
+            The error of each position and velocity in a step is kept to ``atol + rtol * its distance`` from the center
+            of the motion. A fixed-step method refuses it.
         max_step : float, optional
             The longest step an adaptive method may take. A fixed-step method refuses it.
         max_steps : int, optional

@@ -21,8 +21,8 @@ pub struct Block<S> {
     pub velocity: bool,
     /// How they lie: component after component, 1 to 4 of them.
     pub shape: Shape,
-    /// Absolute tolerance.
-    pub atol: S,
+    /// Absolute tolerance of all vectors, or of each.
+    pub atol: Vec<S>,
     /// What sizes are measured from at the start of the run, component by component.
     pub reference: [S; 4],
     /// How that moves.
@@ -72,7 +72,7 @@ impl<S: Controlled> Norm<S> {
             start: 0,
             velocity,
             shape,
-            atol: S::zero(),
+            atol: vec![S::zero()],
             reference: [S::zero(); 4],
             drift: [S::zero(); 4],
         };
@@ -165,7 +165,7 @@ mod tests {
     fn the_largest_vector_counts_by_its_tolerances() {
         let shape = Shape { rows: 2, components: 2 };
         let mut norm = Norm::new(shape, Form::FirstOrder(4), 0.25, false);
-        norm.blocks[0].atol = 0.5;
+        norm.blocks[0].atol = vec![0.5];
         norm.blocks[0].reference[0] = 1.0;
         // Vectors (1+3, 4) and (1, 0): sizes 5 and 0, tolerances 0.5 + 0.25·5 and 0.5; errors |(3, 4)|/2 and |(0, 1)|/2.
         let y = [4.0, 1.0, 4.0, 0.0];
@@ -173,6 +173,25 @@ mod tests {
         // Roots are rough, to four digits.
         assert!((first - (2.5_f64 / 1.75).powi(2)).abs() < 1e-3, "{first}");
         assert!((second - (25.0_f64 / 1.75).powi(2)).abs() < 1e-1, "{second}");
+    }
+
+    #[test]
+    fn vectors_may_have_tolerances_of_their_own() {
+        let shape = Shape { rows: 2, components: 2 };
+        let mut norm = Norm::new(shape, Form::FirstOrder(4), 0.25, false);
+        let y = [4.0, 1.0, 4.0, 0.0];
+        let mut size = |atol: &[f64]| {
+            norm.blocks[0].atol = atol.to_vec();
+            sizes(&norm, &y, &y, &[3.0, 0.0, 4.0, 1.0], 0.5)[0]
+        };
+        assert_eq!(size(&[0.5, 0.5]).to_bits(), size(&[0.5]).to_bits());
+        // The errors 2.5 and 0.5, of vectors of the lengths √32 and 1.
+        let alone = |error: f64, atol: f64, length: f64| (error / (atol + 0.25 * length)).powi(2);
+        for (atol, largest) in
+            [([10.0, 0.125], alone(0.5, 0.125, 1.0)), ([0.125, 10.0], alone(2.5, 0.125, 32f64.sqrt()))]
+        {
+            assert!((size(&atol) / largest - 1.0).abs() < 1e-3, "{atol:?}");
+        }
     }
 
     #[test]

@@ -16,6 +16,7 @@ use super::Scene;
 use super::columns::Writer;
 use super::continuation::Continuation;
 use super::plan::Plan;
+use super::request::AbsoluteTolerances;
 use super::unit::{Prepared, Unit};
 use crate::error::Result;
 use crate::numerics::lanes::WIDTH;
@@ -36,8 +37,8 @@ pub struct Job<'a> {
     pub times: &'a [f64],
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerance in the scene's units.
-    pub atol: Option<f64>,
+    /// Absolute tolerances in the scene's units.
+    pub atol: Option<&'a AbsoluteTolerances>,
     /// Longest step.
     pub max_step: f64,
     /// Most steps.

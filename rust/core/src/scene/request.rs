@@ -21,6 +21,51 @@ pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
     ["position", "velocity"].into_iter().chain(COLUMNS.iter().map(|column| column.name))
 }
 
+/// Absolute tolerances in the scene's units, of places and of velocities: one number, or one for each body; a kind without one
+/// is scale-free.
+#[derive(Clone, Debug)]
+pub struct AbsoluteTolerances {
+    /// Of places.
+    pub position: Option<Vec<f64>>,
+    /// Of velocities.
+    pub velocity: Option<Vec<f64>>,
+}
+
+impl AbsoluteTolerances {
+    /// Those of both kinds.
+    pub fn kinds(&self) -> [Option<&[f64]>; 2] {
+        [self.position.as_deref(), self.velocity.as_deref()]
+    }
+
+    /// How it is told: the number, if there is one for all.
+    fn told(&self) -> String {
+        match self.kinds() {
+            [Some([one]), Some([other])] if one == other => number(*one),
+            _ => "several".to_owned(),
+        }
+    }
+
+    /// Refuses what is no tolerance, and numbers for other bodies than those there are.
+    fn check(&self, particles: usize, collisions: bool) -> Result<()> {
+        let refused = |message: String| Err(Error::invalid("atol", message));
+        for kind in self.kinds().into_iter().flatten() {
+            if kind.len() != 1 && kind.len() != particles {
+                let expected = format!("expected one number, or one for each of {particles} bodies");
+                return refused(format!("{expected}, got {}", kind.len()));
+            }
+            if kind.len() > 1 && collisions {
+                return refused(
+                    "expected one number for all bodies beside collisions, got several".to_owned(),
+                );
+            }
+            if let Some(atol) = kind.iter().find(|atol| !(**atol >= 0.0 && atol.is_finite())) {
+                return refused(format!("expected a number of at least 0 or None, got {}", number(*atol)));
+            }
+        }
+        Ok(())
+    }
+}
+
 /// What is asked of a scene.
 #[derive(Clone, Debug)]
 pub struct Request {
@@ -34,8 +79,8 @@ pub struct Request {
     pub time_transformation: Option<String>,
     /// Relative tolerance of an adaptive method.
     pub rtol: f64,
-    /// Absolute tolerance; `None` is scale-free.
-    pub atol: Option<f64>,
+    /// Absolute tolerances; `None` is scale-free.
+    pub atol: Option<AbsoluteTolerances>,
     /// The longest step of an adaptive method.
     pub max_step: Option<f64>,
     /// The most steps, accepted or not, of a trajectory.
@@ -97,7 +142,7 @@ impl Request {
         }
         events::check(&self.events, scene.particles)?;
         let direction = self.direction(scene)?;
-        self.check_tolerances(method)?;
+        self.check_tolerances(method, scene.particles)?;
         if let Some(step) = self.max_step {
             self.refuse_lost("max_step", step, scene.t0)?;
         }
@@ -153,7 +198,7 @@ impl Request {
     }
 
     /// What steers an adaptive method. `rtol` always has a value, so that a method without tolerances ignores it.
-    fn check_tolerances(&self, method: &Method) -> Result<()> {
+    fn check_tolerances(&self, method: &Method, particles: usize) -> Result<()> {
         if !(self.rtol >= RTOL_MIN && self.rtol <= 1.0) {
             let advice = if self.rtol > 0.0 && self.rtol < RTOL_MIN {
                 "; a smaller error needs a fixed-step method such as kahan_li8"
@@ -172,11 +217,8 @@ impl Request {
         let refused = |argument: &str, expected: &str, came: f64| {
             Err(Error::invalid(argument, format!("expected {expected} or None, got {}", number(came))))
         };
-        match self.atol {
-            Some(atol) if !(atol >= 0.0 && atol.is_finite()) => {
-                return refused("atol", "a number of at least 0", atol);
-            }
-            _ => {}
+        if let Some(atol) = &self.atol {
+            atol.check(particles, self.collisions.is_some())?;
         }
         match self.max_step {
             Some(step) if step.is_nan() || step <= 0.0 => {
@@ -184,7 +226,8 @@ impl Request {
             }
             _ => {}
         }
-        for (argument, given) in [("atol", self.atol), ("max_step", self.max_step)] {
+        let atol = self.atol.as_ref().map(AbsoluteTolerances::told);
+        for (argument, given) in [("atol", atol), ("max_step", self.max_step.map(number))] {
             match given {
                 Some(given) if !method.adaptive() => {
                     let transforms = if method.symplectic {
@@ -196,8 +239,7 @@ impl Request {
                     let message = format!(
                         "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
                          out and choose dt, or name an adaptive method such as dop853{transforms}",
-                        method.name,
-                        number(given)
+                        method.name, given
                     );
                     return Err(Error::invalid(argument, message));
                 }

@@ -145,7 +145,7 @@ pub fn adaptive<S: Controlled>(
 ) -> (Box<dyn Trial<S>>, Clock<S>, Norm<S>) {
     let mut norm = Norm::new(shape, system.form(), S::splat(rtol), false);
     for block in &mut norm.blocks {
-        block.atol = S::splat(rtol);
+        block.atol = vec![S::splat(rtol)];
     }
     let unlimited = S::splat(f64::INFINITY);
     (trial(method, system, state, unlimited).unwrap(), Clock::new(S::splat(end)), norm)

@@ -17,7 +17,7 @@ use visviva_core::forces::ForceTerm;
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::collisions::Collisions;
 use visviva_core::scene::continuation::{Continuation, Held};
-use visviva_core::scene::request::Request;
+use visviva_core::scene::request::{AbsoluteTolerances, Request};
 use visviva_core::scene::{OwnForces, Scene};
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
@@ -40,7 +40,7 @@ pub(crate) struct Asked<'py> {
     dt: Option<f64>,
     time_transformation: Option<String>,
     rtol: f64,
-    atol: Option<f64>,
+    atol: Option<(Option<Vec<f64>>, Option<Vec<f64>>)>,
     max_step: Option<f64>,
     max_steps: Option<i64>,
     record: Vec<String>,
@@ -136,6 +136,7 @@ impl Asked<'_> {
             t0,
             continuation,
         };
+        let atol = atol.map(|(position, velocity)| AbsoluteTolerances { position, velocity });
         let request = Request {
             times,
             method,

@@ -43,8 +43,8 @@ pub struct LargestErrors<'a, S> {
     pub drift: &'a [S; 4],
     /// The time since the start.
     pub elapsed: &'a S,
-    /// Absolute tolerance.
-    pub atol: &'a S,
+    /// Absolute tolerance of all vectors, or of each.
+    pub atol: &'a [S],
     /// Tolerance relative to the distance from the reference.
     pub rtol: &'a S,
     /// What the sum is multiplied with.
@@ -68,7 +68,7 @@ impl<S: Element> Pass<S> for LargestErrors<'_, S> {
         for c in 0..shape.components.min(4) {
             place[c] = V::load(reference[c]) + V::load(drift[c]) * elapsed;
         }
-        let tolerance = (V::load(*self.atol), V::load(*self.rtol));
+        let tolerance = (V::view(self.atol), V::load(*self.rtol));
         let (h, terms, k) =
             (V::load(*self.h), view_terms::<S, V>(self.terms), (V::view(self.k), self.stride));
         let [first, second] = match shape.components {
@@ -87,13 +87,15 @@ fn largest_vector_errors<S: InverseCube, const C: usize>(
     rows: usize,
     y: &[S],
     reference: &[S; 4],
-    (atol, rtol): (S, S),
+    (atol, rtol): (&[S], S),
     h: S,
     terms: &[PairTerm<S>],
     (k, stride): (&[S], usize),
 ) -> [S; 2] {
     let mut largest = [S::zero(); 2];
+    let of_each = usize::from(atol.len() > 1);
     for row in 0..rows {
+        let atol = atol[row * of_each];
         let mut distance2 = S::zero();
         for c in 0..C {
             let distance = y[c * rows + row] - reference[c];

@@ -161,7 +161,7 @@ fn again(
         plan: part.plan,
         times: &times,
         rtol: request.rtol,
-        atol: request.atol,
+        atol: request.atol.as_ref(),
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: u64::MAX,
         watches: false,

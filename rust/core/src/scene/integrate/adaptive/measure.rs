@@ -7,7 +7,7 @@ use super::super::Job;
 use crate::numerics::lanes::{Bits, Lanes};
 use crate::numerics::power_of_two::scale;
 use crate::numerics::real::Real;
-use crate::ode::norm::Norm;
+use crate::ode::norm::{Block, Norm};
 
 /// A body in the very place that distances are measured from has no size to be held to; below this share of the unit's it is
 /// as good as there.
@@ -35,23 +35,42 @@ fn weigh(norm: &mut Norm<Lanes>, unit: &Prepared, lanes: Bits) {
     }
 }
 
+/// The absolute tolerances of a unit's places or velocities, in its lanes.
+fn allow(block: &mut Block<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) {
+    let units = job.plan.units;
+    let (size, exponent) =
+        if block.velocity { (unit.size.1, units.velocity()) } else { (unit.size.0, -units.length) };
+    let given = job.atol.and_then(|atol| atol.kinds()[usize::from(block.velocity)]);
+    let at_least = |&atol: &f64| scale(atol, exponent).max(NOTHING * job.rtol * size);
+    match given {
+        Some(each) if each.len() > 1 => {
+            // Lanes without a body are held to what the first is.
+            let first = unit.unit.bodies.first().map_or(0.0, |&body| at_least(&each[body]));
+            block.atol.resize(unit.shape.rows, Lanes::zero());
+            for atol in &mut block.atol {
+                *atol = Lanes::select(lanes, Lanes::splat(first), *atol);
+            }
+            let place = lanes.0.trailing_zeros() as usize;
+            for (slot, &body) in unit.unit.bodies.iter().enumerate() {
+                let (row, lane) = unit.locate(slot, place);
+                block.atol[row].0[lane] = at_least(&each[body]);
+            }
+        }
+        one => {
+            let atol = one.and_then(<[f64]>::first).map_or(job.rtol * size, at_least);
+            block.atol[0] = Lanes::select(lanes, Lanes::splat(atol), block.atol[0]);
+        }
+    }
+}
+
 /// Takes over a unit's measures for its lanes. Without `atol` the tolerance is scale-free: relative to the unit's size.
 pub(super) fn set(norm: &mut Norm<Lanes>, job: &Job<'_>, unit: &Prepared, lanes: Bits) {
-    let units = job.plan.units;
-    let (length, speed) = unit.size;
-    let (atol_q, atol_v) = match job.atol {
-        None => (job.rtol * length, job.rtol * speed),
-        Some(atol) => (
-            scale(atol, -units.length).max(NOTHING * job.rtol * length),
-            scale(atol, units.velocity()).max(NOTHING * job.rtol * speed),
-        ),
-    };
     if from_their_center(job.plan, unit) {
         weigh(norm, unit, lanes);
     }
     let set = |into: &mut Lanes, value: f64| *into = Lanes::select(lanes, Lanes::splat(value), *into);
     for block in &mut norm.blocks {
-        set(&mut block.atol, if block.velocity { atol_v } else { atol_q });
+        allow(block, job, unit, lanes);
         for c in 0..3 {
             let Origin { center, drift, .. } = unit.reference;
             if block.velocity {
