@@ -140,4 +140,9 @@ KEPT_MOTIONS: list[tuple[str, Recipe]] = [
         "the_work_of_the_forces_is_the_kinetic_energy_gained",
         Recipe(method="midpoint", bodies=1, forces=(("DrivenForce", 82),), seed=391),
     ),
+    # Run backward, a drag of any kind takes a body beyond what steps can follow: the law did it.
+    (
+        "declared_invariants_hold",
+        Recipe(bodies=25, forces=(("CentralField", 0), ("SampledDrag", 0)), tame=False, steps=1, backward=True),
+    ),
 ]

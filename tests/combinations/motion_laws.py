@@ -106,6 +106,8 @@ def _orthogonal(seed: int, *, planar: bool) -> NDArray[np.float64]:
     matrix = np.eye(3)
     count = 2 if planar else 3
     matrix[:count, :count] = np.linalg.qr(rng.normal(size=(count, count)))[0]
+    # Of so many dimensions all of these are rotations, or all mirrors.
+    matrix[0] *= rng.choice([-1.0, 1.0])
     return matrix
 
 

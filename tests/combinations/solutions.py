@@ -128,7 +128,7 @@ def tame(recipe: Recipe) -> Case:
     # What is fixed in space fixes the origin: 1e8 away the given positions have digits to 1e-8 alone.
     fixed = any(parameter["kind"] == "point" for force in drawn for parameter in declared(force))
     offset = min(recipe.offset, 3) if fixed else recipe.offset
-    # Run backward this drag makes a body infinitely fast in a finite time.
-    forward = any(name == "QuadraticDrag" for name, _ in recipe.forces)
+    # Run backward a drag may make a body infinitely fast in a finite time.
+    forward = any(force._at_rest == "medium" for force in drawn)
     how: dict[str, Any] = {"collisions": "", "ragged": False, "outputs": 0, "steps": 16, "decades": 9, "offset": offset}
     return replace(recipe, tame=True, backward=recipe.backward and not forward, **how).case()
