@@ -20,6 +20,7 @@ SCRIPTS = (
     "energy_column",
     "events",
     "figure_eight_ensemble",
+    "rigid",
     "rutherford",
     "same_bits",
     "solve_ivp",
