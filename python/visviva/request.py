@@ -80,7 +80,7 @@ def _tolerances(name: str, value: object) -> tuple[list[float] | None, list[floa
 
 def _numbers(name: str, value: object) -> list[float]:
     several = getattr(value, "ndim", int(isinstance(value, list | tuple))) > 0
-    return float_array(name, value, (None,)).tolist() if several else [number(name, value)]  # type: ignore[arg-type]
+    return float_array(name, value, (None,)).tolist() if several else [number(name, value)]
 
 
 def _step(name: str, value: object) -> float:

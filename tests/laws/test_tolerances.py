@@ -118,7 +118,7 @@ def test_what_is_no_tolerance_is_refused(atol: Any, told: str | None) -> None:
 
 
 def test_fixed_steps_and_collisions_refuse_them() -> None:
-    with pytest.raises(vv.InvalidInput, match="atol: leapfrog has a fixed step.*got several"):
+    with pytest.raises(vv.InvalidInput, match=r"atol: leapfrog has a fixed step.*got several"):
         three().run(1.0, method="leapfrog", dt=0.1, atol=[1e-9, 1e-8, 1e-7])
     bodies = three().particles
     spheres = vv.Scene(vv.Particles(bodies.mass, bodies.position, bodies.velocity, radius=0.01), vv.Gravity(1.0))

@@ -6,9 +6,9 @@ mod explain;
 mod kinds;
 mod own;
 mod quiet;
+mod refusals;
 mod series;
 mod solutions;
-mod transformation;
 
 pub use coupling::Groups;
 pub use explain::Row;
@@ -31,7 +31,7 @@ use crate::ode::transformation::Transformation;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
 use kinds::kinds_of_forces;
-use own::{Own, about, acting, check_method};
+use own::{Own, about, acting};
 use quiet::Quiet;
 use std::sync::Arc;
 
@@ -128,7 +128,7 @@ impl Plan {
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = acting(scene, &scene.forces);
-        check_method(method, &forces)?;
+        refusals::check_method(method, &forces)?;
         // Spheres may touch whichever they are: all of them are on one step.
         let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
         let groups = if touching { Groups::All } else { Groups::of(scene.particles, &forces) };
@@ -155,7 +155,7 @@ impl Plan {
             && !touching
             && serves(method, active.len());
         if let Some((by, _)) = transformed {
-            transformation::check(by, scene, matches!(frame, Frame::Falling(_)))?;
+            refusals::check_transformation(by, scene, matches!(frame, Frame::Falling(_)))?;
         }
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {

@@ -22,6 +22,9 @@ use visviva_core::scene::{OwnForces, Scene};
 
 pub(super) type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 
+/// A number for all bodies or one for each, if any.
+type OneOrEach = Option<Vec<f64>>;
+
 /// The dictionary that `run` and `plan` take: a scene of one or more copies, and what is asked of it.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
@@ -40,7 +43,7 @@ pub(crate) struct Asked<'py> {
     dt: Option<f64>,
     time_transformation: Option<String>,
     rtol: f64,
-    atol: Option<(Option<Vec<f64>>, Option<Vec<f64>>)>,
+    atol: Option<(OneOrEach, OneOrEach)>,
     max_step: Option<f64>,
     max_steps: Option<i64>,
     record: Vec<String>,

@@ -2,11 +2,9 @@
 
 use super::super::Scene;
 use super::super::frame::Frame;
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::forces::ForceTerm;
 use crate::ode::Method;
-use crate::ode::system::{Form, Needs};
-use crate::registry::METHODS;
 use std::sync::Arc;
 
 /// The forces, of some, that do anything in this scene.
@@ -31,7 +29,7 @@ impl Own {
         let Some(own) = &scene.own_forces else { return Ok(None) };
         let set = |forces: &Vec<Arc<dyn ForceTerm>>| {
             let forces = acting(scene, forces);
-            check_method(method, &forces)?;
+            super::refusals::check_method(method, &forces)?;
             Ok(about(forces, integrates))
         };
         let sets = own.sets.iter().map(set).collect::<Result<_>>()?;
@@ -56,22 +54,4 @@ pub(super) fn about(forces: Vec<Arc<dyn ForceTerm>>, integrates: bool) -> (Vec<A
     let falls = matches!(frame, Frame::Falling(_));
     let left = forces.into_iter().filter(|force| !falls || force.as_uniform().is_none());
     (left.collect(), frame)
-}
-
-/// Refuses a method that cannot take what a force looks at.
-pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
-    // The numbers of a state do not matter here.
-    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
-    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
-    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
-    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
-    Err(Error::invalid(
-        "method",
-        format!(
-            "{} cannot take {}, which looks at velocities; expected one of {}",
-            method.name,
-            force.declaration().class_name,
-            others.collect::<Vec<_>>().join(", ")
-        ),
-    ))
 }

@@ -1,18 +1,42 @@
-//! Whether the forces of a scene have what a time transformation watches.
+//! What forces cannot be had with a method, or with a time transformation.
 
 use super::super::Scene;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::term::Coupling;
+use crate::ode::Method;
+use crate::ode::system::{Form, Needs};
 use crate::ode::transformation::Transformation;
+use crate::registry::METHODS;
 use std::sync::Arc;
+
+/// Refuses a method that cannot take what a force looks at.
+///
+/// # Errors
+/// By name, with the methods that can.
+pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
+    // The numbers of a state do not matter here.
+    let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
+    let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
+    let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
+    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
+    Err(Error::invalid(
+        "method",
+        format!(
+            "{} cannot take {}, which looks at velocities; expected one of {}",
+            method.name,
+            force.declaration().class_name,
+            others.collect::<Vec<_>>().join(", ")
+        ),
+    ))
+}
 
 /// Refuses forces that leave nothing to watch, or whose potential energy nobody adds up on the way. `falls`: uniform fields
 /// move the origin. By what the forces are, whatever they do to the bodies of a copy: its fellows must not matter.
 ///
 /// # Errors
 /// By name, with what works.
-pub(super) fn check(by: Transformation, scene: &Scene, falls: bool) -> Result<()> {
+pub(super) fn check_transformation(by: Transformation, scene: &Scene, falls: bool) -> Result<()> {
     let refused = |message: String| Err(Error::invalid("time_transformation", message));
     let forces = || scene.forces.iter().filter(|force| !falls || force.as_uniform().is_none());
     let between = |force: &Arc<dyn ForceTerm>| force.coupling() == Coupling::AllPairs;
