@@ -124,7 +124,7 @@ pub trait Exponential: Real {
     /// subnormal spacing below; exactly 1 at 0; 0 below -745.14; infinite above 709.79; NaN of NaN.
     /// The bits are those of the `f64` version in every lane of every tier.
     fn exp(self) -> Self;
-    /// Several e⁻ˣ, faster together than one by one: of 0 and above, within a unit in the last place (measured 0.86); 0
+    /// Several e⁻ˣ, faster together than one by one: of 0 and above, within 1.1 units in the last place (measured 1.00); 0
     /// above 708, where it would be next to subnormal, and of NaN.
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N];
 }
