@@ -188,6 +188,9 @@ def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
         # Half of the optional ones keep their default, which may be a singular case; a tame scene gives all.
         if tame or parameter["default"] is None or draw.random.random() < 0.5:
             arguments[parameter["name"]] = value
+    if name == "Drag" and not any(arguments["radius"]):
+        # Spheres without a size feel nothing, and promise everything.
+        arguments["radius"][0] = 0.5
     return FORCES[name](**arguments)
 
 
