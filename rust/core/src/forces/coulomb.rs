@@ -5,7 +5,8 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
-use super::gravity::{energy, newton};
+use super::gravity::{energy, newton, series};
+use super::series::Series;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
@@ -14,6 +15,7 @@ use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
+use crate::ode::series::Jet;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
 use crate::tiered;
@@ -117,6 +119,16 @@ impl ForceTerm for Coulomb {
         let charges: Vec<f64> = system.bodies.iter().map(|&body| self.near(body)).collect();
         Some(Box::new(ring.beside(&charges, self.factors(context)[0])))
     }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        Some(Box::new(CoulombSeries {
+            field: series::attraction(context, |system, slot| self.near(system.bodies[slot]), self.softening),
+            scratch: vec![Lanes::zero(); context.shape.len()],
+            factor: self.factors(context),
+        }))
+    }
+    fn has_series(&self) -> bool {
+        true
+    }
     fn potential_and_virial(
         &self,
         bodies: &PreciseBodies,
@@ -207,6 +219,28 @@ impl ForceTerm for Coulomb {
     }
     fn as_coulomb(&self, [i, j]: [usize; 2]) -> Option<(Scaled, f64)> {
         Some((Scaled::from(self.k).times(self.charge(i)).times(self.charge(j)), self.softening))
+    }
+}
+
+/// As [`Kernel`].
+struct CoulombSeries {
+    field: Box<dyn Series<Lanes>>,
+    scratch: Vec<Lanes>,
+    factor: Vec<Lanes>,
+}
+
+impl Series<Lanes> for CoulombSeries {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        self.field.coefficient(n, jet, &mut self.scratch, true, ticker)?;
+        kernel_tier(&self.scratch, &self.factor, a, first);
+        Ok(())
     }
 }
 

@@ -2,14 +2,17 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::series::{Scale, Series};
 use super::term::{Bodies, Drive, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::cosine::cosine;
 use crate::numerics::double_double::{DoubleDouble, two_product, two_sum};
-use crate::numerics::element::Shape;
+use crate::numerics::element::{Element, Shape};
 use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
+use crate::ode::series::Jet;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter};
@@ -59,20 +62,22 @@ struct DrivenForce {
     phase: f64,
 }
 
-impl ForceTerm for DrivenForce {
-    fn declaration(&self) -> &'static ForceDeclaration {
-        &DECLARATION
-    }
-    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+/// What π/2 leaves out as a double.
+const FRAC_PI_2_REST: f64 = 6.123_233_995_736_766e-17;
+
+impl DrivenForce {
+    /// With another angle added to the phase.
+    fn kernel_turned(&self, context: &Context<'_>, turned: DoubleDouble) -> Kernel {
         let start = |system: &System<'_>| {
             let own = context.own(self, system);
-            (DoubleDouble::product(own.frequency, context.t0) + DoubleDouble::from(own.phase)).parts()
+            let phase = DoubleDouble::product(own.frequency, context.t0) + DoubleDouble::from(own.phase);
+            (phase + turned).parts()
         };
         let amplitude =
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).amplitude[c], FORCE);
         let frequency =
             |system: &System<'_>| context.units.take(context.own(self, system).frequency, FREQUENCY);
-        Box::new(Kernel {
+        Kernel {
             shape: context.shape,
             amplitude: [0, 1, 2].map(|c| context.per_system(|system| amplitude(system, c))),
             frequency: context.per_system(frequency),
@@ -81,7 +86,54 @@ impl ForceTerm for DrivenForce {
                 context.per_system(|system| start(system).1),
             ],
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
-        })
+        }
+    }
+}
+
+/// The n-th derivative of a cosine is that of a phase n quarters of a turn ahead.
+struct WaveSeries {
+    quarters: [Kernel; 4],
+    /// (frequency · unit of time)ⁿ/n!.
+    power: Lanes,
+    a: Vec<Lanes>,
+}
+
+impl Series<Lanes> for WaveSeries {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let turn = jet.unit * self.quarters[0].frequency[0];
+        self.power = if n == 0 { jet.unit * jet.unit } else { self.power * turn * jet.inverse[n].0 };
+        self.a.resize(jet.len, Lanes::zero());
+        kernel_tier(&self.quarters[n % 4], &jet.t, &mut self.a, true);
+        Lanes::pass(Scale { from: &self.a, factor: &self.power, into: a, first });
+        Ok(())
+    }
+}
+
+impl ForceTerm for DrivenForce {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(self.kernel_turned(context, DoubleDouble::from(0.0)))
+    }
+
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        let quarters = [0.0, 1.0, 2.0, 3.0].map(|quarters| {
+            let turned = DoubleDouble::new(core::f64::consts::FRAC_PI_2, FRAC_PI_2_REST)
+                * DoubleDouble::from(quarters);
+            self.kernel_turned(context, turned)
+        });
+        Some(Box::new(WaveSeries { quarters, power: Lanes::one(), a: Vec::new() }))
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -64,6 +65,13 @@ impl ForceTerm for Harmonic {
             center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
             square: context.per_body(|system, slot| k(system) / system.mass[slot]),
         })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        let linear = Self { center: [0.0; 3], ..*self };
+        LinearSeries::boxed(self.kernel(context), Some(linear.kernel(context)))
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::series::{LinearSeries, Series};
 use super::term::{ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -43,6 +44,12 @@ impl ForceTerm for LinearDrag {
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
         let rate = |system: &System<'_>| -1.0 / context.units.take(context.own(self, system).tau, [0, 0, 1]);
         Box::new(Kernel { shape: context.shape, rate: context.per_system(rate) })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

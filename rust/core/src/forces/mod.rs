@@ -198,8 +198,8 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         Ok(())
     }
 
-    fn expand(&mut self, jet: &mut Jet<S>, _: &mut Ticker<'_>) -> Result<()> {
-        self.expand_series(jet)
+    fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {
+        self.expand_series(jet, ticker)
     }
 
     /// Rotations about several axes do not commute: half of each in turn, then in the reverse order, which keeps the

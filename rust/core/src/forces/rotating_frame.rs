@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -69,6 +70,13 @@ impl ForceTerm for RotatingFrame {
             center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
             there: context.per_body(|_, _| 1.0),
         })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        let linear = Self { center: [0.0; 3], ..*self };
+        LinearSeries::boxed(self.kernel(context), Some(linear.kernel(context)))
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System, of_body};
+use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -69,6 +70,12 @@ impl ForceTerm for UniformElectricField {
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).field[c], FORCE);
         let field = [0, 1, 2].map(|c| context.per_system(|system| field(system, c)));
         Box::new(Kernel { shape: context.shape, field, ratio })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        LinearSeries::boxed(self.kernel(context), None)
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

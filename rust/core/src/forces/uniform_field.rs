@@ -2,6 +2,7 @@
 
 use super::bodies::{Of, PreciseBodies, joined, vector_sum};
 use super::context::{Context, System};
+use super::series::{LinearSeries, Series};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
@@ -47,6 +48,12 @@ impl ForceTerm for Uniform {
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).g[c], ACCELERATION);
         let acceleration = (0..3).flat_map(|c| context.per_body(|system, _| g(system, c)));
         Box::new(Kernel { acceleration: acceleration.collect() })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        LinearSeries::boxed(self.kernel(context), None)
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

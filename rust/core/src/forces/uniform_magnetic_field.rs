@@ -2,6 +2,7 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm, MagneticField};
 use super::{Force, Phase};
 use crate::error::Result;
@@ -79,6 +80,12 @@ impl ForceTerm for UniformMagneticField {
         let size = context.per_system(size);
         let field = [0, 1, 2].map(|c| context.per_system(|system| field(system)[c]));
         Box::new(Kernel { shape: context.shape, field, size, axis, ratio, turns: Vec::new() })
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,

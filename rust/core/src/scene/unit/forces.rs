@@ -28,6 +28,11 @@ fn described<'a>(systems: &[System<'a>]) -> impl Iterator<Item = (usize, &'a Arc
     systems.first().map_or(&[][..], |system| system.forces).iter().enumerate()
 }
 
+/// The same systems for series, which are made of the forces on the first copy and look at no other's.
+fn for_series<'a>(systems: &[System<'a>]) -> Vec<System<'a>> {
+    systems.iter().map(|system| System { forces: &[], ..*system }).collect()
+}
+
 /// The forces on massless bodies, one in each lane, that do not couple them to others; `None` in the place of gravity.
 pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
     let systems = systems(plan, units);
@@ -42,9 +47,10 @@ pub fn uncoupled(plan: &Plan, units: &[&Prepared]) -> Vec<Option<Kernel>> {
         threads: 1,
     };
     let expands = matches!(plan.method.scheme, Scheme::Taylor(_));
+    let alike = for_series(&systems);
     let kernel = |(term, force): (usize, &Arc<dyn ForceTerm>)| {
         context.term = term;
-        let series = if expands { force.series(&context) } else { None };
+        let series = if expands { force.series(&Context { systems: &alike, ..context }) } else { None };
         force.as_newtonian().is_none().then(|| (force.kernel(&context), series))
     };
     described(&systems).map(kernel).collect()
@@ -87,6 +93,7 @@ pub fn dynamics(plan: &Plan, units: &[&Prepared], threads: usize) -> Dynamics<La
     }
     let dynamics = Dynamics::new(shape, kernels);
     if matches!(plan.method.scheme, Scheme::Taylor(_)) {
+        let context = Context { systems: &for_series(&systems), ..context };
         return dynamics.with_series(forces.iter().filter_map(|force| force.series(&context)).collect());
     }
     match plan.transformed {

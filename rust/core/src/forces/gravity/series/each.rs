@@ -1,10 +1,12 @@
 //! A pair in each register: of one trajectory, or of eight in lanes.
 
 use super::{Kept, Orders, Pairs, Whole};
+use crate::error::Result;
 use crate::forces::series::Series;
 use crate::numerics::element::{Element, Pass, Shape, View};
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
+use crate::parallel::Ticker;
 
 /// Pairs of bodies, a row each.
 pub struct EachPair<S> {
@@ -115,10 +117,19 @@ impl<S: Element> Pass<S> for AllOrders<'_, S> {
 }
 
 impl<S: Element> Series<S> for EachPair<S> {
-    fn coefficient(&mut self, n: usize, jet: &Jet<S>, a: &mut [S], first: bool) {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<S>,
+        a: &mut [S],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         S::pass(OneOrder(&self.bodies, Orders { kept: &mut self.kept, jet, n, a, first }));
+        Ok(())
     }
-    fn expand(&mut self, jet: &mut Jet<S>, a: &mut [S]) {
+    fn expand(&mut self, jet: &mut Jet<S>, a: &mut [S], _: &mut Ticker<'_>) -> Result<()> {
         S::pass(AllOrders(&self.bodies, Whole { kept: &mut self.kept, jet, a }));
+        Ok(())
     }
 }

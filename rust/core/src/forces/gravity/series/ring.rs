@@ -1,11 +1,13 @@
 //! Up to eight bodies of one trajectory, the lanes over the bodies: all pairs at one distance around the ring in a register.
 
 use super::{Kept, Orders, Pairs, Whole};
+use crate::error::Result;
 use crate::forces::series::Series;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
 use crate::ode::series::Jet;
+use crate::parallel::Ticker;
 use crate::tiered;
 
 /// The pairs at one distance.
@@ -104,10 +106,19 @@ tiered! {
 }
 
 impl Series<Lanes> for RingPairs {
-    fn coefficient(&mut self, n: usize, jet: &Jet<Lanes>, a: &mut [Lanes], first: bool) {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         one_order_tier(&self.bodies, Orders { kept: &mut self.kept, jet, n, a, first });
+        Ok(())
     }
-    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes]) {
+    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], _: &mut Ticker<'_>) -> Result<()> {
         all_orders_tier(&self.bodies, Whole { kept: &mut self.kept, jet, a });
+        Ok(())
     }
 }

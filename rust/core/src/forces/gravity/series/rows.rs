@@ -1,11 +1,13 @@
 //! More than eight bodies of one trajectory: each pulls whole rows of eight, in order of index.
 
 use super::{Kept, Orders, Pairs, Whole};
+use crate::error::Result;
 use crate::forces::series::Series;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
 use crate::ode::series::Jet;
+use crate::parallel::Ticker;
 use crate::tiered;
 
 struct Bodies {
@@ -80,10 +82,19 @@ tiered! {
 }
 
 impl Series<Lanes> for RowPairs {
-    fn coefficient(&mut self, n: usize, jet: &Jet<Lanes>, a: &mut [Lanes], first: bool) {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         one_order_tier(&self.bodies, Orders { kept: &mut self.kept, jet, n, a, first });
+        Ok(())
     }
-    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes]) {
+    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], _: &mut Ticker<'_>) -> Result<()> {
         all_orders_tier(&self.bodies, Whole { kept: &mut self.kept, jet, a });
+        Ok(())
     }
 }

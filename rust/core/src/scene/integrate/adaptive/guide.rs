@@ -265,8 +265,8 @@ impl System<Lanes> for Guided {
         Ok(())
     }
 
-    fn expand(&mut self, jet: &mut Jet<Lanes>, _: &mut Ticker<'_>) -> Result<()> {
+    fn expand(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
-        self.expand_series(jet)
+        self.expand_series(jet, ticker)
     }
 }

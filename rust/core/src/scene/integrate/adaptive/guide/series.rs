@@ -12,6 +12,7 @@ use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
+use crate::parallel::Ticker;
 
 /// Coefficients of the places of massive bodies in powers of the time since their step began.
 #[derive(Clone, Debug)]
@@ -93,7 +94,7 @@ impl Pass<Lanes> for Shift<'_> {
 
 impl Guided {
     /// As [`System::expand`](crate::ode::system::System::expand).
-    pub(super) fn expand_series(&mut self, jet: &mut Jet<Lanes>) -> Result<()> {
+    pub(super) fn expand_series(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         let Some(coefficients) = &self.path.coefficients else {
             return Err(Error::Internal("a path without its series".to_owned()));
         };
@@ -114,7 +115,7 @@ impl Guided {
                         let massive = Massive { strength, places: blocks, rests };
                         series.coefficient(massive, (n, jet), a, index == 0);
                     }
-                    Term::Other(_, Some(series)) => series.coefficient(n, jet, a, index == 0),
+                    Term::Other(_, Some(series)) => series.coefficient(n, jet, a, index == 0, ticker)?,
                     Term::Other(_, None) => {
                         return Err(Error::Internal("a force without its series".to_owned()));
                     }
