@@ -3,9 +3,35 @@
 //! A step is long, so its increment is formed with care: its first two terms by exact products and sums, what they
 //! leave out carried into the compensation of the state.
 
+use super::errors::HUGE;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
 use crate::numerics::real::Real;
+use crate::ode::step_control::{Rule, root};
+
+/// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
+#[derive(Debug)]
+pub(in crate::ode) struct LargestRoot<S> {
+    /// The squares.
+    pub(in crate::ode) squares: [S; 2],
+    /// The orders n.
+    pub(in crate::ode) orders: [usize; 2],
+}
+
+impl<S: Element> Pass<S> for LargestRoot<S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let mut largest = V::zero();
+        for which in 0..2 {
+            let square = V::load(self.squares[which]);
+            let root = root(square, &Rule::new(self.orders[which] as u32, V::zero()));
+            let sound = square.less(V::splat(HUGE));
+            largest = largest.max(V::select(sound, root, V::splat(f64::INFINITY)));
+        }
+        largest.store()
+    }
+}
 
 /// `y + (c1 x + c2 x² + …) factor`, compensated, the coefficients being blocks of `len` numbers.
 pub(in crate::ode) struct Sum<'a, S> {

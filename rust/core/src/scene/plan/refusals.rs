@@ -19,7 +19,9 @@ pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Re
     let serves = |method: &Method, needs| method.serves(Form::SecondOrder(1), needs);
     let Some(force) = forces.iter().find(|force| !serves(method, force.needs())) else { return Ok(()) };
     let all = forces.iter().fold(Needs::default(), |needs, force| needs.and(force.needs()));
-    let others = METHODS.iter().filter(|method| serves(method, all)).map(|method| method.name);
+    let expands = forces.iter().all(|force| force.has_series());
+    let others = METHODS.iter().filter(|method| serves(method, all) && (expands || method.has_table()));
+    let others = others.map(|method| method.name);
     Err(Error::invalid(
         "method",
         format!(
