@@ -199,7 +199,8 @@ def test_columns_are_those_of_the_massive_bodies() -> None:
     assert np.array_equal(out.angular_momentum, planets.angular_momentum)
 
 
-@pytest.mark.parametrize("method", ADAPTIVE)
+# A spring has no Taylor series.
+@pytest.mark.parametrize("method", [method for method in ADAPTIVE if method != "taylor"])
 @pytest.mark.parametrize("field", [(), (vv.UniformField((0.0, 0.0, 1e-9)),), (vv.LinearDrag(1e6),)], ids=repr)
 def test_springs_between_the_massive_couple_no_massless_body(method: str, field: tuple[Any, ...]) -> None:
     """A spring needs masses at its ends. Beside one, massless bodies were integrated in groups, by common steps."""

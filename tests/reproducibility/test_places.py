@@ -48,6 +48,8 @@ ENSEMBLES = {
 @pytest.mark.parametrize("name", ENSEMBLES)
 @pytest.mark.parametrize("copies", [2, 8, 9, 15, 16, 17, 24, COPIES])
 def test_a_copy_is_the_same_alone(name: str, copies: int, method: vv.Method) -> None:
+    if method.name == "taylor" and name == "a fixed centre":
+        pytest.skip("a Yukawa field has no Taylor series")
     run: dict[str, Any] = {"t": [0.5, 1.02], "method": method.name} | step(method, 0.05)
     every = ENSEMBLES[name]
     some = every.scene.ensemble(

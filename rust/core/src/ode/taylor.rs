@@ -167,7 +167,10 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         self.jet.begin(state, clock.elapsed, self.unit);
         system.expand(&mut self.jet, ticker)?;
         let (longest, sound) = self.longest(running, state, &clock.elapsed, norm);
-        let longest = S::select(sound, longest, self.unit).min(self.rule.max_step);
+        // The unit of time may be to blame; of the shortest there is, it is not.
+        let least = S::splat(f64::MIN_POSITIVE).power_below();
+        let shorter = S::select(least.less(self.unit), self.unit, S::zero());
+        let longest = S::select(sound, longest, shorter).min(self.rule.max_step);
         let span = (clock.end - clock.elapsed).abs();
         // What no coefficient limits goes to the end.
         let longest = longest.min(span + span);
