@@ -7,7 +7,7 @@
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::element::Element;
 use crate::numerics::lanes::{Bits, Lanes, Vector8};
-use crate::numerics::power_of_two::{exponent, power_of_two};
+use crate::numerics::power_of_two::power_of_two;
 use crate::numerics::real::{Mask, Real};
 use crate::tiered;
 
@@ -167,12 +167,13 @@ pub(super) fn root<S: Real>(square: S, rule: &Rule<S>) -> S {
     product
 }
 
-/// Its cube, and one over that, still are numbers.
+/// The widest range of units of time, in exponents of two: their cubes still are numbers.
 const WIDEST: i32 = 300;
 
-/// As [`Controlled::power_below`].
+/// As [`Controlled::power_below`]: without its significand, a number is the power of two below it.
 fn power_below(value: f64) -> f64 {
-    power_of_two(exponent(value).clamp(-WIDEST, WIDEST))
+    let power = f64::from_bits(value.to_bits() & f64::INFINITY.to_bits());
+    Real::min(Real::max(power, power_of_two(-WIDEST)), power_of_two(WIDEST))
 }
 
 /// Scalars whose steps can be controlled.
@@ -189,7 +190,7 @@ pub trait Controlled: Element {
     fn sum_of_lanes(self) -> Self;
     /// The first lane, as a double.
     fn first_lane(self) -> f64;
-    /// The power of two that is at most the size of a normal number, or the least or greatest of a wide range.
+    /// The power of two that is at most the size of a number, or the least or greatest of a wide range.
     #[must_use]
     fn power_below(self) -> Self;
 }

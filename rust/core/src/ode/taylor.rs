@@ -6,8 +6,8 @@
 
 use super::Taylor;
 use super::norm::{Change, Norm};
-use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{LargestRoot, Sum, nest};
+use super::passes::errors::PairTerm;
+use super::passes::series::{Choice, LargestRoot, Sum, nest};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled, root};
@@ -76,11 +76,10 @@ impl<S: Controlled> TaylorStep<S> {
         norm.sizes(state, state, elapsed, &[change(q, S::one()), change(v, S::one() / *unit)])
     }
 
-    /// The longest step that the coefficients allow, and whether there is one.
-    fn longest(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> (S, S::Mask) {
-        let order = self.jet.order;
+    /// One over the longest step that the coefficients allow, in their unit of time.
+    fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut inverse = S::zero();
-        let mut highest = order;
+        let mut highest = self.jet.order;
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact.
         while highest > 3 && inverse.less_equal(S::zero()).and(running).any() {
             let pair = [highest, highest - 1];
@@ -89,7 +88,7 @@ impl<S: Controlled> TaylorStep<S> {
             inverse = S::select(inverse.less_equal(S::zero()), found, inverse);
             highest -= 2;
         }
-        (S::splat(self.margin) * self.unit / inverse, inverse.less(S::splat(HUGE)))
+        inverse
     }
 
     /// The state at the time `x` after the expansion.
@@ -166,21 +165,22 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
     ) -> Result<Settled<S>> {
         self.jet.begin(state, clock.elapsed, self.unit);
         system.expand(&mut self.jet, ticker)?;
-        let (longest, sound) = self.longest(running, state, &clock.elapsed, norm);
-        // The unit of time may be to blame; of the shortest there is, it is not.
-        let least = S::splat(f64::MIN_POSITIVE).power_below();
-        let shorter = S::select(least.less(self.unit), self.unit, S::zero());
-        let longest = S::select(sound, longest, shorter).min(self.rule.max_step);
-        let span = (clock.end - clock.elapsed).abs();
-        // What no coefficient limits goes to the end.
-        let longest = longest.min(span + span);
-        let direction = S::select(clock.end.less(clock.elapsed), -S::one(), S::one());
-        clock.h = S::select(running, longest * direction, clock.h);
+        let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
+        let least = S::zero().power_below();
+        let [longest, h, size2] = S::pass(Choice {
+            inverse: &inverse,
+            units: [&self.unit, &least],
+            margin: self.margin,
+            longest: &self.rule.max_step,
+            times: [&clock.elapsed, &clock.end],
+            h: &clock.h,
+            running,
+        });
+        clock.h = h;
         self.h = S::next_step(clock, running);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
-        let size2 = S::select(sound, S::zero(), S::splat(HUGE));
         let outcome = S::settle(clock, running, size2, &self.rule);
-        let next = S::select(sound, longest, clock.h);
+        let next = S::select(size2.less(S::one()), longest, clock.h);
         self.unit = S::select(running, next.power_below(), self.unit);
         Ok(outcome)
     }

@@ -33,6 +33,48 @@ impl<S: Element> Pass<S> for LargestRoot<S> {
     }
 }
 
+/// The choice of a step.
+#[derive(Debug)]
+pub(in crate::ode) struct Choice<'a, S: Real> {
+    /// One over the step that the coefficients allow, in their unit of time: infinite if they are no numbers.
+    pub(in crate::ode) inverse: &'a S,
+    /// That unit, and the shortest that there is.
+    pub(in crate::ode) units: [&'a S; 2],
+    /// The share of that step that is taken.
+    pub(in crate::ode) margin: f64,
+    /// The longest step.
+    pub(in crate::ode) longest: &'a S,
+    /// The time, and that of the end.
+    pub(in crate::ode) times: [&'a S; 2],
+    /// The step of the lanes that do not run.
+    pub(in crate::ode) h: &'a S,
+    /// Those that do.
+    pub(in crate::ode) running: S::Mask,
+}
+
+impl<S: Element> Pass<S> for Choice<'_, S> {
+    /// The step, without its sign and with it, and a squared error that refuses it where it must be.
+    type Output = [S; 3];
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> [S; 3] {
+        let (inverse, [unit, least]) =
+            (V::load(*self.inverse), [V::load(*self.units[0]), V::load(*self.units[1])]);
+        let [now, end] = [V::load(*self.times[0]), V::load(*self.times[1])];
+        let zero = V::zero();
+        let sound = inverse.less(V::splat(HUGE));
+        // The unit of time may be to blame; of the shortest there is, it is not.
+        let shorter = V::select(least.less(unit), unit, zero);
+        let step = V::select(sound, V::splat(self.margin) * unit / inverse, shorter);
+        // What nothing limits goes to the end.
+        let span = (end - now).abs();
+        let step = step.min(V::load(*self.longest)).min(span + span);
+        let signed = V::select(end.less(now), -step, step);
+        let signed = V::select(V::mask(self.running), signed, V::load(*self.h));
+        let size2 = V::select(sound, zero, V::splat(HUGE));
+        [step.store(), signed.store(), size2.store()]
+    }
+}
+
 /// `y + (c1 x + c2 x² + …) factor`, compensated, the coefficients being blocks of `len` numbers.
 pub(in crate::ode) struct Sum<'a, S> {
     /// The state.
