@@ -37,7 +37,14 @@ impl<S: Element> Force<S> for HenonHeiles {
 }
 
 impl<S: Element> Series<S> for HenonHeiles {
-    fn coefficient(&mut self, n: usize, jet: &Jet<S>, a: &mut [S], first: bool) {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<S>,
+        a: &mut [S],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
         let product = |i: usize, j: usize| {
             (0..=n).fold(S::zero(), |sum, k| sum + jet.position(k)[i] * jet.position(n - k)[j])
         };
@@ -47,6 +54,7 @@ impl<S: Element> Series<S> for HenonHeiles {
             let term = term * jet.unit * jet.unit;
             *a = if first { term } else { *a + term };
         }
+        Ok(())
     }
 }
 
