@@ -185,7 +185,7 @@ impl<V: InverseCube> OfOrder<'_, V> {
             for c in 0..C {
                 let mut difference = pairs.difference(register, (n, c), &q[c * rows..][..rows]);
                 if n == 0 {
-                    difference = difference + pairs.rest(register, c, &rest[c * rows..][..rows]);
+                    difference += pairs.rest(register, c, &rest[c * rows..][..rows]);
                 }
                 d[n][c] = difference;
             }
@@ -223,7 +223,7 @@ fn squares<V: Real, const C: usize>(d: &[[V; C]]) -> V {
     }
     let mut sum = sums[0];
     for c in 1..C {
-        sum = sum + sums[c];
+        sum += sums[c];
     }
     sum = sum + sum;
     if d.len() % 2 == 1 {

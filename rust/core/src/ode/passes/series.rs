@@ -159,7 +159,7 @@ impl<V: Real> Sums<'_, V> {
             let (sum, sum_rest) = two_sum(first[g], second);
             let mut low = sum_rest + second_rest;
             if !rest.is_empty() {
-                low = low + rest[start + g];
+                low += rest[start + g];
             }
             let (high, product_rest) = product(sum, x);
             let low = low.multiply_add(x, product_rest);
@@ -182,7 +182,7 @@ pub(in crate::ode) fn nest<S: Real>(coefficients: &mut [S]) {
         // At θ = 1 it is the sum, and the other factor's coefficients are sums of those after; at θ = 0 it is the first.
         let rest = &mut coefficients[start..];
         for index in (1..rest.len()).rev() {
-            rest[index - 1] = rest[index - 1] + rest[index];
+            rest[index - 1] += rest[index];
         }
         for later in &mut rest[1..] {
             *later = -*later;
