@@ -84,7 +84,7 @@ fn the_extension_is_the_series_in_every_basis_and_ends_where_the_step_does() {
         })
     };
     for theta in [0.0, 0.125, 0.3125, 0.5, 0.8125, 1.0].map(DoubleDouble::from) {
-        trial.at(&state, outcome.h, theta, &mut between);
+        trial.at(&outcome, &mut dynamics, &state, theta, &mut between, &mut ticker).unwrap();
         if theta.to_f64() == 1.0 {
             assert!(distance(&between, trial.next()) < 1e-30);
         }
