@@ -29,6 +29,14 @@ PLAIN = {
     "potentials",
     "rutherford_half_distance",
     "screening_length",
+    "principal_axes",
+    "solid_tensor",
+    "tensor_about",
+    "tensor_rotated",
+    "top_least_spin",
+    "top_nutation",
+    "top_sleeping_threshold",
+    "top_steady_precession",
     "_echo",
 }
 
