@@ -59,6 +59,17 @@ def takes_massless(name: str) -> bool:
     return any(accelerates(vv.Scene(bodies, one)) and accelerates(vv.Scene(fewer, one)) for one in drawn)
 
 
+def transforms(name: str) -> bool:
+    """Whether the plan of one of those forces takes a time transformation."""
+    bodies = Recipe(bodies=4, forces=()).case().members()[0].particles
+    for seed in SEEDS:
+        with contextlib.suppress(vv.InvalidInput):
+            scene = vv.Scene(bodies, force(name, seed, 4, tame=True))
+            scene.plan(t=1.0, method="leapfrog", dt=0.125, time_transformation="distance")
+            return True
+    return False
+
+
 def accelerates(scene: vv.Scene) -> bool:
     with contextlib.suppress(vv.InvalidInput):
         return bool(np.isfinite(scene.acceleration()).all())
@@ -86,6 +97,10 @@ SPARED: dict[str, tuple[Callable[[str], bool], str]] = {
     "backward_in_time_is_forward_reversed": (
         lambda name: not FORCES[name]._one_way,
         "drag and drives tell the future from the past",
+    ),
+    "steps_in_another_time_lead_to_the_same_motion": (
+        transforms,
+        "there is no distance that another time could go by, or a velocity is looked at between kicks and drifts",
     ),
     "massless_bodies_do_not_touch_the_massive": (
         takes_massless,

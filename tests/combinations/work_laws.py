@@ -208,7 +208,9 @@ def closed_form_case(recipe: Recipe) -> Case:
     if names == ("Gravity",) and recipe.seed % 2:
         # One that has mass, and others that move about it.
         bodies_ = scene.particles
-        start = vv.Scene(vv.Particles([1.0, 0.0], bodies_.position, bodies_.velocity), *scene.forces, t0=scene.t0)
+        start = vv.Scene(
+            vv.Particles([bodies_.mass[0], 0.0], bodies_.position, bodies_.velocity), *scene.forces, t0=scene.t0
+        )
         return replace(case, start=start)
     if names == ("QuadraticDrag", "UniformField"):
         return replace(case, start=_on_a_line(scene))
@@ -223,7 +225,9 @@ def _on_a_line(scene: vv.Scene) -> vv.Scene:
     """Velocities along the field, up and down."""
     field = np.array(next(one.g for one in scene.forces if isinstance(one, FORCES["UniformField"])))
     x, v = scene.particles.position, scene.particles.velocity
-    return scene.with_state(x, v[:, :1] * field)
+    # As fast as they are, whatever the units of the field.
+    size = np.abs(field).max()
+    return scene.with_state(x, v[:, :1] * (field / size if size > 0.0 else field))
 
 
 @law
