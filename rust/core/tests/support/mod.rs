@@ -3,7 +3,7 @@
 
 use visviva_core::Result;
 use visviva_core::forces::gravity::closed::ClosedKernel;
-use visviva_core::forces::gravity::series::EachPair;
+use visviva_core::forces::gravity::series::{EachPair, RingPairs};
 use visviva_core::forces::gravity::{FewBodies, Ring};
 use visviva_core::forces::series::Series;
 use visviva_core::forces::{Dynamics, Force, Phase};
@@ -220,11 +220,11 @@ pub fn five_lanes() -> Problem<Lanes> {
     let q = [[0.0, 2.0, -3.0, 5.0, -6.5], [0.0, 0.5, 1.0, -4.0, 4.0], [0.0, -0.25, 0.5, 1.0, -1.0]];
     let v = [[0.1, 0.2, -0.3, 0.3, -0.2], [-0.2, 0.6, -0.5, 0.4, -0.4], [0.0, 0.1, -0.1, 0.1, 0.2]];
     let still = v.map(|v| Lanes(core::array::from_fn(|lane| v.get(lane).copied().unwrap_or_default())));
+    let strength = vec![1.0, 0.7, 0.4, 0.01, 1e-6];
+    let series = RingPairs::new(shape, &strength, 0.0);
     Problem {
-        dynamics: Dynamics::new(
-            shape,
-            vec![Box::new(Ring::new(shape, vec![1.0, 0.7, 0.4, 0.01, 1e-6], 0.0))],
-        ),
+        dynamics: Dynamics::new(shape, vec![Box::new(Ring::new(shape, strength, 0.0))])
+            .with_series(vec![Box::new(series)]),
         state: State::new(&q.map(lanes), &still),
         mass: vec![],
     }

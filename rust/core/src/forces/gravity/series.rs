@@ -22,7 +22,7 @@ pub mod passive;
 mod ring;
 mod rows;
 pub use each::EachPair;
-use ring::RingPairs;
+pub use ring::RingPairs;
 use rows::RowPairs;
 
 /// Room for so many orders.

@@ -27,7 +27,7 @@ struct Turns {
 }
 
 /// Pairs around the ring of the bodies in row 0.
-pub(super) struct RingPairs {
+pub struct RingPairs {
     bodies: Turns,
     kept: Kept<Lanes>,
     pair: Option<Box<OnePair>>,
@@ -75,7 +75,7 @@ impl OnePair {
 
 impl RingPairs {
     /// From the `G·m` of the bodies, at most [`RING_MAX`](super::RING_MAX) of them.
-    pub(super) fn new(shape: Shape, strength: &[f64], softening: f64) -> Self {
+    pub fn new(shape: Shape, strength: &[f64], softening: f64) -> Self {
         let n = strength.len();
         let body = |lane: usize, distance: usize| if lane < n { (lane + distance) % n } else { lane };
         let weights = |distance: usize| {
