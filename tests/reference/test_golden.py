@@ -10,7 +10,6 @@ LATER = {
     "collisions": ["G8.23", "G8.24"],
     "scattering by any potential": ["G8.41", "G8.39-square-well"],
     "rigid velocity fields": ["G9.9-"],
-    "heavy tops in time": ["G9.32-", "G9.78-"],
 }
 
 

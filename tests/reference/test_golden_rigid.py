@@ -193,6 +193,44 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     assert found.kind == {"wavy": "wave"}.get(expected["kind"], expected["kind"])
 
 
+@golden("G9.78-heavy-top")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    top = heavy_top(given)
+    start = {"theta": given["theta0"]} | {name: given[name + "0"] for name in ("theta_dot", "phi_dot", "psi_dot")}
+    nutation = top.nutation(**start)
+    close(nutation.roots, expected["u_roots"])
+    close([nutation.theta_min, nutation.theta_max], [expected["theta_min"], expected["theta_max"]])
+    close(nutation.period, expected["nutation_period"])
+    close(nutation.turning, expected["u_turn_phi_dot"])
+    assert (nutation.kind == "loop") is expected["loops"]
+    found = top.solve([given["t"], nutation.period], **start)
+    close(found.theta[0], expected["theta_t"])
+    close(found.phi[1], expected["phi_advance_per_nutation"])
+    sine, cosine = np.sin(found.theta), np.cos(found.theta)
+    p_psi = given["C"] * (found.psi_dot + found.phi_dot * cosine)
+    close(p_psi, [expected["p_psi"]] * 2)
+    close(given["A"] * found.phi_dot * sine**2 + p_psi * cosine, [expected["p_phi"]] * 2)
+    kinetic = given["A"] * (found.theta_dot**2 + (found.phi_dot * sine) ** 2) / 2
+    close(kinetic + given["MgR"] * cosine, [expected["E_prime"]] * 2)
+
+
+@golden("G9.32-physical-pendulum")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    rod = vv.rigid.rod(given["M"], given["l"])
+    across = vv.rigid.parallel_axis(rod.tensor, given["M"], [0.0, 0.0, given["l"] / 2])[0, 0]
+    close(across, expected["I_pivot"])
+    # A rod has no moment along itself; the motion without spin does not ask for it.
+    top = vv.rigid.HeavyTop(across, 1e-3, given["M"], given["g"], given["l"] / 2)
+    close(across / (given["M"] * given["l"] / 2), expected["equivalent_length"])
+    # At 1e-7 of the vertical the period is that of small swings to 1e-15; one nutation is half a swing.
+    swing = np.pi - 1e-7
+    close(np.pi / top.nutation(swing, psi_dot=0.0).period, expected["omega_small"])
+    t = np.linspace(0.0, 3.0, 7)
+    found = top.solve(t, theta=swing, psi_dot=0.0)
+    # Angles near π are rounded to 4e-16.
+    assert np.abs(found.axis[:, 1] + (np.pi - swing) * np.cos(expected["omega_small"] * t)).max() <= 1e-15
+
+
 @golden("G9.79-sleeping-top")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     top = heavy_top(given)

@@ -3,11 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal, NamedTuple
+
+import numpy as np
 
 from visviva import _core
-from visviva._arrays import number
+from visviva._arrays import float_array, number
 from visviva._keywords import known_keywords
+from visviva.rigid._euler import quaternion_from_euler
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
 
 
 class SteadyPrecession(NamedTuple):
@@ -51,6 +57,47 @@ class Nutation:
     kind: Literal["loop", "cusp", "wave", "plane", "steady"]
     roots: tuple[float, float, float]
     turning: float
+
+
+@known_keywords
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
+class TopMotion:
+    """The states of a heavy top; what `HeavyTop.solve` returns.
+
+    Of a single time, arrays have no axis over the times. All are read-only.
+
+    Attributes
+    ----------
+    t : ndarray, shape (T,)
+        The times, as given.
+    theta, phi, psi : ndarray, shape (T,)
+        Euler's angles: θ in [0, π]; φ and ψ without jumps of 2π. Where the axis goes through the vertical itself, φ
+        jumps by π, and ψ with it.
+    theta_dot, phi_dot, psi_dot : ndarray, shape (T,)
+        Their rates.
+    """
+
+    t: NDArray[np.float64]
+    theta: NDArray[np.float64]
+    phi: NDArray[np.float64]
+    psi: NDArray[np.float64]
+    theta_dot: NDArray[np.float64]
+    phi_dot: NDArray[np.float64]
+    psi_dot: NDArray[np.float64]
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:
+        """Quaternions (x, y, z, w) from the body, whose third axis is the top's, to space, (T, 4)."""
+        return quaternion_from_euler(np.stack([self.phi, self.theta, self.psi], axis=-1))
+
+    @property
+    def axis(self) -> NDArray[np.float64]:
+        """The top's axis in space, (T, 3): (sin θ sin φ, −sin θ cos φ, cos θ)."""
+        sine = np.sin(self.theta)
+        return np.stack([sine * np.sin(self.phi), -sine * np.cos(self.phi), np.cos(self.theta)], axis=-1)
+
+    def __repr__(self) -> str:
+        return f"TopMotion(t of shape {self.t.shape})"
 
 
 @known_keywords
@@ -222,3 +269,68 @@ class HeavyTop:
         """
         found = self.nutation(theta, psi_dot=psi_dot, theta_dot=theta_dot, phi_dot=phi_dot)
         return found.theta_min, found.theta_max
+
+    def solve(
+        self,
+        t: ArrayLike,
+        *,
+        theta: float,
+        psi_dot: float,
+        theta_dot: float = 0.0,
+        phi_dot: float = 0.0,
+        phi: float = 0.0,
+        psi: float = 0.0,
+    ) -> TopMotion:
+        """Give the motion at any times, in closed form.
+
+        Theta functions give the angles and their rates: each state costs the same, however far it is from the start,
+        through the poles, on the separatrix, of a sleeping top and of one that does not spin.
+
+        Parameters
+        ----------
+        t : float or array_like
+            Times since the start, of either sign and in any order.
+        theta : float
+            Angle of the axis from the vertical at the start, in [0, π].
+        psi_dot, theta_dot, phi_dot : float
+            Rates of Euler's angles at the start. At θ = 0, φ̇ + ψ̇ alone matters, at π φ̇ − ψ̇.
+        phi, psi : float, optional
+            The other two angles at the start.
+
+        Returns
+        -------
+        TopMotion
+            With ``.theta``, ``.phi``, ``.psi``, their rates, ``.axis`` and ``.orientation``. The orientation is within
+            1e-14 + 4 ε (|φ| + |ψ| + λ t) of the exact one, with λ the rate of nutation, wherever the start decides it:
+            near the separatrix its own rounding is amplified.
+
+        Raises
+        ------
+        InvalidInput
+            For an angle outside [0, π], NaN or infinity, rates beyond 1e30 √(M g R/A), or a time until which the turns
+            cannot be counted.
+
+        Notes
+        -----
+        Klein & Sommerfeld, *Über die Theorie des Kreisels* ch. VI; Whittaker, *Analytical Dynamics* § 73.
+
+        Examples
+        --------
+        A top that is let go nods and goes round at the mean rate M g R/(C ω₃) = 0.4, nearly:
+
+        >>> import numpy as np, visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> out = top.solve(np.array([0.0, 10.0, 1000.0]), theta=0.3, psi_dot=50.0)
+        >>> out.phi.round(3)
+        array([  0.   ,   4.227, 417.161])
+        """
+        times = float_array("t", t, None)
+        angles = (number("theta", theta), number("phi", phi), number("psi", psi))
+        rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
+        found = _core.top_motion(self._numbers, angles, rates, times.ravel())
+        columns = [np.ascontiguousarray(column).reshape(times.shape) for column in found.T]
+        kept = times.copy()
+        for array in (kept, *columns):
+            array.flags.writeable = False
+        one, two, three, one_dot, two_dot, three_dot = columns
+        return TopMotion(t=kept, theta=one, phi=two, psi=three, theta_dot=one_dot, phi_dot=two_dot, psi_dot=three_dot)

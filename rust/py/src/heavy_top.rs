@@ -1,10 +1,17 @@
 //! The heavy symmetric top.
 
+use crate::arrays::{copied, moved};
 use crate::errors::raised;
+use crate::gate::compute;
+use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::Result;
+use visviva_core::memory::reserved;
 use visviva_core::rigid::heavy_top::{HeavyTop, Start};
+
+/// States between two looks at the clock.
+const STRIDE: usize = 4096;
 
 /// A, C, mass, g and R.
 type Top = (f64, f64, f64, f64, f64);
@@ -59,4 +66,36 @@ pub(crate) fn top_nutation<'py>(
     dict.set_item("turning", found.turning)?;
     dict.set_item("kind", found.kind)?;
     Ok(dict)
+}
+
+/// θ, φ, ψ and their rates at times, six numbers a row, from Euler's angles (θ, φ, ψ) and rates.
+#[pyfunction]
+pub(crate) fn top_motion<'py>(
+    py: Python<'py>,
+    top: Top,
+    angles: (f64, f64, f64),
+    rates: (f64, f64, f64),
+    t: PyReadonlyArrayDyn<'py, f64>,
+) -> PyResult<Bound<'py, PyArrayDyn<f64>>> {
+    let ((theta, phi, psi), (theta_dot, phi_dot, psi_dot)) = (angles, rates);
+    let start = Start { theta, theta_dot, phi_dot, psi_dot };
+    let (times, [length]) = copied("t", &t, [None])?;
+    let values = compute(py, 0, None, |ticker| {
+        let motion = made(top)?.motion(start, [phi, psi])?;
+        let furthest =
+            times.iter().fold(0.0, |most: f64, time| if time.abs() > most.abs() { *time } else { most });
+        motion.check_time(furthest)?;
+        let [mut values] = reserved("t", "the states at all these times", length.checked_mul(6))?;
+        for (index, time) in times.iter().enumerate() {
+            if index % STRIDE == 0 {
+                ticker.tick()?;
+            }
+            let state = motion.at(*time);
+            values.extend(state.angles);
+            values.extend(state.rates);
+        }
+        Ok(values)
+    })?
+    .whole(py)?;
+    moved(py, values, &[length, 6])
 }

@@ -38,7 +38,9 @@ mod _core {
     #[pymodule_export]
     use crate::fitted::{fitted, tabulated_drag};
     #[pymodule_export]
-    use crate::heavy_top::{top_least_spin, top_nutation, top_sleeping_threshold, top_steady_precession};
+    use crate::heavy_top::{
+        top_least_spin, top_motion, top_nutation, top_sleeping_threshold, top_steady_precession,
+    };
     #[pymodule_export]
     use crate::info::info;
     #[pymodule_export]

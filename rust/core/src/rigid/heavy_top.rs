@@ -1,10 +1,14 @@
-//! A symmetric top with a fixed point, in uniform gravity: what its constants of motion tell without its motion.
+//! A symmetric top with a fixed point, in uniform gravity: what its constants of motion tell, and its motion at any
+//! time (`heavy_top/motion.rs`).
 //!
 //! The one idea: the height cos θ = u moves in a cubic, u̇² = F(u); it is written about the height it starts from and
 //! solved in double-double, so that neither the roots nor their distances from the poles are small differences of
 //! rounded numbers. Steady precessions are the two roots of a quadratic whose leading term has cos θ: neither is
 //! divided by what vanishes at the horizontal.
 //! Sources: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. § 5.7; Landau & Lifshitz, *Mechanics* § 35.
+
+mod motion;
+mod theta;
 
 use super::moments::check;
 use crate::error::{Error, Result};
@@ -15,6 +19,8 @@ use crate::numerics::real::Real;
 use crate::numerics::rotation::Rotation;
 use crate::numerics::scaled::Scaled;
 use crate::words::number;
+
+pub use motion::{Angles, Motion};
 
 /// Halvings until nothing is left of a bracket in double-double.
 const HALVINGS: usize = 220;
@@ -132,11 +138,8 @@ impl HeavyTop {
         (apart * apart + precession * precession * (1.0 - u * u)).sqrt()
     }
 
-    /// The nutation from a start.
-    ///
-    /// # Errors
-    /// `InvalidInput` for an angle outside [0, π].
-    pub fn nutation(&self, start: Start) -> Result<Nutation> {
+    /// The cubic about the start.
+    fn cubic(&self, start: &Start, gravity: DoubleDouble) -> Result<Cubic> {
         if !(0.0..=core::f64::consts::PI).contains(&start.theta) {
             let message = format!("expected an angle in [0, π], got {}", number(start.theta));
             return Err(Error::invalid("theta", message));
@@ -146,24 +149,34 @@ impl HeavyTop {
         // 1 − u and 1 + u at the start, and sin² θ.
         let (below, above) = ((s * s).scale(2.0), (c * c).scale(2.0));
         let (u, sine) = (c * c - s * s, below * above);
-        let gravity = of(self.torque) / of(self.across);
         let [phi, theta] = [start.phi_dot, start.theta_dot].map(of);
         let spin = (of(start.psi_dot) + phi * u) * of(self.along) / of(self.across);
         let swing = theta * theta + phi * phi * sine;
         // F(x) of x = u − u₀.
-        let cubic = [
+        let coefficients = [
             sine * theta * theta,
             ((phi * sine * spin) - u * swing - gravity * sine).scale(2.0),
             (gravity * u).scale(4.0) - swing - spin * spin,
             gravity.scale(2.0),
         ];
-        let [x1, x2, x3] = roots(cubic, -above, below);
+        let roots = roots(coefficients, -above, below);
+        Ok(Cubic { above, below, u, sine, spin, coefficients, roots })
+    }
+
+    /// The nutation from a start.
+    ///
+    /// # Errors
+    /// `InvalidInput` for an angle outside [0, π].
+    pub fn nutation(&self, start: Start) -> Result<Nutation> {
+        let cubic = self.cubic(&start, of(self.torque) / of(self.across))?;
+        let Cubic { above, below, u, sine, spin, roots: [x1, x2, x3], .. } = cubic;
+        let phi = of(start.phi_dot);
         let angle = |x: DoubleDouble| {
             let [up, down] = [below - x, above + x].map(|part| part.to_f64().max(0.0).sqrt());
             2.0 * atan2(up, down)
         };
         let complement = ((x3 - x2) / (x3 - x1)).max(of(0.0)).sqrt();
-        let rate = (cubic[3] * (x3 - x1)).sqrt();
+        let rate = (cubic.coefficients[3] * (x3 - x1)).sqrt();
         let period = complete_first_kind(complement).scale(4.0) / rate;
         // Where p_φ = p_ψ u.
         let turning = phi * sine / spin;
@@ -185,6 +198,47 @@ impl HeavyTop {
             turning: (u + turning).to_f64(),
             kind,
         })
+    }
+}
+
+/// F(u) about the start u, and its roots, as distances from there.
+struct Cubic {
+    /// 1 + u, 1 − u, u and sin² θ.
+    above: DoubleDouble,
+    below: DoubleDouble,
+    u: DoubleDouble,
+    sine: DoubleDouble,
+    /// p_ψ/A.
+    spin: DoubleDouble,
+    coefficients: [DoubleDouble; 4],
+    roots: [DoubleDouble; 3],
+}
+
+impl Cubic {
+    /// The roots, none of them lost to another that is near, then u₃ − 1 and 1 − u₂, by (p_φ − p_ψ)/A.
+    fn separated(&self, across: DoubleDouble) -> [DoubleDouble; 5] {
+        let zero = of(0.0);
+        let [a, _, c, d] = self.coefficients;
+        let [mut x1, mut x2, mut x3] = self.roots;
+        // The two numbers with this difference and this product, both ≥ 0.
+        let two = |difference: DoubleDouble, product: DoubleDouble| {
+            let rest = (difference * difference + product.scale(4.0)).sqrt();
+            let larger = (difference.max(zero) + (-difference).max(zero) + rest).scale(0.5);
+            let smaller = if larger.high() == 0.0 { zero } else { product / larger };
+            if difference.high() > 0.0 { (larger, smaller) } else { (smaller, larger) }
+        };
+        let by_lowest = x2 - x1 > x3 - x2;
+        if a.high() > 0.0 && !by_lowest {
+            let (up, down) = two(-c / d - x3, a / (d * x3));
+            (x1, x2) = (-down, up);
+        }
+        let sum = if a.high() > 0.0 && by_lowest { -c / d - x1 } else { x2 + x3 };
+        let (beyond, short) = two(sum - self.below.scale(2.0), across * across / (d * (self.below - x1)));
+        if a.high() > 0.0 && by_lowest {
+            x3 = self.below + beyond;
+            x2 = if -x1 > x2 { a / (d * -x1 * x3) } else { self.below - short };
+        }
+        [x1, x2, x3, beyond, short]
     }
 }
 
