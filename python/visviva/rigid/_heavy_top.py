@@ -303,12 +303,13 @@ class HeavyTop:
             With ``.theta``, ``.phi``, ``.psi``, their rates, ``.axis`` and ``.orientation``. The orientation is within
             1e-14 + 4 ε (|φ| + |ψ| + λ t) of the exact one, with λ the rate of nutation, wherever the start decides it:
             near the separatrix its own rounding is amplified.
+            Rates are within 1e-14 of the largest of them, φ̇ and ψ̇ apart within that over sin θ.
 
         Raises
         ------
         InvalidInput
-            For an angle outside [0, π], NaN or infinity, rates beyond 1e30 √(M g R/A), or a time until which the turns
-            cannot be counted.
+            For an angle outside [0, π], NaN or infinity, rates beyond 1e30 √(M g R/A), a start that is upright within
+            1e-60 and yet not at rest there, or a time until which the turns cannot be counted.
 
         Notes
         -----
@@ -322,7 +323,7 @@ class HeavyTop:
         >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
         >>> out = top.solve(np.array([0.0, 10.0, 1000.0]), theta=0.3, psi_dot=50.0)
         >>> out.phi.round(3)
-        array([  0.   ,   4.227, 417.161])
+        array([  0.   ,   4.2  , 416.468])
         """
         times = float_array("t", t, None)
         angles = (number("theta", theta), number("phi", phi), number("psi", psi))

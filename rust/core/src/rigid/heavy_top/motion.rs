@@ -20,6 +20,8 @@ use crate::words::number;
 
 /// Below it, gravity beside the square of the rates is lost in the roots.
 const WEAKEST: f64 = 1e-60;
+/// How near to upright a start may be whose squares are still told from none.
+const UPRIGHT: f64 = 1e-60;
 /// Nutations smaller than this are none.
 const STEADY: f64 = 1e-200;
 
@@ -101,6 +103,15 @@ impl HeavyTop {
                 number(most)
             );
             return Err(Error::invalid("psi_dot", message));
+        }
+        let off = start.theta.max(theta_dot.abs());
+        if 0.0 < off && off < UPRIGHT {
+            let message = format!(
+                "expected a start at rest upright or at least 1e-60 off, got theta = {} and theta_dot = {}",
+                number(start.theta),
+                number(start.theta_dot)
+            );
+            return Err(Error::invalid("theta", message));
         }
         let less = |value: f64| scale(value, -2 * time_exponent);
         let (high, low) = gravity.parts();
