@@ -5,7 +5,8 @@ import pytest
 
 import visviva as vv
 
-METHODS = vv.methods()
+# Springs have no Taylor series.
+METHODS = [method for method in vv.methods() if method.coefficients]
 FIELD = np.array([0.5, -1.0, -9.75])
 
 

@@ -121,7 +121,9 @@ def test_negative_masses(mass: float, index: int) -> None:
 
 def test_the_core_looks_at_masses_itself() -> None:
     with pytest.raises(vv.InvalidInput, match=r"mass\[1\]") as caught:
-        _core.acceleration(mass=np.array([1.0, -1.0]), forces=[], position=np.eye(3)[:2], velocity=np.zeros((2, 3)))
+        _core.acceleration(
+            mass=np.array([1.0, -1.0]), forces=[], position=np.eye(3)[:2], velocity=np.zeros((2, 3)), t0=0.0
+        )
     assert caught.value.argument == "mass"
 
 
