@@ -45,7 +45,8 @@ def steps_in_another_time_lead_to_the_same_motion(recipe: Recipe) -> None:
     length, speed = sizes(case)
     bounds = (error_x + 128 * EPSILON * length, error_v + 128 * EPSILON * speed)
     for found, halved, bound in zip(change(fine, (x, v)), change(coarse, fine), bounds, strict=True):
-        assert found <= halved + bound, f"{found:.1e} apart, bounds {halved:.1e} + {bound:.1e}"
+        # Of some steps of the other each may err by the whole of its tolerance.
+        assert found <= halved + 4 * bound, f"{found:.1e} apart, bounds {halved:.1e} + {4 * bound:.1e}"
 
 
 @law

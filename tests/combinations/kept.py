@@ -420,4 +420,24 @@ KEPT: list[tuple[str, Recipe]] = [
             backward=True,
         ),
     ),
+    # An event stopped a run in a state in which another body was no number any more.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="heun",
+            bodies=25,
+            forces=(("Drag", 48), ("Gravity", 31), ("Gravity", 83)),
+            seed=587,
+            tame=False,
+            drifting=True,
+            wild_member=True,
+            steps=5,
+            ragged=True,
+            decades=6,
+            outputs=4,
+            collisions="stop",
+            t0=1.9655928963165258e-134,
+            backward=True,
+        ),
+    ),
 ]

@@ -51,4 +51,4 @@ def _step(factors: Sequence[mpmath.mpf], state: list[mpmath.mpf], h: mpmath.mpf)
         ]
         for part, rate in zip(series, rates, strict=True):
             part.append(rate / (n + 1))
-    return [mpmath.polyval(part[::-1], h) for part in series]
+    return [sum(term * h**order for order, term in enumerate(part)) for part in series]

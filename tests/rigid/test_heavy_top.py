@@ -51,7 +51,8 @@ def test_the_top_of_bruels_and_cardona():
             2 * p_phi * p_psi - 2 * a * torque,
             2 * a * energy - p_phi**2,
         ]
-        lowest = min(mpmath.re(root) for root in mpmath.polyroots(cubic, maxsteps=200, extraprec=200))
+        # One of the three is beyond 1, one where the top starts, and the lowest next to -1.
+        lowest = mpmath.findroot(lambda u: ((cubic[0] * u + cubic[1]) * u + cubic[2]) * u + cubic[3], -1)
         theta_max = float(mpmath.acos(lowest))
     assert found.theta_max == pytest.approx(theta_max, rel=4e-16)
     assert 6e-7 < np.pi - found.theta_max < 8e-7

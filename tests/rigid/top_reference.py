@@ -64,4 +64,4 @@ def _step(state: list[mpmath.mpf], a: mpmath.mpf, c: mpmath.mpf, torque: mpmath.
         ]
         for part, rate in zip(series, rates, strict=True):
             part.append(rate / (n + 1))
-    return [mpmath.polyval(part[::-1], h) for part in series]
+    return [sum(term * h**order for order, term in enumerate(part)) for part in series]

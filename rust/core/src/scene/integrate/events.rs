@@ -336,7 +336,11 @@ impl<'a> Watch<'a> {
                 let entry = unit.read(slot, state, lane, elapsed);
                 [entry.position, entry.velocity]
             });
-            let states = states.collect();
+            let states: Vec<[[f64; 3]; 2]> = states.collect();
+            // Where another body has ceased to be a number there is no state to stop in: the run ends by that.
+            if states.iter().flatten().flatten().any(|x| !x.is_finite()) {
+                break;
+            }
             let Some(&(which, _)) = self.events.get(event) else {
                 let spheres = match self.event(event).0.what {
                     What::Distance { bodies, .. } => Some(bodies),
