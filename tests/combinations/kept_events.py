@@ -1,0 +1,128 @@
+"""Scenes that failed a law of events on the way: see `kept`."""
+
+from __future__ import annotations
+
+from recipe import Recipe
+
+KEPT_EVENTS: list[tuple[str, Recipe]] = [
+    # Between nodes of fixed steps events looked at shadow steps taken backward: a jump of their error at the start.
+    (
+        "a_located_event_is_a_zero_at_its_state",
+        Recipe(
+            method="rk4",
+            bodies=5,
+            forces=(("UniformMagneticField", 59),) * 3,
+            seed=106,
+            tame=True,
+            offset=1,
+            steps=1,
+            decades=5,
+            columns=("position",),
+            backward=True,
+        ),
+    ),
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="rk4",
+            bodies=10,
+            forces=(("UniformMagneticField", 33),),
+            seed=405,
+            tame=False,
+            drifting=True,
+            members=9,
+            steps=2,
+            events=(("plane", 33), ("plane", 81)),
+            backward=True,
+        ),
+    ),
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="rk4",
+            bodies=3,
+            forces=(("CentralField/3", 6),),
+            seed=633,
+            tame=False,
+            at_origin=True,
+            offset=9,
+            members=5,
+            steps=4,
+            outputs=1,
+            backward=True,
+        ),
+    ),
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="stormer13",
+            bodies=5,
+            massless=2,
+            forces=(("Gravity", 0),),
+            seed=0,
+            tame=True,
+            steps=2,
+            outputs=1,
+            events=(("distance", 3), ("energy", 72), ("plane", 84)),
+        ),
+    ),
+    # An event at the very node of an output took the row with it.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="euler",
+            bodies=5,
+            forces=(("PostNewtonian", 47),),
+            seed=335,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            offset=1,
+            steps=1,
+        ),
+    ),
+    # A massless body's event was taken for one on steps of all, which it is not.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="kahan_li8",
+            bodies=8,
+            massless=5,
+            forces=(("Gravity", 94),),
+            seed=1291,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            drifting=True,
+            offset=3,
+            members=8,
+            own=("velocity", "parameters", "position", "mass"),
+            steps=26,
+            transformation="distance",
+            outputs=6,
+            columns=("center_of_mass",),
+            events=(("distance", 19), ("plane", 66)),
+            backward=True,
+        ),
+    ),
+    # An event stopped a run in a state in which another body was no number any more.
+    (
+        "a_terminal_event_only_cuts",
+        Recipe(
+            method="heun",
+            bodies=25,
+            forces=(("Drag", 48), ("Gravity", 31), ("Gravity", 83)),
+            seed=587,
+            tame=False,
+            drifting=True,
+            wild_member=True,
+            steps=5,
+            ragged=True,
+            decades=6,
+            outputs=4,
+            collisions="stop",
+            t0=1.9655928963165258e-134,
+            backward=True,
+        ),
+    ),
+]
