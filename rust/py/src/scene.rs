@@ -6,6 +6,7 @@
 mod events;
 mod input;
 mod output;
+mod rigid;
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;

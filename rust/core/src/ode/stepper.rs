@@ -104,6 +104,10 @@ impl Nodes {
     pub fn new<S: Element>(h: f64, system: &dyn System<S>) -> Self {
         Self { h, needed: system.needs().time }
     }
+    /// Of steps `h` of a system that may need the time.
+    pub const fn always(h: f64) -> Self {
+        Self { h, needed: true }
+    }
     /// The time of a node, as a product and never as a sum of steps.
     #[inline(always)]
     pub fn time<S: Element>(&self, node: u64) -> S {

@@ -5,6 +5,7 @@ pub mod free;
 pub mod heavy_top;
 pub mod mesh;
 pub mod moments;
+pub mod motion;
 pub mod quaternion;
 pub mod solids;
 pub mod tensor;

@@ -6,6 +6,7 @@
 
 use super::Scene;
 use super::room;
+use super::unit::Turned;
 use crate::conservation::columns::{Column, Snapshot};
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
@@ -25,6 +26,8 @@ pub struct Wanted {
     pub derived: Vec<&'static Column>,
     /// Whether the states must be kept for it.
     pub keep_states: bool,
+    /// How many rigid bodies there are, whose orientations and angular velocities are recorded.
+    pub rigid: usize,
 }
 
 impl Wanted {
@@ -38,7 +41,7 @@ impl Wanted {
     pub fn bytes(&self, copies: usize, times: usize, particles: usize) -> Option<usize> {
         let vectors = self.vectors().into_iter().filter(|&wanted| wanted).count();
         let numbers: usize = self.derived.iter().map(|column| column.width).sum();
-        let each = particles.checked_mul(3 * vectors)?.checked_add(numbers)?;
+        let each = particles.checked_mul(3 * vectors)?.checked_add(numbers)?.checked_add(7 * self.rigid)?;
         copies.checked_mul(times)?.checked_mul(each)?.checked_mul(size_of::<f64>())
     }
 }
@@ -71,6 +74,12 @@ pub struct Columns {
     pub velocity_rest: Vec<f64>,
     /// Derived columns, in the order asked for.
     pub derived: Vec<Derived>,
+    /// Rigid bodies.
+    pub rigid: usize,
+    /// Their orientations, quaternions.
+    pub orientation: Vec<f64>,
+    /// Their angular velocities.
+    pub angular_velocity: Vec<f64>,
     streams: bool,
 }
 
@@ -99,6 +108,9 @@ impl Columns {
             position_rest: vector(position_rest)?,
             velocity_rest: vector(velocity_rest)?,
             derived,
+            rigid: wanted.rigid,
+            orientation: array(wanted.rigid.checked_mul(4))?,
+            angular_velocity: array(wanted.rigid.checked_mul(3))?,
             streams: !wanted.keep_states,
         })
     }
@@ -116,6 +128,14 @@ impl Columns {
                 for time in from_time..times {
                     let at = ((copy * times + time) * particles + particle) * 3;
                     array[at..at + 3].fill(f64::NAN);
+                }
+            }
+            if let Some(body) = particle.checked_sub(particles - self.rigid) {
+                for (array, width) in [(&mut self.orientation, 4), (&mut self.angular_velocity, 3)] {
+                    for time in from_time..times {
+                        let at = ((copy * times + time) * self.rigid + body) * width;
+                        array[at..at + width].fill(f64::NAN);
+                    }
                 }
             }
             for Derived { column, values } in &mut self.derived {
@@ -142,6 +162,9 @@ impl Columns {
             velocity: raw(&mut self.velocity),
             position_rest: raw(&mut self.position_rest),
             velocity_rest: raw(&mut self.velocity_rest),
+            rigid: self.rigid,
+            orientation: raw(&mut self.orientation),
+            angular_velocity: raw(&mut self.angular_velocity),
             derived: self
                 .derived
                 .iter_mut()
@@ -176,6 +199,9 @@ pub struct Writer<'a> {
     velocity: (*mut f64, usize),
     position_rest: (*mut f64, usize),
     velocity_rest: (*mut f64, usize),
+    rigid: usize,
+    orientation: (*mut f64, usize),
+    angular_velocity: (*mut f64, usize),
     derived: Vec<(&'static Column, (*mut f64, usize))>,
     scene: &'a Scene,
     members: Option<&'a [usize]>,
@@ -231,6 +257,11 @@ impl<'a> Writer<'a> {
     /// Whether columns are derived at the record.
     pub fn derives(&self) -> bool {
         !self.derived.is_empty()
+    }
+
+    /// The scene that is recorded.
+    pub fn scene(&self) -> &Scene {
+        self.scene
     }
 
     /// The masses of a copy.
@@ -292,6 +323,18 @@ impl Output<'_> {
             }
         }
         Ok(())
+    }
+
+    /// Writes how a rigid body is turned and turns.
+    pub fn write_turned(&self, body: usize, (orientation, spin): Turned) {
+        let at = self.row * self.writer.rigid + body;
+        let ((q, q_len), (v, v_len)) = (self.writer.orientation, self.writer.angular_velocity);
+        assert!(4 * at + 4 <= q_len && 3 * at + 3 <= v_len, "a body has a place in its columns");
+        // SAFETY: in bounds by the test; no other thread writes this body (see the type).
+        unsafe {
+            q.add(4 * at).cast::<[f64; 4]>().write(orientation);
+            v.add(3 * at).cast::<[f64; 3]>().write(spin);
+        }
     }
 
     /// Writes a particle.

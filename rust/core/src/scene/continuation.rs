@@ -175,6 +175,7 @@ impl Continuation {
             position: from.position.clone(),
             velocity: from.velocity.clone(),
             radius: scene.radius.clone(),
+            rigid: None,
             forces: scene.forces.clone(),
             own_forces: scene.own_forces.clone(),
             t0: from.t0,

@@ -22,6 +22,7 @@ use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::term::{Bodies, check_masses};
 pub(crate) use crate::numerics::points::distance;
+use crate::rigid::motion::bodies::RigidBodies;
 use crate::words::{number, numbers};
 use continuation::Continuation;
 use std::sync::Arc;
@@ -72,6 +73,8 @@ pub struct Scene {
     pub own_forces: Option<OwnForces>,
     /// Radii, as the masses; none if all bodies are points.
     pub radius: Vec<f64>,
+    /// What turns: the last bodies of each copy, if some are rigid ones.
+    pub rigid: Option<RigidBodies>,
     /// The time of this state.
     pub t0: f64,
     /// How a run with fixed steps came to this state, if one did.
@@ -121,6 +124,22 @@ impl Scene {
         }
     }
 
+    /// Refuses rigid bodies and ends of springs without mass.
+    fn validate_rigid_masses(&self, bodies: &RigidBodies) -> Result<()> {
+        let first = self.particles - bodies.count;
+        let pulled = |particle: usize| bodies.loads.iter().any(|load| load.pulls(particle));
+        for index in 0..self.copies * self.particles {
+            let particle = index % self.particles;
+            if self.mass[index] == 0.0 && (particle >= first || pulled(particle)) {
+                let name = self.bodies().name("mass", index);
+                let what = if particle >= first { "a rigid body" } else { "what a spring pulls" };
+                let message = format!("expected a positive mass of {what}, got {name} = 0.0");
+                return Err(Error::invalid("mass", message));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses what no run could be made of.
     ///
     /// # Errors
@@ -162,6 +181,10 @@ impl Scene {
                     format!("expected finite numbers, got {name} = {}", numbers(&values[index])),
                 ));
             }
+        }
+        if let Some(bodies) = &self.rigid {
+            bodies.validate(self.copies, self.particles)?;
+            self.validate_rigid_masses(bodies)?;
         }
         if !self.t0.is_finite() {
             return Err(Error::invalid("t0", format!("expected a finite time, got {}", number(self.t0))));

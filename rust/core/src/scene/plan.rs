@@ -9,11 +9,13 @@ mod quiet;
 mod refusals;
 mod series;
 mod solutions;
+mod turning;
 mod units;
 
 pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
+pub use turning::Turning;
 
 use super::Scene;
 use super::closed_form::rows_per_chunk;
@@ -23,7 +25,7 @@ use super::frame::{Frame, Origin, Units};
 use super::layout::Layout;
 use super::request::{Checked, Request};
 use super::unit::Unit;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::gravity::RING_MAX;
 use crate::forces::gravity::closed::serves;
@@ -113,6 +115,12 @@ pub struct Plan {
     /// The kind of the forces of each copy, if copies have their own: each kind is planned by itself, and this plan is that
     /// of the first.
     pub kinds: Vec<usize>,
+    /// How rigid bodies turn.
+    pub turning: Turning,
+    /// How many rigid bodies each copy has.
+    pub rigid: usize,
+    /// Of what make each of them is.
+    makes: Vec<usize>,
     copies: usize,
     particles: usize,
 }
@@ -130,9 +138,20 @@ impl Plan {
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = acting(scene, &scene.forces);
         refusals::check_method(method, &forces)?;
+        let turning = Turning::of(scene, &forces);
+        if scene.rigid.is_some() && request.collisions.is_some() {
+            let message = "expected None beside rigid bodies, of which no contact is known";
+            return Err(Error::invalid("collisions", message));
+        }
+        if turning.steps() {
+            turning::check(scene, request, method, automatic, &forces)?;
+        }
         // Spheres may touch whichever they are: all of them are on one step.
         let touching = request.events.iter().any(|event| matches!(event.what, What::Contact(_)));
-        let groups = if touching { Groups::All } else { Groups::of(scene.particles, &forces) };
+        let ties = scene.rigid.iter().flat_map(|bodies| {
+            bodies.loads.iter().filter_map(|load| load.pair(scene.particles, bodies.count))
+        });
+        let groups = if touching { Groups::All } else { Groups::of(scene.particles, &forces, ties) };
         let (active, passive) = match &groups {
             Groups::All => (0..scene.particles).partition(massive),
             Groups::Listed(groups) => {
@@ -143,23 +162,27 @@ impl Plan {
         };
         series::check(method, &forces, &active, &passive, &groups)?;
         // Events are looked for on steps.
-        let closed_forms = automatic && request.events.is_empty();
+        let closed_forms = automatic && request.events.is_empty() && !turning.steps();
         let solutions =
             if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
-        let planar = planar(scene, &forces);
+        let planar = planar(scene, &forces) && !turning.steps();
         let count = forces.len();
-        let (forces, frame) = about(forces, solutions.integrates());
+        // Points of bodies may be held in space, or tied to it.
+        let moves = solutions.integrates() && !turning.steps();
+        let (forces, frame) = about(forces, moves);
         let alike = count - forces.len();
-        let own = Own::of(scene, method, solutions.integrates())?;
+        let own = Own::of(scene, method, moves)?;
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && !touching
+            && !turning.steps()
             && serves(method, active.len());
         if let Some((by, _)) = transformed {
             refusals::check_transformation(by, scene, matches!(frame, Frame::Falling(_)))?;
         }
         // A copy gives the same alone as among others, so a kernel that has no packed form serves it alone, too.
         let batched = match groups {
+            _ if turning.steps() => true,
             Groups::Single => true,
             Groups::All if touching => false,
             // Each massless body goes with the massive ones in a time of its own; they have no other bits for it.
@@ -206,6 +229,9 @@ impl Plan {
                 scene,
                 transformed.is_some() || matches!(method.scheme, Scheme::Taylor(_)),
             ),
+            turning,
+            rigid: scene.rigid.as_ref().map_or(0, |bodies| bodies.count),
+            makes: turning::makes(scene),
             copies: scene.copies,
             particles: scene.particles,
         };

@@ -6,6 +6,7 @@ mod events;
 mod patterns;
 mod reached;
 mod resolved;
+mod turning;
 
 use super::Scene;
 use super::closed_form;
@@ -13,7 +14,7 @@ use super::collisions;
 use super::columns::{Columns, Missing, Wanted};
 use super::continuation::{Continuation, Held};
 use super::integrate::{self, Counts, Ending, Job};
-use super::plan::Plan;
+use super::plan::{Plan, Turning};
 use super::request::Request;
 use super::room::give_back;
 use crate::error::{Error, Result};
@@ -24,7 +25,9 @@ pub use begun::plan;
 pub(super) use begun::plan_through;
 use derived::derive;
 pub use events::Events;
+use crate::rigid::quaternion::Quaternion;
 use reached::gather;
+use turning::turn_freely;
 
 /// What became of a copy of the scene.
 #[derive(Clone, Debug)]
@@ -42,12 +45,29 @@ pub struct Outcome {
 }
 
 /// The states that the copies reached, particle after particle, copy after copy.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Reached {
     /// Positions.
     pub position: Vec<[f64; 3]>,
     /// Velocities.
     pub velocity: Vec<[f64; 3]>,
+    /// Orientations of rigid bodies.
+    pub orientation: Vec<Quaternion>,
+    /// Their angular velocities.
+    pub angular_velocity: Vec<[f64; 3]>,
+}
+
+impl Reached {
+    /// Where a scene is.
+    pub(super) fn start(scene: &Scene) -> Self {
+        let turned = scene.rigid.as_ref();
+        Self {
+            position: scene.position.clone(),
+            velocity: scene.velocity.clone(),
+            orientation: turned.map_or_else(Vec::new, |bodies| bodies.orientation.clone()),
+            angular_velocity: turned.map_or_else(Vec::new, |bodies| bodies.angular_velocity.clone()),
+        }
+    }
 }
 
 /// What the copies hold at the nodes at which they ended.
@@ -150,16 +170,17 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
     let wanted = Wanted {
         position: request.records("position"),
         velocity: request.records("velocity"),
-        keep_states: !derived.is_empty() && !parts.iter().all(Part::tells),
+        keep_states: !derived.is_empty() && (scene.rigid.is_some() || !parts.iter().all(Part::tells)),
+        rigid: plan.rigid,
         derived,
     };
     check_memory(scene, request, &wanted, plan.threads.0)?;
     let mut columns = Columns::new(scene.copies, request.times.len(), scene.particles, &wanted)?;
     let mut outcomes = vec![Outcome::finished(request); scene.copies];
-    let mut reached = Reached { position: scene.position.clone(), velocity: scene.velocity.clone() };
+    let mut reached = Reached::start(scene);
     // A method that chooses its steps has no nodes, and a closed form holds nothing.
     let plans = parts.iter().map(|part| part.plan);
-    let held = if plan.dt.is_some() { Held::room(scene, plan.method, plans)? } else { None };
+    let held = if plan.dt.is_some() && !plan.turning.steps() { Held::room(scene, plan.method, plans)? } else { None };
     let mut kept = held.map(|held| Kept { nodes: vec![u64::MAX; scene.copies], t0: plan.t0, held });
     let mut missing = Vec::new();
     let mut events = Events::default();
@@ -169,6 +190,9 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
         if scene.copies > 1 {
             columns.finish(&core::mem::take(&mut missing));
         }
+    }
+    if matches!(plan.turning, Turning::Exact) {
+        turn_freely(scene, request, &mut columns, &outcomes, &mut reached, ticker)?;
     }
     if wanted.keep_states {
         let rows: Vec<usize> = outcomes.iter().map(|outcome| outcome.rows).collect();
@@ -260,7 +284,9 @@ fn run_part(
     }
     gather(part, request, &reports, columns, outcomes, reached, ticker)?;
     events.gather(part, &reports, outcomes);
-    resolved::look(part, request, outcomes, reached, ticker)?;
+    if part.scene.rigid.is_none() {
+        resolved::look(part, request, outcomes, reached, ticker)?;
+    }
     Ok(unreached(part, request, outcomes))
 }
 

@@ -9,8 +9,11 @@ mod lanes;
 mod record;
 mod rows;
 mod size;
+mod turning;
 
 pub use forces::{Kernel, dynamics, uncoupled};
+pub(super) use turning::assembled;
+pub use turning::Turned;
 
 use super::Scene;
 use super::frame::{Origin, Units};
@@ -22,6 +25,7 @@ use crate::numerics::double_double::two_sum;
 use crate::numerics::element::Shape;
 use crate::numerics::power_of_two::scale;
 use crate::parallel::Ticker;
+use crate::rigid::motion::bodies::Start;
 use core::cell::RefCell;
 use record::Reading;
 use std::sync::Arc;
@@ -88,6 +92,8 @@ pub struct Prepared {
     pub size: (f64, f64),
     /// How its coordinates lie.
     pub shape: Shape,
+    /// Its rigid bodies, if torques turn them.
+    starts: Vec<Start>,
     layout: Layout,
     units: Units,
     reading: Reading,
@@ -124,6 +130,7 @@ impl Prepared {
         let strength = mass[..unit.active].iter().map(|mass| constant * mass).collect();
         let mut prepared = Self {
             shape: lanes::shape(&unit, plan),
+            starts: turning::starts(plan, scene, &unit),
             reading: Reading::new(&unit, layout, &origin, units),
             unit,
             position,

@@ -1,6 +1,7 @@
 //! What Python asks of a scene: its keywords as the core's plain data.
 
 use super::events::{Raised, events};
+use super::rigid::Described;
 use crate::arrays::copied;
 use crate::errors::raised;
 use crate::registry;
@@ -33,6 +34,7 @@ pub(crate) struct Asked<'py> {
     position: Array<'py>,
     velocity: Array<'py>,
     radius: Option<Array<'py>>,
+    rigid: Option<Described<'py>>,
     forces: Bound<'py, PyList>,
     own_forces: Option<(Vec<Bound<'py, PyList>>, Vec<usize>)>,
     t0: f64,
@@ -127,6 +129,7 @@ impl Asked<'_> {
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
         let continuation = self.continuation.map(|from| from.prepared(copies, particles)).transpose()?;
         let own_forces = self.own_forces.map(|own| own_forces(&own, copies)).transpose()?;
+        let rigid = self.rigid.map(|rigid| rigid.prepared(copies)).transpose()?;
         let scene = Scene {
             copies,
             particles,
@@ -136,6 +139,7 @@ impl Asked<'_> {
             forces,
             own_forces,
             radius,
+            rigid,
             t0,
             continuation,
         };
@@ -180,6 +184,7 @@ pub(super) fn snapshot(
         forces: forces(specs)?,
         own_forces: None,
         radius: Vec::new(),
+        rigid: None,
         t0: 0.0,
         continuation: None,
     })

@@ -64,6 +64,11 @@ pub(super) fn output_dict<'py>(
     if request.records("velocity") {
         set("velocity", output.columns.velocity, &[copies, times, particles, 3])?;
     }
+    let rigid = output.columns.rigid;
+    if rigid > 0 {
+        set("orientation", output.columns.orientation, &[copies, times, rigid, 4])?;
+        set("angular_velocity", output.columns.angular_velocity, &[copies, times, rigid, 3])?;
+    }
     for Derived { column, values } in output.columns.derived {
         let shape: &[usize] =
             if column.width == 1 { &[copies, times] } else { &[copies, times, column.width] };
@@ -137,6 +142,12 @@ pub(super) fn output_dict<'py>(
     )?;
     last.set_item("position", flat(output.reached.position)?)?;
     last.set_item("velocity", flat(output.reached.velocity)?)?;
+    if rigid > 0 {
+        let orientation = output.reached.orientation.into_flattened();
+        last.set_item("orientation", moved(py, orientation, &[copies, rigid, 4])?)?;
+        let spin = output.reached.angular_velocity.into_flattened();
+        last.set_item("angular_velocity", moved(py, spin, &[copies, rigid, 3])?)?;
+    }
     if let Some(Kept { nodes, t0, held }) = output.kept
         && nodes.iter().any(|&node| on_a_node(node))
     {

@@ -64,7 +64,7 @@ impl Impact {
 
     /// Where they are and how they move.
     pub fn states(&self) -> Reached {
-        Reached { position: self.position.clone(), velocity: self.velocity.clone() }
+        Reached { position: self.position.clone(), velocity: self.velocity.clone(), ..Reached::default() }
     }
 
     fn meeting(&self, i: usize, j: usize) -> Meeting {

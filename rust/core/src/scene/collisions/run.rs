@@ -63,7 +63,7 @@ pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tick
     let mut output = Output {
         columns,
         outcomes: members.iter().map(|member| member.outcome.clone()).collect(),
-        reached: Reached { position: Vec::new(), velocity: Vec::new() },
+        reached: Reached::default(),
         kept: None,
         events: Events::default(),
         collisions: None,
@@ -75,7 +75,7 @@ pub fn run(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tick
     let held = kept(&mut members);
     let mut table = Table::default();
     let (mut mass, mut radius) = (Vec::new(), Vec::new());
-    let mut begun = Reached { position: Vec::new(), velocity: Vec::new() };
+    let mut begun = Reached::default();
     let places: Vec<usize> = (0..scene.particles).collect();
     let names: Vec<usize> = (0..request.events.len()).collect();
     for (copy, member) in members.into_iter().enumerate() {
@@ -109,6 +109,7 @@ fn wanted(request: &Request) -> Wanted {
         velocity: request.records("velocity"),
         derived: request.derived(),
         keep_states: false,
+        rigid: 0,
     }
 }
 

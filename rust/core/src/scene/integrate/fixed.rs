@@ -1,6 +1,7 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
 use super::super::layout::Layout;
+use super::super::plan::Turning;
 use super::super::unit::{self, Prepared, Unit};
 use super::events::{Abreast, Along, Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
@@ -15,6 +16,7 @@ use crate::ode::state::State;
 use crate::ode::stepper::{Stepper, stepper};
 use crate::ode::system::System;
 use crate::parallel::Ticker;
+use crate::rigid::motion::body_stepper;
 
 /// Runs the units, a state full of them at a time.
 ///
@@ -52,10 +54,15 @@ fn lockstep(
     let dt = plan.dt.unwrap_or(plan.direction);
     let shape = dynamics.shape;
     // A special kernel holds the masses of its group.
-    let own = plan.relative;
+    let rigid = unit::assembled(plan, job.scene, &prepared);
+    let own = plan.relative || rigid.is_some();
     if own || room.as_ref().is_none_or(|(other, ..)| *other != shape) {
         let state = prepared[0].blank_state(units.len());
-        let stepper = stepper(plan.method, scale(dt, -plan.units.time), &dynamics, &state)?;
+        let h = scale(dt, -plan.units.time);
+        let stepper = match (rigid, plan.turning) {
+            (Some(assembly), Turning::Stepped(free)) => body_stepper(plan.method, free, h, assembly, &state)?,
+            _ => stepper(plan.method, h, &dynamics, &state)?,
+        };
         *room = Some((shape, state, stepper));
     }
     let Some((_, state, stepper)) = room else { return Ok(Vec::new()) };

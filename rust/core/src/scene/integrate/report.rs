@@ -1,7 +1,7 @@
 //! What became of a unit.
 
 use super::super::continuation::UnitHeld;
-use super::super::unit::{Prepared, Unit};
+use super::super::unit::{Prepared, Turned, Unit};
 use super::{Found, Job};
 use crate::numerics::lanes::Lanes;
 use crate::ode::state::State;
@@ -72,6 +72,8 @@ pub struct Report {
     pub time: f64,
     /// Final positions and velocities of the recorded bodies.
     pub states: Vec<[[f64; 3]; 2]>,
+    /// Of the rigid bodies among them, in their order, if torques turn them.
+    pub turned: Vec<Turned>,
     /// The events found on the way.
     pub found: Vec<Found>,
     /// What the unit holds, if it ended on a node.
@@ -96,7 +98,8 @@ impl Job<'_> {
             let entry = unit.read(slot, state, lane, elapsed);
             states.push([entry.position, entry.velocity]);
         }
-        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, found: Vec::new(), held: None }
+        let turned = unit.turned(self.scene, state, lane);
+        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, turned, found: Vec::new(), held: None }
     }
 
     /// The report of a unit that was interrupted before it began: where it was at the start.
@@ -110,6 +113,7 @@ impl Job<'_> {
             counts: Counts::default(),
             time: self.scene.t0,
             states: recorded.iter().map(|&body| [positions[body], velocities[body]]).collect(),
+            turned: Vec::new(),
             found: Vec::new(),
             held: None,
         }

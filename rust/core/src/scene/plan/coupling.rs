@@ -17,9 +17,17 @@ pub enum Groups {
 }
 
 impl Groups {
-    /// Of so many bodies under these forces.
-    pub fn of(particles: usize, forces: &[Arc<dyn ForceTerm>]) -> Self {
+    /// Of so many bodies under these forces, of which some are tied to others besides.
+    pub fn of(
+        particles: usize,
+        forces: &[Arc<dyn ForceTerm>],
+        ties: impl Iterator<Item = (usize, usize)>,
+    ) -> Self {
         let mut parent: Vec<usize> = (0..particles).collect();
+        for (i, j) in ties {
+            let (i, j) = (root(&mut parent, i), root(&mut parent, j));
+            parent[i.max(j)] = i.min(j);
+        }
         for force in forces {
             match force.coupling() {
                 Coupling::None => {}

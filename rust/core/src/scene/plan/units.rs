@@ -20,8 +20,15 @@ impl Plan {
             events: Arc::clone(&none),
         };
         let active = self.active.len();
-        // Bodies by themselves are all of one make-up, whichever they are.
-        let alone = |&body: &usize| kind(Arc::from([body]), 0, 0..1, 0);
+        // Bodies by themselves are all of one make-up, whichever they are; rigid ones of as many as there are makes.
+        let groups = match &self.groups {
+            Groups::Listed(groups) => groups.len(),
+            _ => 0,
+        };
+        let alone = |&body: &usize| {
+            let make = self.make_of(body);
+            kind(Arc::from([body]), 0, 0..1, if make > 0 { groups + make } else { 0 })
+        };
         match &self.groups {
             Groups::Single => self.passive.iter().map(alone).collect(),
             Groups::Listed(groups) => {

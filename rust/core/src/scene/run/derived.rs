@@ -4,6 +4,7 @@ use super::super::Scene;
 use super::super::columns::{Columns, Derived};
 use crate::conservation::columns::Snapshot;
 use crate::error::Result;
+use super::turning::Turning;
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::{Ticker, for_chunks};
 
@@ -39,10 +40,17 @@ pub(super) fn derive(
                 break;
             }
             read(scene, columns, copy, time, &mut bodies);
+            let turning = Turning::read(scene, columns, copy, time);
             let mut state = Snapshot::new(scene.forces_of(copy), &bodies, [0.0; 3], 1, ticker);
             let mut row = Vec::new();
             for column in &widths {
-                let Ok(numbers) = state.value(column) else { return Ok(values) };
+                let Ok(mut numbers) = state.value(column) else { return Ok(values) };
+                if let Some(turning) = &turning {
+                    let share = turning.scenery(scene, copy).share(column.name);
+                    for c in 0..column.width {
+                        numbers[c] += share[c];
+                    }
+                }
                 row.extend_from_slice(&numbers[..column.width]);
             }
             values.extend(row);

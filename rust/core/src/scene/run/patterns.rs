@@ -56,6 +56,7 @@ fn part(scene: &Scene, members: &[usize]) -> Scene {
         forces: scene.forces_of(members.first().copied().unwrap_or(0)).to_vec(),
         own_forces: scene.own_forces.as_ref().and_then(|own| own.of(members)),
         radius: members.iter().flat_map(|&copy| scene.radii(copy)).copied().collect(),
+        rigid: scene.rigid.as_ref().map(|rigid| rigid.of(members)),
         t0: scene.t0,
         continuation: None,
     }

@@ -97,6 +97,12 @@ fn put(part: &Part<'_>, report: &Report, reached: &mut Reached) {
         reached.position[particle] = position;
         reached.velocity[particle] = velocity;
     }
+    let rigid = report.unit.bodies.iter().filter_map(|&body| part.plan.rigid_place(body));
+    for (&(orientation, spin), place) in report.turned.iter().zip(rigid) {
+        let body = part.member(report.unit.copy) * part.plan.rigid + place;
+        reached.orientation[body] = orientation;
+        reached.angular_velocity[body] = spin;
+    }
 }
 
 /// Brings a copy to one time, whose units `apart` are not at the time of its outcome.
@@ -133,11 +139,21 @@ fn bring_together(
                 reached.position[place] = point(&columns.position);
                 reached.velocity[place] = point(&columns.velocity);
             }
+            for body in 0..columns.rigid {
+                let (from, into) = ((copy * columns.times + row) * columns.rigid + body, copy * columns.rigid + body);
+                reached.orientation[into] = core::array::from_fn(|c| columns.orientation[4 * from + c]);
+                reached.angular_velocity[into] = core::array::from_fn(|c| columns.angular_velocity[3 * from + c]);
+            }
         }
         None => {
             outcome.time = scene.t0;
             reached.position[places.clone()].copy_from_slice(scene.positions(copy));
             reached.velocity[places].copy_from_slice(scene.velocities(copy));
+            if let Some(bodies) = &scene.rigid {
+                let own = copy * bodies.count..(copy + 1) * bodies.count;
+                reached.orientation[own.clone()].copy_from_slice(&bodies.orientation[own.clone()]);
+                reached.angular_velocity[own.clone()].copy_from_slice(&bodies.angular_velocity[own]);
+            }
         }
     }
     Ok(())
@@ -152,7 +168,8 @@ fn again(
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
 ) -> Result<bool> {
-    let nothing = Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false };
+    let rigid = part.plan.rigid;
+    let nothing = Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false, rigid };
     let mut columns = Columns::new(part.scene.copies, 1, part.scene.particles, &nothing)?;
     let writer = columns.writer(part.scene, None, part.plan.threads.1);
     let times = [time];

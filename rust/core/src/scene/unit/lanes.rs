@@ -43,14 +43,16 @@ impl Prepared {
     /// A state for so many units of this make-up, all zeros.
     pub fn blank_state(&self, units: usize) -> State<Lanes> {
         let shape = self.state_shape(units);
-        let zeros = vec![Lanes::zero(); shape.len()];
+        let turning = units.div_ceil(self.layout.units()) * self.turning_numbers();
+        let zeros = vec![Lanes::zero(); shape.len() + turning];
         State::new(&zeros, &zeros)
     }
 
     /// Lays the unit into a state (at one place in it if batched).
     pub fn write(&self, state: &mut State<Lanes>, unit_lane: usize) {
         let components = self.shape.components;
-        let rows = state.q().len() / components;
+        let rows = self.rows_in(state.q().len());
+        self.write_turning(state, unit_lane);
         let ((q, q_error), (v, v_error)) = state.halves_mut();
         if self.layout == Layout::Packed {
             for c in 0..components {
@@ -74,8 +76,9 @@ impl Prepared {
 
     /// Whether all coordinates of the unit are finite in a state.
     pub fn is_finite(&self, state: &State<Lanes>, unit_lane: usize) -> bool {
-        let rows = state.q().len() / self.shape.components;
-        (0..self.position.len()).all(|slot| {
+        let rows = self.rows_in(state.q().len());
+        self.turning_is_finite(state, unit_lane)
+            && (0..self.position.len()).all(|slot| {
             let (row, lane) = self.locate(slot, unit_lane);
             (0..self.shape.components).all(|c| state.q()[c * rows + row].0[lane].is_finite())
         })
@@ -83,7 +86,7 @@ impl Prepared {
 
     /// What a block that lies as the coordinates do holds of a body.
     pub fn pick(&self, slot: usize, block: &[Lanes], unit_lane: usize) -> [f64; 3] {
-        let rows = block.len() / self.shape.components;
+        let rows = self.rows_in(block.len());
         let (row, lane) = self.locate(slot, unit_lane);
         let mut point = [0.0; 3];
         for c in 0..self.shape.components {
@@ -94,7 +97,7 @@ impl Prepared {
 
     /// Lays what a block holds of a body into its place.
     pub fn lay(&self, slot: usize, block: &mut [Lanes], unit_lane: usize, point: [f64; 3]) {
-        let rows = block.len() / self.shape.components;
+        let rows = self.rows_in(block.len());
         let (row, lane) = self.locate(slot, unit_lane);
         for c in 0..self.shape.components {
             block[c * rows + row].0[lane] = point[c];

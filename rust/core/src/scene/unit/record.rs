@@ -88,6 +88,9 @@ impl Prepared {
     ) -> Result<bool> {
         // SAFETY: a particle is recorded from one unit (`run` looked), and one thread has the unit.
         let output = unsafe { writer.output(self.unit.copy, time) };
+        if !self.starts.is_empty() && !self.record_turning(writer.scene(), &output, state, unit_lane) {
+            return Ok(false);
+        }
         if writer.derives() && self.unit.leads {
             self.record_and_derive(writer, &output, state, unit_lane, elapsed, ticker)
         } else {
@@ -196,7 +199,7 @@ impl Prepared {
         elapsed: f64,
         bodies: &mut PreciseBodies,
     ) {
-        let (rows, components) = (state.q().len() / self.shape.components, self.shape.components);
+        let (rows, components) = (self.rows_in(state.q().len()), self.shape.components);
         let (y, error) = state.all();
         let (y, error) = (as_numbers(y), as_numbers(error));
         let (row, lane) = self.locate(0, unit_lane);
@@ -246,7 +249,7 @@ fn body_after_body<V: Vector8, const COMPONENTS: usize, const MOVED: bool>(
 ) -> bool {
     let origin = if MOVED { unit.origin.at(elapsed) } else { Moved::NOWHERE };
     let [length, speed] = unit.reading.factors;
-    let stride = state.q().len() / COMPONENTS * WIDTH;
+    let stride = unit.rows_in(state.q().len()) * WIDTH;
     let (q, v) = (as_numbers(state.q()), as_numbers(state.v()));
     let (q_rest, v_rest) = (as_numbers(state.q_compensation()), as_numbers(state.v_compensation()));
     // Sums of their own, lest each addition wait for the one before.

@@ -37,6 +37,7 @@ impl Leg {
             forces: whole.forces_of(copy).to_vec(),
             own_forces: None,
             radius: self.bodies.iter().map(|&body| impact.radius[body]).collect(),
+            rigid: None,
             t0,
             continuation: None,
         }

@@ -38,7 +38,7 @@ impl Bodies {
         Self {
             indices: slots.iter().map(|&slot| unit.unit.bodies[slot]).collect(),
             places: slots.iter().map(place).collect(),
-            stride: state.q().len() / components * WIDTH,
+            stride: unit.rows_in(state.q().len()) * WIDTH,
             components,
             factors: [power_of_two(units.length), power_of_two(-units.velocity())],
         }

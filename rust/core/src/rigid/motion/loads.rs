@@ -1,0 +1,167 @@
+//! What pulls at points of rigid bodies and what turns them, as a scene describes it.
+
+use crate::error::{Error, Result};
+use crate::words::{number, numbers};
+use core::fmt::{Debug, Formatter};
+use std::sync::Arc;
+
+/// A torque in space, from the time since the start of the scene's time, the orientation and the angular velocity in the body.
+pub type TorqueFunction = Arc<dyn Fn(f64, &[f64; 4], &[f64; 3]) -> [f64; 3] + Send + Sync>;
+
+/// One end of a spring.
+#[derive(Clone, Copy, Debug)]
+pub enum End {
+    /// A point of a rigid body, from its center along the caller's axes.
+    Body(usize, [f64; 3]),
+    /// A body of the scene, by its index among all.
+    Particle(usize),
+    /// A point in space.
+    Anchor([f64; 3]),
+}
+
+/// A force or a torque on rigid bodies, which are counted by themselves.
+#[derive(Clone)]
+pub enum Load {
+    /// A torque that stays what it is, in space or along the caller's axes in the body; on one body or on all.
+    Torque {
+        /// Which body.
+        body: Option<usize>,
+        /// The torque.
+        torque: [f64; 3],
+        /// Whether it turns with the body.
+        in_body: bool,
+    },
+    /// A torque −coefficient·ω.
+    Drag {
+        /// Which body.
+        body: Option<usize>,
+        /// The coefficient.
+        coefficient: f64,
+    },
+    /// A spring and damper between two points.
+    Spring {
+        /// Its ends.
+        ends: [End; 2],
+        /// Force by length.
+        stiffness: f64,
+        /// The length without force.
+        length: f64,
+        /// Force by speed.
+        damping: f64,
+    },
+    /// A torque that the caller computes.
+    Function {
+        /// Which body.
+        body: Option<usize>,
+        /// What computes it.
+        function: TorqueFunction,
+    },
+}
+
+impl Debug for Load {
+    fn fmt(&self, f: &mut Formatter<'_>) -> core::fmt::Result {
+        f.write_str(self.name())
+    }
+}
+
+impl Load {
+    /// The class that Python has for it.
+    pub fn name(&self) -> &'static str {
+        match self {
+            Self::Torque { .. } => "AppliedTorque",
+            Self::Drag { .. } => "RotationalDrag",
+            Self::Spring { .. } => "AttachedSpring",
+            Self::Function { .. } => "CompiledTorque",
+        }
+    }
+
+    /// Whether it looks at velocities.
+    pub fn needs_velocity(&self) -> bool {
+        match self {
+            Self::Torque { .. } => false,
+            Self::Drag { coefficient, .. } => *coefficient != 0.0,
+            Self::Spring { damping, .. } => *damping != 0.0,
+            Self::Function { .. } => true,
+        }
+    }
+
+    /// The bodies of a scene of so many, `rigid` of them, that it makes depend on each other.
+    pub fn pair(&self, particles: usize, rigid: usize) -> Option<(usize, usize)> {
+        let Self::Spring { ends: [one, other], .. } = self else { return None };
+        let index = |end: &End| match end {
+            End::Body(body, _) => Some(particles - rigid + body),
+            End::Particle(index) => Some(*index),
+            End::Anchor(_) => None,
+        };
+        Some((index(one)?, index(other)?))
+    }
+
+    /// Whether it pulls a body of the scene that is no rigid one.
+    pub fn pulls(&self, particle: usize) -> bool {
+        let at = |end: &End| matches!(end, End::Particle(index) if *index == particle);
+        matches!(self, Self::Spring { ends, .. } if ends.iter().any(at))
+    }
+
+    /// Whether it acts on a rigid body.
+    pub fn acts_on(&self, rigid: usize) -> bool {
+        let at = |end: &End| matches!(end, End::Body(body, _) if *body == rigid);
+        match self {
+            Self::Torque { body, .. } | Self::Drag { body, .. } | Self::Function { body, .. } => {
+                body.is_none_or(|body| body == rigid)
+            }
+            Self::Spring { ends, .. } => ends.iter().any(at),
+        }
+    }
+
+    /// Refuses what is no load on so many rigid bodies of so many particles.
+    ///
+    /// # Errors
+    /// By name.
+    pub fn validate(&self, rigid: usize, particles: usize) -> Result<()> {
+        let exists = |body: usize| {
+            if body < rigid {
+                return Ok(());
+            }
+            Err(Error::invalid("body", format!("expected one of {rigid} rigid bodies, got {body}")))
+        };
+        let finite = |name: &str, values: &[f64]| {
+            if values.iter().all(|value| value.is_finite()) {
+                return Ok(());
+            }
+            Err(Error::invalid(name, format!("expected finite numbers, got {}", numbers(values))))
+        };
+        let positive = |name: &str, value: f64| {
+            if value >= 0.0 && value.is_finite() {
+                return Ok(());
+            }
+            Err(Error::invalid(name, format!("expected a number of at least 0, got {}", number(value))))
+        };
+        match self {
+            Self::Torque { body, torque, .. } => {
+                finite("torque", torque)?;
+                body.map_or(Ok(()), exists)
+            }
+            Self::Drag { body, coefficient } => {
+                positive("coefficient", *coefficient)?;
+                body.map_or(Ok(()), exists)
+            }
+            Self::Function { body, .. } => body.map_or(Ok(()), exists),
+            Self::Spring { ends, stiffness, length, damping } => {
+                positive("stiffness", *stiffness)?;
+                positive("length", *length)?;
+                positive("damping", *damping)?;
+                ends.iter().try_for_each(|end| match end {
+                    End::Body(body, point) => {
+                        finite("point", point)?;
+                        exists(*body)
+                    }
+                    End::Particle(index) if *index < particles => Ok(()),
+                    End::Particle(index) => {
+                        Err(Error::invalid("particle", format!("expected one of {particles} bodies, got {index}")))
+                    }
+                    End::Anchor(point) => finite("anchor", point),
+                })
+            }
+        }
+    }
+}

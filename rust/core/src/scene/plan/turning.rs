@@ -1,0 +1,131 @@
+//! How rigid bodies turn: by the exact solution where nothing turns them, else step by step beside the points.
+
+use super::super::Scene;
+use super::super::request::Request;
+use super::Plan;
+use crate::error::{Error, Result};
+use crate::forces::ForceTerm;
+use crate::ode::{Method, Scheme};
+use crate::registry::METHODS;
+use crate::rigid::motion::bodies::RigidBodies;
+use crate::rigid::motion::flows::Free;
+use crate::rigid::motion::loads::Load;
+use std::sync::Arc;
+
+/// How rigid bodies turn.
+#[derive(Clone, Copy, Debug)]
+pub enum Turning {
+    /// There are none.
+    None,
+    /// Freely: their orientations are known at any time.
+    Exact,
+    /// By torques, in steps.
+    Stepped(Free),
+}
+
+impl Turning {
+    /// That of the rigid bodies of a scene under these forces.
+    pub(super) fn of(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> Self {
+        let Some(bodies) = &scene.rigid else { return Self::None };
+        let pulls = forces.iter().any(|force| force.as_newtonian().is_some());
+        if bodies.is_loaded() || (pulls && scene.particles > 1 && bodies.any_shape()) {
+            return Self::Stepped(Free::Exact);
+        }
+        Self::Exact
+    }
+
+    /// Whether bodies turn in steps.
+    pub const fn steps(self) -> bool {
+        matches!(self, Self::Stepped(_))
+    }
+}
+
+/// Whether a method can step bodies that turn under forces of which some look at velocities, or none does.
+const fn serves(method: &Method, velocities: bool) -> bool {
+    match method.scheme {
+        Scheme::RungeKutta(_) => true,
+        Scheme::Splitting(_) | Scheme::NystromSplitting(_) => !velocities,
+        _ => false,
+    }
+}
+
+/// Refuses what bodies that turn cannot be run with.
+///
+/// # Errors
+/// By name, with what works.
+pub(super) fn check(
+    scene: &Scene,
+    request: &Request,
+    method: &Method,
+    automatic: bool,
+    forces: &[Arc<dyn ForceTerm>],
+) -> Result<()> {
+    let Some(bodies) = &scene.rigid else { return Ok(()) };
+    let looking = bodies.loads.iter().find(|load| load.needs_velocity()).map(Load::name);
+    let looking =
+        looking.or_else(|| forces.iter().find(|force| force.needs().velocities()).map(|f| f.declaration().class_name));
+    if automatic || !serves(method, looking.is_some()) {
+        let names = METHODS.iter().filter(|method| serves(method, looking.is_some())).map(|method| method.name);
+        let best = if looking.is_some() { "rk4" } else { "kahan_li8" };
+        let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
+        let message = format!(
+            "bodies that torques turn are moved in equal steps: {why}expected one of {}, with dt (such as {best} with \
+             dt={}), got {}",
+            names.collect::<Vec<_>>().join(", "),
+            suggested_step(bodies),
+            request.method
+        );
+        return Err(Error::invalid("method", message));
+    }
+    if request.time_transformation.is_some() {
+        let message = "expected None for rigid bodies that torques turn";
+        return Err(Error::invalid("time_transformation", message));
+    }
+    let softened = forces.iter().any(|force| force.as_newtonian().is_some_and(|(_, softening)| softening != 0.0));
+    if softened && bodies.any_shape() {
+        let message = "expected 0 beside rigid bodies that are no spheres, whose shape is not softened";
+        return Err(Error::invalid("softening", message));
+    }
+    if request.records("virial") {
+        let message = "virial is not known of bodies that torques turn; leave it out";
+        return Err(Error::invalid("record", message));
+    }
+    Ok(())
+}
+
+/// A twentieth of a radian of the fastest spin, to one digit.
+fn suggested_step(bodies: &RigidBodies) -> String {
+    let spins = bodies.angular_velocity.iter().flatten();
+    let fastest = spins.fold(0.0_f64, |most, part| most.max(part.abs()));
+    if fastest > 0.0 && fastest.is_finite() { format!("{:.0e}", 0.05 / fastest) } else { "0.01".to_owned() }
+}
+
+impl Plan {
+    /// The place of a body among the rigid ones of its copy.
+    pub fn rigid_place(&self, body: usize) -> Option<usize> {
+        body.checked_sub(self.particles - self.rigid)
+    }
+
+    /// Of what make a rigid body by itself is: those that the same loads act on share lanes.
+    pub(super) fn make_of(&self, body: usize) -> usize {
+        match (self.turning.steps(), self.rigid_place(body)) {
+            (true, Some(place)) => 1 + self.makes.get(place).copied().unwrap_or(0),
+            _ => 0,
+        }
+    }
+}
+
+/// Numbers of makes of the rigid bodies of a copy.
+pub(super) fn makes(scene: &Scene) -> Vec<usize> {
+    let Some(bodies) = &scene.rigid else { return Vec::new() };
+    let mut known: Vec<(bool, Vec<usize>)> = Vec::new();
+    let make = |body: usize| {
+        let acting = (0..bodies.loads.len()).filter(|&load| bodies.loads[load].acts_on(body)).collect();
+        let key = (bodies.pivoted.get(body).copied().unwrap_or(false), acting);
+        known.iter().position(|other| *other == key).unwrap_or_else(|| {
+            known.push(key);
+            known.len() - 1
+        })
+    };
+    (0..bodies.count).map(make).collect()
+}

@@ -1,0 +1,98 @@
+//! The rigid bodies of a scene, and what acts on them, as Python describes them.
+
+use super::input::{Array, points};
+use crate::arrays::copied;
+use crate::errors::raised;
+use core::ffi::c_double;
+use pyo3::prelude::*;
+use pyo3::types::{PyDict, PyList};
+use std::sync::Arc;
+use visviva_core::Error;
+use visviva_core::rigid::motion::bodies::RigidBodies;
+use visviva_core::rigid::motion::loads::{End, Load, TorqueFunction};
+
+/// The rigid bodies of each copy, the last of its bodies.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(super) struct Described<'py> {
+    moments: Array<'py>,
+    axes: Array<'py>,
+    center: Array<'py>,
+    pivoted: Vec<bool>,
+    orientation: Array<'py>,
+    angular_velocity: Array<'py>,
+    loads: Bound<'py, PyList>,
+}
+
+impl Described<'_> {
+    /// Of so many copies.
+    ///
+    /// # Errors
+    /// `InvalidInput` for arrays whose shapes do not agree, and for a load that is not known.
+    pub(super) fn prepared(self, copies: usize) -> PyResult<RigidBodies> {
+        let (moments, [_, count, _]) = copied("moments", &self.moments, [Some(copies), None, Some(3)])?;
+        let three = [Some(copies), Some(count), Some(3)];
+        let four = [Some(copies), Some(count), Some(4)];
+        let quaternions = |values: Vec<f64>| values.as_chunks::<4>().0.to_vec();
+        Ok(RigidBodies {
+            count,
+            moments: points(&moments),
+            axes: quaternions(copied("axes", &self.axes, four)?.0),
+            center: points(&copied("center", &self.center, three)?.0),
+            pivoted: self.pivoted.repeat(copies),
+            orientation: quaternions(copied("orientation", &self.orientation, four)?.0),
+            angular_velocity: points(&copied("angular_velocity", &self.angular_velocity, three)?.0),
+            loads: self.loads.iter().map(|load| described(load.cast::<PyDict>()?)).collect::<PyResult<_>>()?,
+        })
+    }
+}
+
+/// A load by its kind and values.
+fn described(load: &Bound<'_, PyDict>) -> PyResult<Load> {
+    let py = load.py();
+    let missing = |name: &str| raised(py, Error::invalid("forces", format!("a load has no {name}")));
+    let value = |name: &str| load.get_item(name)?.ok_or_else(|| missing(name));
+    let number = |name: &str| value(name)?.extract::<f64>();
+    let body = |name: &str| value(name)?.extract::<Option<usize>>();
+    let point = |name: &str| value(name)?.extract::<Option<[f64; 3]>>();
+    match value("kind")?.extract::<String>()?.as_str() {
+        "applied_torque" => Ok(Load::Torque {
+            body: body("body")?,
+            torque: point("torque")?.unwrap_or_default(),
+            in_body: value("frame")?.extract::<String>()? == "body",
+        }),
+        "rotational_drag" => Ok(Load::Drag { body: body("body")?, coefficient: number("coefficient")? }),
+        "compiled_torque" => {
+            Ok(Load::Function { body: body("body")?, function: called(value("address")?.extract::<usize>()?) })
+        }
+        "attached_spring" => {
+            let own = End::Body(value("body")?.extract()?, point("point")?.unwrap_or_default());
+            let other = match (body("to")?, body("particle")?, point("anchor")?) {
+                (Some(to), ..) => End::Body(to, point("to_point")?.unwrap_or_default()),
+                (_, Some(particle), _) => End::Particle(particle),
+                (.., anchor) => End::Anchor(anchor.unwrap_or_default()),
+            };
+            Ok(Load::Spring {
+                ends: [own, other],
+                stiffness: number("stiffness")?,
+                length: number("length")?,
+                damping: number("damping")?,
+            })
+        }
+        other => Err(raised(py, Error::invalid("forces", format!("a load of the kind {other} is not known")))),
+    }
+}
+
+/// A compiled function at its address.
+fn called(address: usize) -> TorqueFunction {
+    type Plain = unsafe extern "C" fn(c_double, *const c_double, *const c_double, *mut c_double);
+    Arc::new(move |t, orientation: &[f64; 4], spin: &[f64; 3]| {
+        let mut torque = [0.0; 3];
+        let address = core::ptr::with_exposed_provenance::<()>(address);
+        // SAFETY: the caller says that a function of this signature is at the address, and keeps it there.
+        let function = unsafe { core::mem::transmute::<*const (), Plain>(address) };
+        // SAFETY: it reads four and three numbers, and writes three.
+        unsafe { function(t, orientation.as_ptr(), spin.as_ptr(), torque.as_mut_ptr()) };
+        torque
+    })
+}
