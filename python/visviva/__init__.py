@@ -21,9 +21,12 @@ __version__ = "0.1.0"
 _HOME = {
     "AccuracyWarning": "errors",
     "Advice": "advice",
+    "AppliedTorque": "rigid_forces",
+    "AttachedSpring": "rigid_springs",
     "BodyMotion": "body",
     "CentralField": "forces",
     "CloseEncounter": "errors",
+    "CompiledTorque": "rigid_forces",
     "Conservation": "conservation",
     "ConvergenceError": "errors",
     "Cost": "plan",
@@ -54,7 +57,10 @@ _HOME = {
     "Point": "comparison",
     "PostNewtonian": "forces",
     "QuadraticDrag": "forces",
+    "RigidBodies": "rigid_bodies",
+    "RigidBody": "rigid_body",
     "RotatingFrame": "forces",
+    "RotationalDrag": "rigid_forces",
     "SampledDrag": "forces",
     "Scene": "scene",
     "Spring": "forces",
@@ -91,9 +97,12 @@ _ROOMS = (
 __all__ = [
     "AccuracyWarning",
     "Advice",
+    "AppliedTorque",
+    "AttachedSpring",
     "BodyMotion",
     "CentralField",
     "CloseEncounter",
+    "CompiledTorque",
     "Conservation",
     "ConvergenceError",
     "Cost",
@@ -124,7 +133,10 @@ __all__ = [
     "Point",
     "PostNewtonian",
     "QuadraticDrag",
+    "RigidBodies",
+    "RigidBody",
     "RotatingFrame",
+    "RotationalDrag",
     "SampledDrag",
     "Scene",
     "Spring",
@@ -216,6 +228,10 @@ if TYPE_CHECKING:
     from visviva.particles import Particles
     from visviva.plan import Cost, Plan
     from visviva.recorded import Stats
+    from visviva.rigid_bodies import RigidBodies
+    from visviva.rigid_body import RigidBody
+    from visviva.rigid_forces import AppliedTorque, CompiledTorque, RotationalDrag
+    from visviva.rigid_springs import AttachedSpring
     from visviva.scene import Scene
     from visviva.status import Status
     from visviva.trajectory import Trajectory

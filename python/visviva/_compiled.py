@@ -1,6 +1,7 @@
-"""Compiled functions as right-hand sides: which they are, where they are, and whether they take data.
+"""Compiled functions: which they are, where they are, and whether they take data.
 
-The one signature is ``void f(double t, const double *y, double *rate)``, with a ``void *data`` at the end or without.
+That of a right-hand side is ``void f(double t, const double *y, double *rate)``, with a ``void *data`` at the end or
+without.
 """
 
 from __future__ import annotations
@@ -74,26 +75,48 @@ def of_distance(function: Any) -> Callable[[float], float] | None:
     InvalidInput
         For a compiled function of another signature.
     """
-    prototype = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)
-    expected = "double(double)"
-    address, signature, keep = None, expected, function
+    address = _address(function, "double(double)", "double f(double r)")
+    if address is None:
+        return None
+    compiled = ctypes.CFUNCTYPE(ctypes.c_double, ctypes.c_double)(address)
+    vars(compiled)["kept"] = function  # alive as long as what is called
+    return compiled
+
+
+def of_orientation(function: Any) -> int:
+    """Give the address of a compiled function of the time, a quaternion and an angular velocity that writes a torque.
+
+    Raises
+    ------
+    InvalidInput
+        For anything else.
+    """
+    expected = "void f(double t, const double *orientation, const double *angular_velocity, double *torque)"
+    address = _address(function, "void(double,double*,double*,double*)", expected)
+    if address is None:
+        advice = "; compile it with numba.cfunc, or wrap it in a ctypes.CFUNCTYPE" if callable(function) else ""
+        raise InvalidInput("function", f"expected a compiled {expected}, got {type(function).__name__}{advice}")
+    return address
+
+
+def _address(function: Any, expected: str, described: str) -> int | None:
+    """Where a compiled function of the expected signature is; None of anything else than a compiled function."""
+    address, signature = None, expected
     if isinstance(function, int | np.integer) and not isinstance(function, bool):
         address = int(function)
     elif isinstance(function, _FUNCTION):
         address, signature = ctypes.cast(function, ctypes.c_void_p).value, _of_ctypes(function, expected)
     elif isinstance(function, tuple) and type(function).__name__ == "LowLevelCallable":
-        address, _, signature = _capsule(function, "function", "double f(double r)")
+        address, _, signature = _capsule(function, "function", described)
     elif isinstance(getattr(function, "address", None), int) and hasattr(function, "native_name"):  # numba's CFunc
         address, signature = function.address, _of_numba(function)
     else:
         return None
     if signature != expected:
-        raise InvalidInput("function", f"expected a compiled function double f(double r), got {signature}")
-    if not address:
-        raise InvalidInput("function", f"expected the address of double f(double r), got {address}")
-    compiled = prototype(address)
-    vars(compiled)["kept"] = keep  # alive as long as what is called
-    return compiled
+        raise InvalidInput("function", f"expected a compiled function {described}, got {signature}")
+    if not address or address < 0:
+        raise InvalidInput("function", f"expected the address of {described}, got {address}")
+    return address
 
 
 def sampled(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:

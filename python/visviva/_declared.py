@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Declared", "Parameter", "make"]
+__all__ = ["Declared", "Parameter", "make", "scaled"]
 
 _VECTORS = ("vector", "axial_vector", "direction", "point")
 _TYPES = {
@@ -226,7 +226,7 @@ class Declared:
             if parameter.kind == "potential":
                 value = value.rescaled(length=length, mass=mass, time=time)
             elif parameter.kind not in ("indices", "choice") and any(powers):
-                factor = _scaled(name, powers, scales)
+                factor = scaled(name, powers, scales)
                 value = _each(value, factor)
             new[name] = value
         return type(self)(**new)
@@ -287,7 +287,7 @@ def _dimension(powers: tuple[int, ...]) -> str:
     return f"{above} / ({below})" if "·" in below else f"{above} / {below}"
 
 
-def _scaled(name: str, powers: tuple[float, float, float], scales: tuple[float, ...]) -> Callable[[float], float]:
+def scaled(name: str, powers: tuple[float, float, float], scales: tuple[float, ...]) -> Callable[[float], float]:
     """What brings a number of the dimension length^p mass^q time^r to other units, rounded once if p, q, r are whole.
 
     The product is exact: scales of 1e±150 that together make a moderate factor do not overflow or vanish on the way.

@@ -1,0 +1,78 @@
+"""One rigid body of a scene."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from visviva._arrays import float_array, positive
+from visviva._keywords import known_keywords
+from visviva.rigid._arguments import rows
+from visviva.rigid_bodies import RigidBodies
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["RigidBody"]
+
+
+@known_keywords
+def RigidBody(  # noqa: N802
+    mass: float,
+    moments: ArrayLike | None = None,
+    inertia: ArrayLike | None = None,
+    position: ArrayLike = (0.0, 0.0, 0.0),
+    velocity: ArrayLike = (0.0, 0.0, 0.0),
+    orientation: ArrayLike = (0.0, 0.0, 0.0, 1.0),
+    angular_velocity: ArrayLike = (0.0, 0.0, 0.0),
+    pivot: ArrayLike | None = None,
+    name: str | None = None,
+) -> RigidBodies:
+    """One rigid body, as `RigidBodies` of one: every argument without its first axis.
+
+    Parameters
+    ----------
+    mass : float
+        Positive.
+    moments : array_like, shape (3,), optional
+        Principal moments of inertia about the center of mass; the body's axes are then its principal ones.
+    inertia : array_like, shape (3, 3), optional
+        The inertia tensor about the center of mass, in place of `moments`.
+    position, velocity : array_like, shape (3,), optional
+        Of the center of mass. The velocity of a body with a fixed point follows from its spin.
+    orientation : array_like, shape (4,), optional
+        The quaternion (x, y, z, w) from the body to space.
+    angular_velocity : array_like, shape (3,), optional
+        Along the body's axes.
+    pivot : array_like, shape (3,), optional
+        Where in the body the point is that is fixed in space, from the center of mass; a free body has none.
+    name : str, optional
+        Its name.
+
+    Returns
+    -------
+    RigidBodies
+        Of one body.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        As `RigidBodies`.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> brick = vv.rigid.box(2.0, 0.1, 0.4, 0.9)
+    >>> vv.RigidBody(brick.mass, inertia=brick.tensor, angular_velocity=[0.1, 5.0, 0.1], name="brick")
+    RigidBodies(1 body: brick)
+    """
+    turn = rows("orientation", orientation, (4,))
+    vectors = {"position": position, "velocity": velocity, "angular_velocity": angular_velocity}
+    return RigidBodies(
+        [positive("mass", mass, "mass")],
+        None if moments is None else float_array("moments", moments, (3,))[None],
+        None if inertia is None else float_array("inertia", inertia, (3, 3))[None],
+        orientation=float_array("orientation", turn, (4,))[None],
+        pivot=None if pivot is None else float_array("pivot", pivot, (3,))[None],
+        names=None if name is None else [name],
+        **{argument: float_array(argument, value, (3,))[None] for argument, value in vectors.items()},
+    )
