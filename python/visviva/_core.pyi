@@ -16,10 +16,22 @@ class _Scene(TypedDict):
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
     radius: NDArray[np.float64] | None
+    rigid: _Rigid | None
     forces: list[dict[str, Any]]
     own_forces: _OwnForces | None
     t0: float
     continuation: _Continuation | None
+
+class _Rigid(TypedDict):
+    """The rigid bodies of each copy, the last of its bodies, along principal axes; and what acts on them."""
+
+    moments: NDArray[np.float64]
+    axes: NDArray[np.float64]
+    center: NDArray[np.float64]
+    pivoted: list[bool]
+    orientation: NDArray[np.float64]
+    angular_velocity: NDArray[np.float64]
+    loads: list[dict[str, Any]]
 
 class _Continuation(TypedDict):
     """How a run with fixed steps came to a scene: what it began with, and what it held at a node, block by block."""
@@ -95,6 +107,7 @@ def conserved(
     velocity: NDArray[np.float64] | None,
     about: NDArray[np.float64],
     columns: list[str],
+    turning: tuple[_Rigid, NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> dict[str, NDArray[np.float64]]: ...
 def columns() -> list[tuple[str, str, int, bool]]: ...
 def conserves(

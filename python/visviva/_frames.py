@@ -6,7 +6,7 @@ The one idea: bodies and forces know how they change; a scene of the changed par
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from typing import TYPE_CHECKING, Self
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -15,7 +15,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable
 
     from numpy.typing import ArrayLike
 
@@ -36,8 +36,15 @@ class Framed(ABC):
     t0: float
 
     @abstractmethod
-    def _like(self, particles: Particles, forces: Iterable[Force], t0: float) -> Self:
-        """One of these parts."""
+    def _like(
+        self,
+        particles: Particles,
+        forces: Iterable[Force],
+        t0: float,
+        change: Callable[[Any], Any] | None = None,
+        **turning: ArrayLike,
+    ) -> Self:
+        """One of these parts; rigid bodies and the forces on them as `change` makes them, then turned."""
 
     def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
         """The scene displaced by `position` and boosted by `velocity`, the fields with it.
@@ -57,7 +64,8 @@ class Framed(ABC):
         displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
         p = self.particles
         moved = p._changed(position=p.position + displacement, velocity=p.velocity + boost)
-        return self._like(moved, (force.shifted(displacement, boost) for force in self.forces), self.t0)
+        forces = (force.shifted(displacement, boost) for force in self.forces)
+        return self._like(moved, forces, self.t0, lambda part: part.shifted(displacement, boost))
 
     def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
         """The scene as seen from a frame that moves at the constant `velocity`: r′ = r − origin − V t.
@@ -113,7 +121,8 @@ class Framed(ABC):
             raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
         p = self.particles
         turned = p._changed(position=p.position @ matrix.T, velocity=p.velocity @ matrix.T)
-        return self._like(turned, (force.rotated(matrix) for force in self.forces), self.t0)
+        forces = (force.rotated(matrix) for force in self.forces)
+        return self._like(turned, forces, self.t0, lambda part: part.rotated(matrix))
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The same scene in other units: how many new units of each kind make one old unit.
@@ -132,7 +141,9 @@ class Framed(ABC):
         """
         particles = self.particles.rescaled(length=length, mass=mass, time=time)
         forces = (force.rescaled(length=length, mass=mass, time=time) for force in self.forces)
-        return self._like(particles, forces, in_range("t0", self.t0, self.t0 * time))
+        scales = {"length": length, "mass": mass, "time": time}
+        later = in_range("t0", self.t0, self.t0 * time)
+        return self._like(particles, forces, later, lambda part: part.rescaled(**scales))
 
     def reversed(self) -> Self:
         """The scene with every velocity turned round: run on, it retraces its path.
@@ -149,10 +160,21 @@ class Framed(ABC):
         array([[-1., -2., -3.]])
         """
         p = self.particles
-        return self._like(p._changed(velocity=-p.velocity), (force.reversed() for force in self.forces), self.t0)
+        forces = (force.reversed() for force in self.forces)
+        return self._like(p._changed(velocity=-p.velocity), forces, self.t0, lambda part: part.reversed())
 
-    def with_state(self, position: ArrayLike, velocity: ArrayLike, t0: float | None = None) -> Self:
+    def with_state(
+        self,
+        position: ArrayLike,
+        velocity: ArrayLike,
+        t0: float | None = None,
+        *,
+        orientation: ArrayLike | None = None,
+        angular_velocity: ArrayLike | None = None,
+    ) -> Self:
         """The scene with other positions and velocities, and another time if given.
+
+        Rigid bodies may be given other orientations (K, 4) and angular velocities (K, 3), too.
 
         Examples
         --------
@@ -162,4 +184,6 @@ class Framed(ABC):
         array([2., 6., 0.])
         """
         moved = self.particles._changed(position=position, velocity=velocity)
-        return self._like(moved, self.forces, self.t0 if t0 is None else t0)
+        given = {"orientation": orientation, "angular_velocity": angular_velocity}
+        turning = {name: value for name, value in given.items() if value is not None}
+        return self._like(moved, self.forces, self.t0 if t0 is None else t0, **turning)

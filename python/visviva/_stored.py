@@ -35,6 +35,8 @@ _COLUMNS = {
     "momentum": (3,),
     "angular_momentum": (3,),
     "center_of_mass": (3,),
+    "orientation": ("R", 4),
+    "angular_velocity": ("R", 3),
 }
 _ARRAYS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "mass": ("f8", ("B", "N")),
@@ -69,6 +71,18 @@ _COLLISIONS: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "collisions/survivor": ("i8", ("C",)),
     "collisions/member": ("i8", ("C",)),
     "final/mass": ("f8", ("B", "N")),
+}
+# Of rigid bodies (R of them); moments or tensors, and points that are held, are those of all copies.
+_RIGID: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "rigid/orientation": ("f8", ("B", "R", 4)),
+    "rigid/angular_velocity": ("f8", ("B", "R", 3)),
+    "final/orientation": ("f8", ("B", "R", 4)),
+    "final/angular_velocity": ("f8", ("B", "R", 3)),
+}
+_RIGID_OWN: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "rigid/moments": ("f8", ("R", 3)),
+    "rigid/inertia": ("f8", ("R", 3, 3)),
+    "rigid/pivot": ("f8", ("R", 3)),
 }
 # Of a run that left something behind for another, and of one that went on with what another left: K blocks, S places.
 _HELD: dict[str, tuple[str, tuple[str | int, ...]]] = {
@@ -229,6 +243,11 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
         which = arrays["events/which"]
         if ((which < 0) | (which >= looked_for)).any():
             raise Damaged("the file has an event that was not looked for")
+    if "rigid" in header:
+        _check_keys("header", header, {"rigid": dict})
+        _check_keys("account of rigid bodies", header["rigid"], {"forces": list, "names": list})
+        _check_all(_RIGID, arrays, lengths)
+        _check_all({name: _RIGID_OWN[name] for name in _RIGID_OWN if name in arrays}, arrays, lengths)
     if "radius" in arrays:
         _check_all(_RADIUS, arrays, lengths)
     if any(name.startswith("collisions/") for name in arrays):
@@ -238,7 +257,7 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
         if group == "columns" and member:
             axes = ("B", "T", *_COLUMNS.get(member, array.shape[2:]))
             _check_array(name, array, "f8", axes, lengths)
-        elif name not in _ARRAYS | _EVENTS | _RADIUS | _COLLISIONS:
+        elif name not in _ARRAYS | _EVENTS | _RADIUS | _COLLISIONS | (_RIGID | _RIGID_OWN if "rigid" in header else {}):
             # Another version may keep more of each copy.
             if group not in GROUPS or not member:
                 raise Damaged(f"the file has an array {name!r} that this version does not know")

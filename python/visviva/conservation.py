@@ -16,6 +16,7 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva._mergers import by_era
 from visviva._text import count
+from visviva._turning import spin_scale
 from visviva.errors import InvalidInput
 from visviva.invariants import conserved, internal_motion, kept_by_forces, of_scene, reference_point
 
@@ -67,10 +68,10 @@ class Conservation:
     ----------
     energy, momentum, angular_momentum, center_of_mass : Drift
         Scales: |E₀| (kinetic + |potential| if the energy cancels to round-off), Σ m|v|,
-        Σ m|r||v|, and the size of the system. The centre of mass is compared with uniform motion.
+        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The centre of mass is compared with uniform motion.
     virial : float
         ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
-        in a bound system. NaN if positions or velocities were not recorded.
+        in a bound system. NaN if positions or velocities were not recorded, and with rigid bodies.
     about : str
         The reference point of the angular momentum.
     massless : int
@@ -135,10 +136,14 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
             conserved=closed,
         ),
         angular_momentum=_drift(
-            "angular momentum", t, angular - start.angular_momentum, fsum(mass * distances * speeds), conserved=steady
+            "angular momentum",
+            t,
+            angular - start.angular_momentum,
+            fsum(mass * distances * speeds) + spin_scale(scene),
+            conserved=steady,
         ),
         center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
-        virial=_virial(trajectory, closed),
+        virial=_virial(trajectory, closed) if scene.rigid_bodies is None else np.nan,
         about="centre of mass" if point is None else "origin" if about_origin else "given point",
         massless=int(np.count_nonzero(mass == 0.0)),
     )

@@ -15,6 +15,7 @@ from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, left_behind, of_copies
 from visviva._keywords import frozen, known_keywords
 from visviva._own_forces import described, forces_of_copies
+from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import Particles, radius_array, read_only
@@ -82,6 +83,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
         parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
+        orientation: ArrayLike | None = None,
+        angular_velocity: ArrayLike | None = None,
     ) -> None:
         own = {name: getattr(scene.particles, name) for name in ("mass", "position", "velocity", "radius")}
         given = {
@@ -94,12 +97,13 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         if radius is not None:
             each = float_array("radius", radius, ("B", *own["radius"].shape))
             given["radius"] = read_only(radius_array(each, each.shape), radius)
+        turning = of_copies_turning(scene, orientation, angular_velocity)
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
-        if not given and own_forces is None:
+        if not given and own_forces is None and not turning:
             raise InvalidInput(
                 "position", "give position, velocity, mass, radius or parameters with a leading axis over the copies"
             )
-        lengths = {name: array.shape[0] for name, array in given.items()}
+        lengths = {name: array.shape[0] for name, array in (given | turning).items()}
         if own_forces is not None:
             lengths["parameters"] = len(own_forces)
         first, count = next(iter(lengths.items()))
@@ -112,11 +116,13 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
+        rigid = rigid_of_copies(scene, count, turning, full, moved="position" in given)
         prepared: _core._Scene = {
             "mass": full["mass"],
             "position": full["position"],
             "velocity": full["velocity"],
             "radius": full["radius"] if full["radius"].any() else None,
+            "rigid": rigid,
             "forces": scene._keywords["forces"],
             "own_forces": None,
             "t0": scene.t0,
@@ -148,12 +154,12 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         radius = self.radius[chosen]
         continuation = of_copies(self._keywords["continuation"], _rows(chosen))
         if isinstance(chosen, slice):
-            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius)
+            own = turning_of(self._keywords, chosen)
+            some = EnsembleScene(self.scene, mass=mass, position=position, velocity=velocity, radius=radius, **own)
             return attached(some._own(self.forces[chosen]), continuation)
-        from visviva.scene import Scene
-
         bodies = Particles(mass, position, velocity, self.scene.particles.names, radius)
-        return attached(Scene(bodies, *self.forces[chosen], t0=self.scene.t0), continuation)
+        own = turning_of(self._keywords, chosen)
+        return attached(self.scene._like(bodies, self.forces[chosen], self.scene.t0, **own), continuation)
 
     if not TYPE_CHECKING:
 
@@ -173,7 +179,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
-        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, self.radius)
+        own = turning_of(self._keywords, slice(None))
+        return _rebuild, (self.scene, *state, self._keywords["continuation"], self.forces, self.radius, own)
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -300,9 +307,12 @@ class EnsembleTrajectory(Recorded):
                 "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
             )
         last = self._result["final"]
-        shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+        own = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
+        first = {name: array[0] for name, array in own.items()}
+        shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **first)
         mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
-        copies = EnsembleScene(shared, position=last["position"], velocity=last["velocity"], mass=mass, radius=radius)
+        state = {"position": last["position"], "velocity": last["velocity"]}
+        copies = EnsembleScene(shared, **state, mass=mass, radius=radius, **own)
         return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
 
 
@@ -340,6 +350,8 @@ def _rebuild(
     continuation: _core._Continuation | None = None,
     forces: tuple[tuple[Force, ...], ...] | None = None,
     radius: NDArray[np.float64] | None = None,
+    turning: dict[str, NDArray[np.float64]] | None = None,
 ) -> EnsembleScene:
-    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius)
+    own = turning or {}
+    copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
     return attached(copies if forces is None else copies._own(forces), continuation)

@@ -16,6 +16,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva._text import table
+from visviva._turning import kept_by_bodies
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -43,7 +44,7 @@ class Invariants:
         Angular momentum about the centre of mass; angular_momentum = spin + (R − a) × P.
     torque : ndarray, shape (3,)
         Torque about the reference point: the rate of change of `angular_momentum` about a fixed
-        point, of `spin` about the centre of mass.
+        point, of `spin` about the centre of mass; NaN, as the virial is, beside rigid bodies that torques turn.
     kinetic_energy, potential_energy, energy : float
     center_of_mass_kinetic_energy, internal_kinetic_energy : float
         König's split of the kinetic energy: P²/2M and the rest.
@@ -75,8 +76,19 @@ def conserved(
     velocity: NDArray[np.float64] | None,
     about: NDArray[np.float64],
     columns: list[str],
+    turning: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
-    """The core's conserved quantities of many states: position (T, N, 3), results (T,) or (T, 3)."""
+    """The core's conserved quantities of many states: position (T, N, 3), results (T,) or (T, 3).
+
+    Orientations (T, K, 4) and angular velocities (T, K, 3) of rigid bodies are the scene's own if not given.
+    """
+    rigid, own = scene._keywords["rigid"], None
+    if rigid is not None:
+        if "virial" in columns and not scene._turns_freely:
+            raise InvalidInput("virial", "it is not known of rigid bodies that torques turn")
+        if turning is None:
+            turning = (rigid["orientation"], rigid["angular_velocity"])
+        own = (rigid, *(np.broadcast_to(each, (len(position), *each.shape[1:])) for each in turning))
     return _core.conserved(
         mass=scene.particles.mass,
         forces=scene._keywords["forces"],
@@ -84,15 +96,17 @@ def conserved(
         velocity=velocity,
         about=about,
         columns=columns,
+        turning=own,
     )
 
 
 def kept_by_forces(scene: Scene, about: NDArray[np.float64]) -> dict[str, bool]:
     """What the forces leave constant: energy, momentum, angular momentum about a point at rest, and spin."""
     p = scene.particles
-    return _core.conserves(
+    kept = _core.conserves(
         mass=p.mass, forces=scene._keywords["forces"], position=p.position, velocity=p.velocity, about=about
     )
+    return kept if scene.rigid_bodies is None else kept_by_bodies(scene, kept)
 
 
 def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None:
@@ -107,14 +121,18 @@ def reference_point(about: ArrayLike | str | None) -> NDArray[np.float64] | None
 
 
 def internal_motion(
-    scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64]
+    scene: Scene,
+    position: NDArray[np.float64],
+    velocity: NDArray[np.float64],
+    turning: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None,
 ) -> dict[str, NDArray[np.float64]]:
     """Kinetic energy and angular momentum of many states in their centre-of-mass frames."""
     total = fsum(scene.particles.mass)
     moments = conserved(scene, position, velocity, np.zeros(3), ["momentum", "center_of_mass"])
     relative_position = position - moments["center_of_mass"][:, None]
     relative_velocity = velocity - (moments["momentum"] / total)[:, None]
-    return conserved(scene, relative_position, relative_velocity, np.zeros(3), ["kinetic_energy", "angular_momentum"])
+    wanted = ["kinetic_energy", "angular_momentum"]
+    return conserved(scene, relative_position, relative_velocity, np.zeros(3), wanted, turning)
 
 
 def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
@@ -125,12 +143,15 @@ def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
         raise InvalidInput("mass", "the total mass is zero, so there is nothing to conserve; give one body a mass")
     point = reference_point(about)
     position, velocity = p.position[None], p.velocity[None]
-    sums: dict[str, Any] = conserved(scene, position, velocity, np.zeros(3) if point is None else point, _COLUMNS)
+    known = _COLUMNS if scene._turns_freely else [name for name in _COLUMNS if name != "virial"]
+    sums: dict[str, Any] = conserved(scene, position, velocity, np.zeros(3) if point is None else point, known)
     internal = internal_motion(scene, position, velocity)
     spin = internal["angular_momentum"][0]
     momentum, center = sums["momentum"][0], sums["center_of_mass"][0]
     arms = p.position - (center if point is None else point)
-    torques = np.cross(arms, p.mass[:, None] * scene.acceleration())
+    # Of bodies that torques turn, pulls at their points and from their shapes are not told.
+    pulls = scene.acceleration() if scene._turns_freely else np.full(arms.shape, np.nan)
+    torques = np.cross(arms, p.mass[:, None] * pulls)
     return Invariants(
         total_mass=total,
         center_of_mass=center,
@@ -138,12 +159,12 @@ def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
         momentum=momentum,
         angular_momentum=spin if point is None else sums["angular_momentum"][0],
         spin=spin,
-        torque=np.array([fsum(column) for column in torques.T]),
+        torque=np.array([fsum(column) if np.isfinite(column).all() else np.nan for column in torques.T]),
         kinetic_energy=float(sums["kinetic_energy"][0]),
         potential_energy=float(sums["potential_energy"][0]),
         energy=float(sums["energy"][0]),
         # Its square may overflow where the energy does not.
         center_of_mass_kinetic_energy=fsum(momentum * (momentum / total)) / 2.0,
         internal_kinetic_energy=float(internal["kinetic_energy"][0]),
-        virial=float(sums["virial"][0]),
+        virial=float(sums["virial"][0]) if "virial" in sums else np.nan,
     )

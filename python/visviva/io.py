@@ -2,7 +2,7 @@
 
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
-``per_trajectory/<name>``, ``radius`` of spheres and ``collisions/<name>``, and ``events/<name>`` of a run with events,
+``per_trajectory/<name>``, ``rigid/<name>`` of rigid bodies, ``radius`` of spheres and ``collisions/<name>``, and ``events/<name>`` of a run with events,
 whose definitions are in the header, as are the names of bodies. What a run left behind for another to go on with is in
 ``final/held`` and ``final/node``; what the run itself went on with in ``final/start_<name>``. Every later version of
 visviva must load it: `tests/reference` keeps one.
@@ -23,6 +23,7 @@ import numpy as np
 import visviva
 from visviva._continuation import SHARED, attached
 from visviva._keywords import known_keywords
+from visviva._turning import restored, saved
 from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
 from visviva.errors import InvalidInput
@@ -77,11 +78,16 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         header["events"] = result["looked_for"]
     if "continuation" in result:
         header["continuation"] = result["continuation"]
+    about_rigid, of_rigid = saved(run._scene)
+    header |= about_rigid
     arrays = {"t": result["t"], "status": result["status"]}
     arrays |= {name: start[name] for name in ("mass", "position", "velocity")}
     arrays |= {f"{group}/{name}": array for group in GROUPS for name, array in result[group].items()}
     arrays |= {f"events/{name}": array for name, array in result.get("events", {}).items()}
     arrays |= {f"collisions/{name}": array for name, array in result.get("collisions", {}).items()}
+    arrays |= of_rigid
+    if start["rigid"] is not None:
+        arrays |= {f"rigid/{name}": start["rigid"][name] for name in ("orientation", "angular_velocity")}
     if start["radius"] is not None:
         arrays["radius"] = start["radius"]
     if start["continuation"] is not None:
@@ -165,17 +171,24 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
         before |= {name: arrays.pop(f"final/start_{name}") for name in ("position", "velocity", "held")}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
-        if member:
+        if member and group != "rigid":
             result[group][member] = array
     forces = [force_from_core(description) for description in header["forces"]]
     names = header.get("names")
     radius = arrays.get("radius", np.zeros(arrays["mass"].shape))
     first = Particles(arrays["mass"][0], arrays["position"][0], arrays["velocity"][0], names, radius[0])
-    scene = Scene(first, *forces, t0=header["t0"])
+    bodies, loads = restored(header, arrays, first)
+    scene = Scene(*bodies, *forces, *loads, t0=header["t0"])
     run: Trajectory | EnsembleTrajectory
     if header["ensemble"]:
         copies = EnsembleScene(
-            scene, mass=arrays["mass"], position=arrays["position"], velocity=arrays["velocity"], radius=radius
+            scene,
+            mass=arrays["mass"],
+            position=arrays["position"],
+            velocity=arrays["velocity"],
+            radius=radius,
+            orientation=arrays.get("rigid/orientation"),
+            angular_velocity=arrays.get("rigid/angular_velocity"),
         )
         if header.get("own_forces") is not None:
             sets, of_copy = header["own_forces"]

@@ -132,6 +132,16 @@ class Recorded(ABC):
         return self._column("velocity")
 
     @property
+    def orientation(self) -> NDArray[np.float64]:
+        """Quaternions (x, y, z, w) of rigid bodies, from the body to space, shape (T, K, 4), or (B, T, K, 4)."""
+        return self._column("orientation")
+
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """Angular velocities of rigid bodies along their axes, shape (T, K, 3), or (B, T, K, 3)."""
+        return self._column("angular_velocity")
+
+    @property
     def energy(self) -> NDArray[np.float64]:
         """Total energy, shape (T,), or (B, T)."""
         return self._column("energy")

@@ -15,6 +15,7 @@ import numpy as np
 from visviva import _core
 from visviva import forces as force_classes
 from visviva._arrays import number
+from visviva._body_force import BodyForce
 from visviva._continuation import attached
 from visviva._frames import Framed
 from visviva._keywords import known_keywords
@@ -22,11 +23,13 @@ from visviva._text import article
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
+from visviva.rigid_bodies import RigidBodies
 from visviva.runnable import Runnable
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
+    from typing import TypeAlias
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -34,6 +37,8 @@ if TYPE_CHECKING:
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
     from visviva.orbits import Elements
+
+    Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
 
 __all__ = ["Scene"]
 
@@ -45,18 +50,32 @@ class Scene(Runnable[Trajectory], Framed):
 
     Parameters
     ----------
-    *parts : Particles or Force, or sequence of them
-        One `Particles`, and any number of forces, in any order.
+    *parts : Particles, RigidBodies or Force, or sequence of them
+        One `Particles`, any number of `RigidBody` and `RigidBodies`, and of forces, in any order.
     particles : Particles, optional
     forces : sequence of Force, optional
         Parts given by name, as the attributes have them.
     t0 : float, optional
         The time of the given state.
 
+    Attributes
+    ----------
+    particles : Particles
+        All bodies as points: the particles, then the centers of mass of rigid bodies.
+    rigid_bodies : RigidBodies or None
+    body_forces : tuple
+        Forces on points of rigid bodies, and torques.
+
+    Notes
+    -----
+    Whatever acts on particles acts on the centers of mass of rigid bodies; gravity turns those that are no spheres, too
+    (MacCullagh's terms). Bodies that nothing turns move in closed form in their orientation, whatever moves their
+    centers. All others go in equal steps: ``run(t, method="kahan_li8", dt=…)``.
+
     Raises
     ------
     visviva.InvalidInput
-        If there is not exactly one `Particles`, or a part is neither particles nor a force.
+        If there is more than one `Particles`, or no body at all, or a part is neither bodies nor a force.
 
     Examples
     --------
@@ -70,39 +89,56 @@ class Scene(Runnable[Trajectory], Framed):
     particles: Particles
     forces: tuple[Force, ...]
     t0: float
+    rigid_bodies: RigidBodies | None
+    body_forces: tuple[BodyForce, ...]
     _keywords: _core._Scene = field(init=False, repr=False)
 
     def __init__(
         self,
-        *parts: Particles | Force | Sequence[Particles | Force],
+        *parts: Part | Sequence[Part],
         particles: Particles | None = None,
-        forces: Force | Sequence[Force] = (),
+        forces: Force | BodyForce | Sequence[Force | BodyForce] = (),
         t0: float = 0.0,
     ) -> None:
         by_name = () if particles is None else (particles,)
         all_parts = tuple(chain.from_iterable(_flat(part) for part in (*parts, *by_name, forces)))
         found = [part for part in all_parts if isinstance(part, Particles)]
+        rigid = [part for part in all_parts if isinstance(part, RigidBodies)]
         for part in all_parts:
-            if not isinstance(part, Particles | Force):
+            if not isinstance(part, Particles | RigidBodies | Force | BodyForce):
                 came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
                 known = ", ".join(name for name in force_classes.__all__ if name != "Force")
-                raise InvalidInput("parts", f"expected Particles and forces ({known}), got {came}")
-        if len(found) != 1:
+                raise InvalidInput("parts", f"expected Particles, RigidBodies and forces ({known}), got {came}")
+        if len(found) > 1 or not (found or rigid):
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        bodies = found[0]
-        acting = (part._resolved(bodies.names, len(bodies)) for part in all_parts if isinstance(part, Force))
-        self._set(bodies, tuple(acting), number("t0", t0))
+        bodies = RigidBodies._joined(rigid) if rigid else None
+        points = with_centers(found, bodies) if bodies else found[0]
+        acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
+        counts = (len(found[0]) if found else 0, len(bodies) if bodies else 0)
+        known_bodies = (points.names[counts[0] :], counts[1]), (points.names[: counts[0]], counts[0])
+        loads = (part._resolved(*known_bodies) for part in all_parts if isinstance(part, BodyForce))
+        self._set(points, tuple(acting), number("t0", t0), bodies, tuple(loads))
 
-    def _set(self, particles: Particles, forces: tuple[Force, ...], t0: float) -> None:
+    def _set(
+        self,
+        particles: Particles,
+        forces: tuple[Force, ...],
+        t0: float,
+        rigid_bodies: RigidBodies | None,
+        body_forces: tuple[BodyForce, ...],
+    ) -> None:
         object.__setattr__(self, "particles", particles)
         object.__setattr__(self, "forces", forces)
         object.__setattr__(self, "t0", t0)
+        object.__setattr__(self, "rigid_bodies", rigid_bodies)
+        object.__setattr__(self, "body_forces", body_forces)
         prepared: _core._Scene = {
             "mass": particles.mass[None],
             "position": particles.position[None],
             "velocity": particles.velocity[None],
             "radius": particles.radius[None] if particles.radius.any() else None,
+            "rigid": None if rigid_bodies is None else rigid_bodies._described(body_forces),
             "forces": [force._to_core() for force in forces],
             "own_forces": None,
             "t0": t0,
@@ -111,19 +147,39 @@ class Scene(Runnable[Trajectory], Framed):
         object.__setattr__(self, "_keywords", prepared)
 
     def __repr__(self) -> str:
-        parts = ", ".join(map(repr, (self.particles, *self.forces)))
+        of_points = len(self.particles) - (len(self.rigid_bodies) if self.rigid_bodies else 0)
+        points = (self.particles[:of_points],) if of_points or self.rigid_bodies is None else ()
+        rigid = () if self.rigid_bodies is None else (self.rigid_bodies,)
+        parts = ", ".join(map(repr, (*points, *rigid, *self.forces, *self.body_forces)))
         return f"Scene({parts}, t0={self.t0!r})"
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
             return NotImplemented
-        return self.particles == other.particles and self.forces == other.forces and self.t0 == other.t0
+        return (
+            self.particles == other.particles
+            and self.forces == other.forces
+            and self.t0 == other.t0
+            and self.rigid_bodies == other.rigid_bodies
+            and self.body_forces == other.body_forces
+        )
 
     def __hash__(self) -> int:
-        return hash((self.particles, self.forces, self.t0))
+        return hash((self.particles, self.forces, self.t0, self.rigid_bodies, self.body_forces))
 
     def __reduce__(self) -> tuple[Any, ...]:
-        return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"])
+        turning = (self.rigid_bodies, self.body_forces)
+        return _rebuild, (self.particles, self.forces, self.t0, self._keywords["continuation"], *turning)
+
+    @property
+    def _turns_freely(self) -> bool:
+        """Whether nothing turns the rigid bodies, if there are some."""
+        rigid = self.rigid_bodies
+        if rigid is None:
+            return True
+        round_ones = (rigid.principal_moments == rigid.principal_moments[:, :1]).all()
+        pulled = len(self.particles) > 1 and any(isinstance(force, force_classes.Gravity) for force in self.forces)
+        return not (self.body_forces or rigid.pivoted.any() or (pulled and not round_ones))
 
     @property
     def _names(self) -> tuple[str, ...]:
@@ -140,6 +196,8 @@ class Scene(Runnable[Trajectory], Framed):
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
         parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
+        orientation: ArrayLike | None = None,
+        angular_velocity: ArrayLike | None = None,
     ) -> EnsembleScene:
         """Many copies of the scene that differ in their states, or in the parameters of their forces.
 
@@ -156,6 +214,10 @@ class Scene(Runnable[Trajectory], Framed):
             values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
             share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs: a term
             that a value of 0 leaves out, a softening, an exponent, a table.
+        orientation : array_like, shape (B, K, 4), optional
+            Quaternions of the rigid bodies per copy; points that are held stay where they are.
+        angular_velocity : array_like, shape (B, K, 3), optional
+            Their angular velocities per copy.
 
         Returns
         -------
@@ -184,7 +246,14 @@ class Scene(Runnable[Trajectory], Framed):
         from visviva.ensemble import EnsembleScene
 
         return EnsembleScene(
-            self, position=position, velocity=velocity, mass=mass, radius=radius, parameters=parameters
+            self,
+            position=position,
+            velocity=velocity,
+            mass=mass,
+            radius=radius,
+            parameters=parameters,
+            orientation=orientation,
+            angular_velocity=angular_velocity,
         )
 
     def advise(self, t: ArrayLike, *, accuracy: float, of: Literal["energy", "position"] = "energy") -> Advice:
@@ -236,6 +305,11 @@ class Scene(Runnable[Trajectory], Framed):
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state and time, shape (N, 3).
 
+        Raises
+        ------
+        visviva.InvalidInput
+            Beside rigid bodies that torques turn.
+
         Examples
         --------
         >>> import visviva as vv
@@ -243,6 +317,9 @@ class Scene(Runnable[Trajectory], Framed):
         array([-2.,  0.,  0.])
         """
         from visviva._mergers import hosts
+
+        if not self._turns_freely:
+            raise InvalidInput("rigid_bodies", "accelerations are not told of rigid bodies that torques turn")
 
         p = self.particles
         parts = hosts(p)
@@ -312,8 +389,38 @@ class Scene(Runnable[Trajectory], Framed):
         p = self.particles
         return elements_of(self, p.position, p.velocity, bodies, about, G)
 
-    def _like(self, particles: Particles, forces: Iterable[Force], t0: float) -> Scene:
-        return Scene(particles, *forces, t0=t0)
+    def _like(
+        self,
+        particles: Particles,
+        forces: Iterable[Force],
+        t0: float,
+        change: Callable[[Any], Any] | None = None,
+        **turning: ArrayLike,
+    ) -> Scene:
+        scene = object.__new__(type(self))
+        if self.rigid_bodies is None:
+            scene._set(particles, tuple(forces), number("t0", t0), None, ())
+            return scene
+        rigid, loads = self.rigid_bodies, self.body_forces
+        if change is not None:
+            rigid, loads = change(rigid), tuple(map(change, loads))
+        own = {name: getattr(particles, name)[-len(rigid) :] for name in ("mass", "position", "velocity")}
+        rigid = rigid._changed(**(own | turning))
+        points = with_centers([particles[: len(particles) - len(rigid)]], rigid, particles.names)
+        scene._set(points, tuple(forces), number("t0", t0), rigid, loads)
+        return scene
+
+
+def with_centers(found: Sequence[Particles], bodies: RigidBodies, names: Sequence[str] | None = None) -> Particles:
+    """The particles, if there are some, and after them the centers of mass of rigid bodies."""
+    count = len(found[0]) if found else 0
+    if not names and (bodies.names or (found and found[0].names)):
+        first = found[0].names if found and found[0].names else [f"particle {place}" for place in range(count)]
+        names = (*first, *(bodies.names or [f"body {place}" for place in range(len(bodies))]))
+    own = {name: getattr(bodies, name) for name in ("mass", "position", "velocity")}
+    arrays = {name: np.concatenate([*(getattr(part, name) for part in found), array]) for name, array in own.items()}
+    radius = np.concatenate([*(part.radius for part in found), np.zeros(len(bodies))])
+    return Particles(**arrays, names=names or None, radius=radius)
 
 
 def _flat(part: object) -> Iterable[object]:
@@ -321,6 +428,13 @@ def _flat(part: object) -> Iterable[object]:
 
 
 def _rebuild(
-    particles: Particles, forces: tuple[Force, ...], t0: float, continuation: _core._Continuation | None = None
+    particles: Particles,
+    forces: tuple[Force, ...],
+    t0: float,
+    continuation: _core._Continuation | None = None,
+    rigid_bodies: RigidBodies | None = None,
+    body_forces: tuple[BodyForce, ...] = (),
 ) -> Scene:
-    return attached(Scene(particles, *forces, t0=t0), continuation)
+    scene = object.__new__(Scene)
+    scene._set(particles, forces, t0, rigid_bodies, body_forces)
+    return attached(scene, continuation)

@@ -38,6 +38,10 @@ class Trajectory(Recorded):
     t : ndarray, shape (T,)
         Output times; fewer than asked for if the run failed.
     position, velocity : ndarray, shape (T, N, 3)
+    orientation : ndarray, shape (T, K, 4)
+        Of rigid bodies: quaternions (x, y, z, w) from the body to space.
+    angular_velocity : ndarray, shape (T, K, 3)
+        Of rigid bodies, along the body's axes.
     energy, kinetic_energy, potential_energy, virial : ndarray, shape (T,)
     momentum, angular_momentum, center_of_mass : ndarray, shape (T, 3)
         Recorded, or computed from position and velocity on first use. The angular momentum is about
@@ -116,6 +120,10 @@ class Trajectory(Recorded):
                 f"run again with {name!r} or {', '.join(map(repr, needs))} in record",
             )
         point = np.zeros(3) if about is None else about
+        if self.scene.rigid_bodies is not None:
+            columns = (self.position, self.velocity if _DERIVED[name] else None)
+            turning = (self.orientation, self.angular_velocity)
+            return conserved(self.scene, *columns, point, [name], turning)[name]
 
         def told(scene: Scene, position: NDArray[np.float64], velocity: NDArray[np.float64] | None) -> Any:
             return conserved(scene, position, velocity, point, [name])
@@ -145,7 +153,8 @@ class Trajectory(Recorded):
         True
         """
         last = self._result["final"]
-        scene = self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]))
+        turning = {name: last[name][0] for name in ("orientation", "angular_velocity") if name in last}
+        scene = self.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **turning)
         if "mass" in last:
             own = {name: last[name][0] for name in ("mass", "radius") if name in last}
             scene = scene._like(scene.particles._changed(**own), scene.forces, scene.t0)
@@ -174,6 +183,9 @@ class Trajectory(Recorded):
         from visviva.invariants import internal_motion, reference_point
 
         point = reference_point(about)
+        if point is None and self.scene.rigid_bodies is not None:
+            turning = (self.orientation, self.angular_velocity)
+            return internal_motion(self.scene, self.position, self.velocity, turning)["angular_momentum"]
         if point is None:
             return by_era(self, internal_motion)["angular_momentum"]
         return self._derive("angular_momentum", point)

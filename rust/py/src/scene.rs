@@ -12,6 +12,7 @@ use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::{compute, is_ctrl_c};
 use input::{Array, Asked, forces as described, point, points, snapshot};
+use rigid::{Described, Turning};
 use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
@@ -62,7 +63,7 @@ pub(crate) fn run<'py>(
 
 /// Conserved quantities of recorded states.
 #[pyfunction]
-#[pyo3(signature = (*, mass, forces, position, velocity, about, columns))]
+#[pyo3(signature = (*, mass, forces, position, velocity, about, columns, turning=None))]
 pub(crate) fn conserved<'py>(
     py: Python<'py>,
     mass: Array<'py>,
@@ -71,6 +72,7 @@ pub(crate) fn conserved<'py>(
     velocity: Option<Array<'py>>,
     about: Array<'py>,
     columns: Vec<String>,
+    turning: Option<(Described<'py>, Array<'py>, Array<'py>)>,
 ) -> PyResult<Bound<'py, PyDict>> {
     let (mass, [particles]) = copied("mass", &mass, [None])?;
     let (position, [times, ..]) = copied("position", &position, [None, Some(particles), Some(3)])?;
@@ -79,6 +81,7 @@ pub(crate) fn conserved<'py>(
         None => vec![0.0; position.len()],
     };
     let specs = described(&forces)?;
+    let turning = turning.map(|given| Turning::prepared(given, times, &specs)).transpose()?;
     let about = point(&copied("about", &about, [Some(3)])?.0);
     let (position, velocity) = (points(&position), points(&velocity));
     let columns = columns.iter().map(|name| column("columns", name)).collect::<Result<Vec<_>, _>>();
@@ -88,7 +91,7 @@ pub(crate) fn conserved<'py>(
         let mut values: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
         let mut bodies = PreciseBodies::default();
         let (mut positions, mut velocities) = (position.iter(), velocity.iter());
-        for _ in 0..times {
+        for time in 0..times {
             bodies.clear(particles);
             let states = positions.by_ref().zip(velocities.by_ref());
             for ((i, &mass), (&position, &velocity)) in mass.iter().enumerate().zip(states) {
@@ -97,7 +100,10 @@ pub(crate) fn conserved<'py>(
             bodies.settle();
             let mut state = Snapshot::new(&specs, &bodies, about, threads, ticker);
             for (column, values) in columns.iter().zip(&mut values) {
-                values.extend(state.value(column)?.iter().take(column.width));
+                let own = state.value(column)?;
+                let places = &position[time * particles..(time + 1) * particles];
+                let share = turning.as_ref().map_or([0.0; 3], |of| of.share(column.name, time, &mass, places));
+                values.extend(own.iter().zip(share).map(|(own, share)| own + share).take(column.width));
             }
             ticker.tick()?;
         }

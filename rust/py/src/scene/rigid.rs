@@ -8,13 +8,15 @@ use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
 use std::sync::Arc;
 use visviva_core::Error;
+use visviva_core::forces::ForceTerm;
 use visviva_core::rigid::motion::bodies::RigidBodies;
+use visviva_core::rigid::motion::conserved::Scenery;
 use visviva_core::rigid::motion::loads::{End, Load, TorqueFunction};
 
 /// The rigid bodies of each copy, the last of its bodies.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
-pub(super) struct Described<'py> {
+pub(crate) struct Described<'py> {
     moments: Array<'py>,
     axes: Array<'py>,
     center: Array<'py>,
@@ -44,6 +46,49 @@ impl Described<'_> {
             angular_velocity: points(&copied("angular_velocity", &self.angular_velocity, three)?.0),
             loads: self.loads.iter().map(|load| described(load.cast::<PyDict>()?)).collect::<PyResult<_>>()?,
         })
+    }
+}
+
+/// Recorded orientations and angular velocities of the rigid bodies of a scene.
+pub(super) struct Turning {
+    bodies: RigidBodies,
+    orientation: Vec<[f64; 4]>,
+    angular_velocity: Vec<[f64; 3]>,
+    constant: f64,
+}
+
+impl Turning {
+    /// Of so many times, under these forces on points.
+    ///
+    /// # Errors
+    /// As [`Described::prepared`].
+    pub(super) fn prepared(
+        (described, orientation, angular_velocity): (Described<'_>, Array<'_>, Array<'_>),
+        times: usize,
+        forces: &[Arc<dyn ForceTerm>],
+    ) -> PyResult<Self> {
+        let bodies = described.prepared(1)?;
+        let shape = |width| [Some(times), Some(bodies.count), Some(width)];
+        let orientation = copied("orientation", &orientation, shape(4))?.0;
+        let angular_velocity = points(&copied("angular_velocity", &angular_velocity, shape(3))?.0);
+        let constants = forces.iter().filter_map(|force| force.as_newtonian());
+        let constant = constants.map(|(constant, _)| constant).sum();
+        Ok(Self { bodies, orientation: orientation.as_chunks::<4>().0.to_vec(), angular_velocity, constant })
+    }
+
+    /// What they add to a column at a time.
+    pub(super) fn share(&self, column: &str, time: usize, mass: &[f64], place: &[[f64; 3]]) -> [f64; 3] {
+        let own = time * self.bodies.count..(time + 1) * self.bodies.count;
+        Scenery {
+            bodies: &self.bodies,
+            copy: 0,
+            mass,
+            place,
+            orientation: &self.orientation[own.clone()],
+            angular_velocity: &self.angular_velocity[own],
+            constant: self.constant,
+        }
+        .share(column)
     }
 }
 

@@ -314,7 +314,7 @@ mod tests {
                 let largest = rate.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
                 assert!(!far);
                 // A unit in the last place for each radian, and that of the reference.
-                let bound = 4e-16 * (1.0 + largest * h.abs()) + 2e-15;
+                let bound = 4e-16 * (1.0 + largest * h.abs()) + 4e-15;
                 let off = apart(turn, free(moments, rate, h));
                 assert!(off <= bound, "{moments:?} {h}: {off:e}");
             }
@@ -364,7 +364,7 @@ mod tests {
             prop_assert!(whole.iter().all(|part| part.abs() <= 3e-15), "{whole:?}");
         }
 
-        /// exp of a rotation vector of any size, against sine and cosine: four units in the last place for each radian.
+        /// exp of a rotation vector of any size, against sine and cosine: six units in the last place for each radian.
         #[test]
         fn rotations_are_those_of_their_vectors(direction in prop::array::uniform3(-1.0..1.0f64), size in -20.0..9.0f64) {
             let norm = dot(direction, direction).sqrt();
@@ -375,10 +375,10 @@ mod tests {
             let angle = dot(half, half).sqrt();
             let expected = [0, 1, 2].map(|c| half[c] / angle * crate::numerics::angles::sin(angle));
             for c in 0..3 {
-                prop_assert!((found[c] - expected[c]).abs() <= 4.0 * f64::EPSILON * (1.0 + 2.0 * angle) * angle.min(1.0));
+                prop_assert!((found[c] - expected[c]).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle) * angle.min(1.0));
             }
             let cosine = crate::numerics::angles::cos(angle) - 1.0;
-            prop_assert!((found[3] - cosine).abs() <= 4.0 * f64::EPSILON * (1.0 + 2.0 * angle));
+            prop_assert!((found[3] - cosine).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle));
         }
     }
 

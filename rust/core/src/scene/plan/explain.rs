@@ -30,6 +30,9 @@ impl Plan {
         };
         let (decision, reason) = self.describe_solution();
         row("solution", decision, reason);
+        if let Some((decision, reason)) = self.describe_turning() {
+            row("orientations", decision, reason);
+        }
         if self.sets_of_forces > 1 {
             let decision = match self.kinds.iter().max() {
                 Some(&last) if last > 0 => format!("{} of {} kinds", self.sets_of_forces, last + 1),

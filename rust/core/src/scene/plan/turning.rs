@@ -101,6 +101,23 @@ fn suggested_step(bodies: &RigidBodies) -> String {
 }
 
 impl Plan {
+    /// How rigid bodies turn, and why; `None` without any.
+    pub(super) fn describe_turning(&self) -> Option<(String, String)> {
+        let count = self.rigid;
+        let bodies = if count == 1 { "1 rigid body".to_owned() } else { format!("{count} rigid bodies") };
+        match self.turning {
+            Turning::None => None,
+            Turning::Exact => Some(("elliptic functions".to_owned(), format!("no torque turns {bodies}"))),
+            Turning::Stepped(_) => {
+                let how = match self.method.scheme {
+                    Scheme::RungeKutta(_) => "Runge–Kutta on the group of rotations",
+                    _ => "exact free turns between kicks",
+                };
+                Some((how.to_owned(), format!("torques turn {bodies}")))
+            }
+        }
+    }
+
     /// The place of a body among the rigid ones of its copy.
     pub fn rigid_place(&self, body: usize) -> Option<usize> {
         body.checked_sub(self.particles - self.rigid)

@@ -1,0 +1,155 @@
+"""Rigid bodies of ensemble members: orientations and angular velocities with an axis over the copies."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva._rigid_arguments import unit
+from visviva.errors import InvalidInput
+from visviva.rigid._arguments import rows
+from visviva.rigid._orientation import rotate, rotate_back
+from visviva.rigid_bodies import RigidBodies
+from visviva.rigid_forces import AppliedTorque, RotationalDrag
+from visviva.rigid_springs import AttachedSpring
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva import _core
+    from visviva._body_force import BodyForce
+    from visviva.particles import Particles
+    from visviva.scene import Scene
+
+__all__ = [
+    "kept_by_bodies",
+    "of_copies_turning",
+    "restored",
+    "rigid_of_copies",
+    "saved",
+    "spin_scale",
+    "turning_of",
+]
+
+
+def of_copies_turning(
+    scene: Scene, orientation: ArrayLike | None, angular_velocity: ArrayLike | None
+) -> dict[str, NDArray[np.float64]]:
+    """What is given of rigid bodies, checked: quaternions (B, K, 4) and angular velocities (B, K, 3)."""
+    rigid, given = scene.rigid_bodies, {}
+    for name, value in (("orientation", orientation), ("angular_velocity", angular_velocity)):
+        if value is None:
+            continue
+        if rigid is None:
+            raise InvalidInput(name, "expected None: the scene has no rigid bodies")
+        width = 4 if name == "orientation" else 3
+        given[name] = float_array(name, value, ("B", len(rigid), width))
+    if rigid is not None and "orientation" in given:
+        turns = rows("orientation", given["orientation"], (4,))
+        given["orientation"] = unit(turns.reshape(-1, 4), ()).reshape(turns.shape)
+    return given
+
+
+def rigid_of_copies(
+    scene: Scene,
+    count: int,
+    turning: dict[str, NDArray[np.float64]],
+    full: dict[str, NDArray[np.float64]],
+    *,
+    moved: bool,
+) -> _core._Rigid | None:
+    """What the core is told of the rigid bodies of all copies. Held points stay where they are, unless bodies are moved."""
+    described = scene._keywords["rigid"]
+    rigid = scene.rigid_bodies
+    if described is None or rigid is None:
+        return None
+    masses = full["mass"][:, -len(rigid) :]
+    if (masses != rigid.mass).any():
+        raise InvalidInput("mass", "expected the masses of rigid bodies as they are: their moments belong to them")
+    told: Any = dict(described)
+    for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
+        each = turning.get(name, described[name])
+        told[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
+    if rigid.pivoted.any() and "orientation" in turning and not moved:
+        arms = rotate(told["orientation"], np.broadcast_to(rigid.pivot, (count, len(rigid), 3)))
+        centers = full["position"][:, -len(rigid) :]
+        held = rigid.pivoted[None, :, None]
+        placed = full["position"].copy()
+        placed[:, -len(rigid) :] = np.where(held, rigid.fixed_point - arms, centers)
+        placed.setflags(write=False)
+        full["position"] = placed
+    return told
+
+
+def kept_by_bodies(scene: Scene, kept: dict[str, bool]) -> dict[str, bool]:
+    """What of the invariants is left where points of rigid bodies are held, and forces act on them."""
+    springs = [force for force in scene.body_forces if isinstance(force, AttachedSpring)]
+    others = len(springs) < len(scene.body_forces)
+    held = bool(scene.rigid_bodies is not None and scene.rigid_bodies.pivoted.any())
+    held |= any(spring.anchor is not None for spring in springs)
+    lossless = not others and not any(spring.damping for spring in springs)
+    turns = kept["angular_momentum"] and not held and not others
+    return {
+        "energy": kept["energy"] and lossless,
+        "momentum": kept["momentum"] and not held,
+        "angular_momentum": turns,
+        "spin": kept["spin"] and not held and not others,
+    }
+
+
+def spin_scale(scene: Scene) -> float:
+    """The sum of the sizes of angular momenta about centers, or about points that are held."""
+    rigid = scene.rigid_bodies
+    if rigid is None:
+        return 0.0
+    spin = rotate_back(rigid.axes, rigid.angular_velocity)
+    return float(np.linalg.norm(rigid.principal_moments * spin, axis=-1).sum())
+
+
+def saved(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]:
+    """What a file keeps of rigid bodies: for its header, and arrays by name.
+
+    Raises
+    ------
+    InvalidInput
+        For a torque that is a compiled function.
+    """
+    rigid = scene.rigid_bodies
+    if rigid is None:
+        return {}, {}
+    loads = [load.core_arguments() for load in scene.body_forces]
+    if any("address" in load for load in loads):
+        raise InvalidInput("run", "a CompiledTorque is at its address in this process only: such a run cannot be saved")
+    own = {name: getattr(rigid, name) for name in ("moments", "inertia", "pivot")}
+    return {"rigid": {"forces": loads, "names": rigid.names}}, {f"rigid/{n}": a for n, a in own.items() if a is not None}
+
+
+def restored(
+    header: dict[str, Any], arrays: dict[str, NDArray[np.float64]], points: Particles
+) -> tuple[list[Any], list[BodyForce]]:
+    """The particles and the rigid bodies, and the forces on these, of a file whose points are all of them."""
+    if "rigid" not in header:
+        return [points], []
+    turning = {name: arrays[f"rigid/{name}"][0] for name in ("orientation", "angular_velocity")}
+    own = {name: arrays.get(f"rigid/{name}") for name in ("moments", "inertia", "pivot")}
+    count = len(turning["orientation"])
+    centers = {name: getattr(points, name)[-count:] for name in ("mass", "position", "velocity")}
+    names = header["rigid"]["names"] or points.names[len(points) - count :] or None
+    bodies = RigidBodies(**centers, **own, **turning, names=names)
+    kinds = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
+    forces = []
+    for description in header["rigid"]["forces"]:
+        values = dict(description)
+        forces.append(kinds[values.pop("kind")](**values))
+    free = len(points) - count
+    return [*([points[:free]] if free else []), bodies], forces
+
+
+def turning_of(keywords: _core._Scene, chosen: int | slice) -> dict[str, NDArray[np.float64]]:
+    """Orientations and angular velocities of some copies; nothing without rigid bodies."""
+    rigid = keywords["rigid"]
+    if rigid is None:
+        return {}
+    return {"orientation": rigid["orientation"][chosen], "angular_velocity": rigid["angular_velocity"][chosen]}
