@@ -80,6 +80,14 @@ def rigid_of_copies(
         placed[:, -len(rigid) :] = np.where(held, rigid.fixed_point - arms, centers)
         placed.setflags(write=False)
         full["position"] = placed
+    if rigid.pivot is not None and turning:
+        arms = np.where(rigid.pivoted[:, None], -rigid.pivot, 0.0)
+        follows = rotate(told["orientation"], np.cross(told["angular_velocity"], arms))
+        moving = full["velocity"].copy()
+        centers = moving[:, -len(rigid) :]
+        centers[...] = np.where(rigid.pivoted[None, :, None], follows, centers)
+        moving.setflags(write=False)
+        full["velocity"] = moving
     return told
 
 
