@@ -111,6 +111,10 @@ def _told(check: Callable[[str, object], object]) -> dict[str, Any]:
     return {"check": check}
 
 
+# What is recorded of points if nothing is said; of rigid bodies how they turn, too.
+_RECORDED: tuple[ColumnName, ...] = ("position", "velocity")
+
+
 @dataclass(frozen=True, kw_only=True)
 class PlanRequest:
     """What is asked of a scene. Its fields are the arguments of ``plan``, and of ``run`` too."""
@@ -123,7 +127,7 @@ class PlanRequest:
     atol: ArrayLike | Mapping[str, ArrayLike] | None = field(default=None, metadata=_told(_or_none(_tolerances)))
     max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
     max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
-    record: ColumnName | Sequence[ColumnName] = field(default=("position", "velocity"), metadata=_told(_words))
+    record: ColumnName | Sequence[ColumnName] = field(default=_RECORDED, metadata=_told(_words))
     events: Sequence[Event | EventFunction] = field(default=(), metadata=_told(_events))
     collisions: CollisionRule | None = field(default=None, metadata=_told(_or_none(_word)))
     restitution: float | None = field(default=None, metadata=_told(_or_none(number)))
@@ -141,6 +145,8 @@ class PlanRequest:
         for name, default, ready, check in _OPTIONS:
             value = getattr(self, name)
             asked[name] = ready if value is default else check(name, value)
+        if prepared["rigid"] is not None and self.record is _RECORDED:
+            asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
         if asked["events"]:
             from visviva.events import resolved
 

@@ -74,8 +74,8 @@ class Runnable(ABC, Generic[_Result]):
             The run ends with an error beyond this number of steps, of any method.
         record : str or sequence of str, optional
             Columns to store: ``position``, ``velocity``, ``energy``, ``momentum``,
-            ``angular_momentum``, ``center_of_mass``, ``kinetic_energy``, ``potential_energy``, ``virial``. What is not
-            asked for is not computed.
+            ``angular_momentum``, ``center_of_mass``, ``kinetic_energy``, ``potential_energy``, ``virial``, and of rigid
+            bodies ``orientation`` and ``angular_velocity``. What is not asked for is not computed.
         events : sequence, optional
             Of `visviva.events`, or functions ``f(t, position, velocity)``: their zeros on the way come back in
             ``out.events``. They change no bit of the run. A terminal one ends it: rows, ``final`` and the table end

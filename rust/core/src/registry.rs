@@ -64,6 +64,9 @@ pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().copied().find(|method| method.name == name)
 }
 
+/// Those for rigid bodies alone, with the order of the discrete motion that is their drift.
+pub use crate::rigid::motion::methods::METHODS as BODY_METHODS;
+
 /// Names of SciPy's `solve_ivp`, and ours.
 static SCIPY: [(&str, &str); 3] =
     [("RK23", "bogacki_shampine32"), ("RK45", "dormand_prince54"), ("DOP853", "dop853")];

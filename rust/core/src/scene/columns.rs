@@ -130,7 +130,7 @@ impl Columns {
                     array[at..at + 3].fill(f64::NAN);
                 }
             }
-            if let Some(body) = particle.checked_sub(particles - self.rigid) {
+            if let Some(body) = particle.checked_sub(particles - self.rigid).filter(|_| self.rigid > 0) {
                 for (array, width) in [(&mut self.orientation, 4), (&mut self.angular_velocity, 3)] {
                     for time in from_time..times {
                         let at = ((copy * times + time) * self.rigid + body) * width;
@@ -327,6 +327,9 @@ impl Output<'_> {
 
     /// Writes how a rigid body is turned and turns.
     pub fn write_turned(&self, body: usize, (orientation, spin): Turned) {
+        if self.writer.rigid == 0 {
+            return;
+        }
         let at = self.row * self.writer.rigid + body;
         let ((q, q_len), (v, v_len)) = (self.writer.orientation, self.writer.angular_velocity);
         assert!(4 * at + 4 <= q_len && 3 * at + 3 <= v_len, "a body has a place in its columns");

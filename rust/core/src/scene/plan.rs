@@ -138,7 +138,7 @@ impl Plan {
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = acting(scene, &scene.forces);
         refusals::check_method(method, &forces)?;
-        let turning = Turning::of(scene, &forces);
+        let turning = Turning::of(scene, method, &forces);
         if scene.rigid.is_some() && request.collisions.is_some() {
             let message = "expected None beside rigid bodies, of which no contact is known";
             return Err(Error::invalid("collisions", message));

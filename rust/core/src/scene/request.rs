@@ -21,6 +21,9 @@ pub fn columns() -> impl Iterator<Item = &'static str> + Clone {
     ["position", "velocity"].into_iter().chain(COLUMNS.iter().map(|column| column.name))
 }
 
+/// What may be recorded of rigid bodies besides.
+pub const TURNING: [&str; 2] = ["orientation", "angular_velocity"];
+
 /// Absolute tolerances in the scene's units, of places and of velocities: one number, or one for each body; a kind without one
 /// is scale-free.
 #[derive(Clone, Debug)]
@@ -116,6 +119,11 @@ impl Request {
         self.record.iter().any(|name| name == column)
     }
 
+    /// Whether it is asked how rigid bodies turn.
+    pub fn records_turning(&self) -> bool {
+        TURNING.iter().any(|column| self.records(column))
+    }
+
     /// The derived columns that are asked for, in that order, each once.
     pub fn derived(&self) -> Vec<&'static Column> {
         let mut derived: Vec<&'static Column> = Vec::new();
@@ -133,11 +141,16 @@ impl Request {
     pub fn check(&self, scene: &Scene) -> Result<Checked> {
         let automatic = self.method == "auto";
         let name = if automatic { "dop853" } else { &self.method };
-        let names = core::iter::once("auto").chain(registry::METHODS.iter().map(|method| method.name));
-        let method = registry::method(name).ok_or_else(|| unknown("method", name, names))?;
+        let bodies = scene.rigid.iter().flat_map(|_| registry::BODY_METHODS.iter().copied());
+        let all = registry::METHODS.iter().copied().chain(bodies.map(|(method, _)| method));
+        let names = core::iter::once("auto").chain(all.clone().map(|method| method.name));
+        let method = all.clone().find(|method| method.name == name);
+        let method = method.ok_or_else(|| unknown("method", name, names))?;
+        let turning = scene.rigid.iter().flat_map(|_| TURNING);
+        let known = || columns().chain(turning.clone());
         for column in &self.record {
-            if !columns().any(|name| name == column) {
-                return Err(unknown("record", column, columns()));
+            if !known().any(|name| name == column) {
+                return Err(unknown("record", column, known()));
             }
         }
         events::check(&self.events, scene.particles)?;

@@ -170,8 +170,8 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
     let wanted = Wanted {
         position: request.records("position"),
         velocity: request.records("velocity"),
+        rigid: if request.records_turning() || !derived.is_empty() { plan.rigid } else { 0 },
         keep_states: !derived.is_empty() && (scene.rigid.is_some() || !parts.iter().all(Part::tells)),
-        rigid: plan.rigid,
         derived,
     };
     check_memory(scene, request, &wanted, plan.threads.0)?;

@@ -65,8 +65,10 @@ pub(super) fn output_dict<'py>(
         set("velocity", output.columns.velocity, &[copies, times, particles, 3])?;
     }
     let rigid = output.columns.rigid;
-    if rigid > 0 {
+    if rigid > 0 && request.records("orientation") {
         set("orientation", output.columns.orientation, &[copies, times, rigid, 4])?;
+    }
+    if rigid > 0 && request.records("angular_velocity") {
         set("angular_velocity", output.columns.angular_velocity, &[copies, times, rigid, 3])?;
     }
     for Derived { column, values } in output.columns.derived {
@@ -142,6 +144,7 @@ pub(super) fn output_dict<'py>(
     )?;
     last.set_item("position", flat(output.reached.position)?)?;
     last.set_item("velocity", flat(output.reached.velocity)?)?;
+    let rigid = output.plan.rigid;
     if rigid > 0 {
         let orientation = output.reached.orientation.into_flattened();
         last.set_item("orientation", moved(py, orientation, &[copies, rigid, 4])?)?;

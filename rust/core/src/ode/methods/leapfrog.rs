@@ -19,11 +19,11 @@ pub static METHOD: Method = Method {
 
 // <coefficients> written by tools/coefficients.py; do not edit
 #[rustfmt::skip]
-const KICKS: &[DoubleDouble] = &[
+pub(crate) const KICKS: &[DoubleDouble] = &[
     dd(0.5, 0.0), dd(0.5, 0.0),
 ];
 #[rustfmt::skip]
-const DRIFTS: &[DoubleDouble] = &[
+pub(crate) const DRIFTS: &[DoubleDouble] = &[
     dd(1.0, 0.0),
 ];
 // </coefficients>

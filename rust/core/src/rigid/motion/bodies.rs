@@ -6,11 +6,13 @@
 
 use super::super::moments::check;
 use super::super::quaternion::{IDENTITY, Quaternion, conjugate, product, rotated, unit};
+use super::flows::Free;
 use super::loads::Load;
 use super::vectors::turned;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::power_of_two::scale;
+use crate::rigid::flow::moser_veselov::MoserVeselov;
 use crate::units::Units;
 use crate::words::{number, numbers};
 use std::sync::Arc;
@@ -152,6 +154,8 @@ pub struct LaneBody {
     pub pivot: [Lanes; 3],
     /// Whether there is one.
     pub pivoted: bool,
+    /// What turns it freely in place of the exact solution.
+    pub discrete: Option<Box<MoserVeselov<Lanes>>>,
 }
 
 /// In which lanes two moments of a body agree.
@@ -217,7 +221,7 @@ fn inverse(moment: f64) -> f64 {
 
 impl LaneBody {
     /// A body of each of some systems, with its row; lanes without a system repeat the last.
-    pub fn new(starts: &[Start], row: usize) -> Self {
+    pub fn new(free: Free, starts: &[Start], row: usize) -> Self {
         let of = |number: &dyn Fn(&Start) -> f64| {
             Lanes(core::array::from_fn(|lane| number(&starts[lane.min(starts.len() - 1)])))
         };
@@ -249,6 +253,13 @@ impl LaneBody {
             center: vector(|start| start.center),
             pivot: vector(|start| start.pivot),
             pivoted: starts.iter().any(|start| start.pivoted),
+            discrete: match free {
+                // A rod has no inverse of its moment, and is symmetric.
+                Free::Discrete(order) if starts.iter().all(|start| start.moments.iter().all(|of| *of > 0.0)) => {
+                    Some(Box::new(MoserVeselov::new(order, &vector(|start| start.moments))))
+                }
+                _ => None,
+            },
         }
     }
 }

@@ -9,12 +9,15 @@ use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
+use crate::rigid::flow::moser_veselov::Order;
 
 /// What turns freely moving bodies.
 #[derive(Clone, Copy, Debug)]
 pub enum Free {
     /// The exact solution.
     Exact,
+    /// The discrete one of Moser and Veselov, where it can; else the exact one.
+    Discrete(Order),
 }
 
 /// Room for series.
@@ -28,7 +31,7 @@ impl Default for Room {
 }
 
 /// Turns all bodies, for a time of so much; centers of held bodies go with them.
-pub fn turn_bodies(free: Free, arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, room: &mut Room) {
+pub fn turn_bodies(arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, room: &mut Room) {
     let (q, v) = state.halves_mut();
     for (body, of) in arrangement.bodies.iter().enumerate() {
         let at = arrangement.at(body);
@@ -37,7 +40,7 @@ pub fn turn_bodies(free: Free, arrangement: &Arrangement, state: &mut State<Lane
         let (points_rest, turning_rest) = q.1.split_at_mut(arrangement.points());
         let own = 4 * body..4 * body + 4;
         let orientation = (&mut turning[own.clone()], &mut turning_rest[own]);
-        let far = Lanes::pass(TurnBody { free, of, momentum, orientation, h, room: &mut room.0 });
+        let far = Lanes::pass(TurnBody { of, momentum, orientation, h, room: &mut room.0 });
         if let Some(far) = far {
             turn_far(of, momentum, (&mut turning[4 * body..], &mut turning_rest[4 * body..]), h, &far);
         }
@@ -60,7 +63,6 @@ pub fn hold(arrangement: &Arrangement, state: &mut State<Lanes>) {
 }
 
 struct TurnBody<'a> {
-    free: Free,
     of: &'a LaneBody,
     momentum: &'a [Lanes],
     orientation: PairMut<'a, Lanes>,
@@ -73,7 +75,7 @@ impl Pass<Lanes> for TurnBody<'_> {
     type Output = Option<Lanes>;
     #[inline(always)]
     fn run<V: View<Lanes>>(self) -> Self::Output {
-        let LaneBody { inverse, pair, symmetric, .. } = self.of;
+        let LaneBody { inverse, pair, symmetric, discrete, .. } = self.of;
         let (q, rest) = V::pair_mut(self.orientation);
         let momentum = V::view(self.momentum);
         let (q, rest, momentum) = (&mut q[..4], &mut rest[..4], &momentum[..3]);
@@ -82,12 +84,16 @@ impl Pass<Lanes> for TurnBody<'_> {
         let momentum = turned_back(from, [momentum[0], momentum[1], momentum[2]]);
         let h = V::load(*self.h);
         let room = V::view_mut(self.room);
-        let (turn, far) = match (self.free, symmetric) {
-            (Free::Exact, Symmetric::All) => {
+        let (turn, far) = match (discrete, symmetric) {
+            (Some(discrete), _) => {
+                let (turn, found) = discrete.load::<V>().turn(&momentum, h);
+                (turn, found.not())
+            }
+            (None, Symmetric::All) => {
                 (turn::symmetric(inverse, V::load(*pair), momentum, h), V::zero().less(V::zero()))
             }
-            (Free::Exact, Symmetric::None) => turn::asymmetric(inverse, momentum, h, room),
-            (Free::Exact, Symmetric::Some(lanes)) => {
+            (None, Symmetric::None) => turn::asymmetric(inverse, momentum, h, room),
+            (None, Symmetric::Some(lanes)) => {
                 let lanes = V::mask(*lanes);
                 let (mut turn, far) = turn::asymmetric(inverse, momentum, h, room);
                 let other = turn::symmetric(inverse, V::load(*pair), momentum, h);

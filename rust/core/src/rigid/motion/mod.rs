@@ -5,6 +5,7 @@ pub mod bodies;
 pub mod conserved;
 pub mod flows;
 pub mod loads;
+pub mod methods;
 pub mod runge_kutta;
 pub mod splitting;
 pub mod turn;
@@ -17,7 +18,6 @@ use crate::ode::stepper::Stepper;
 use crate::ode::{Method, Scheme};
 use acting::Loads;
 use bodies::Arrangement;
-use flows::Free;
 
 /// The method with step `h`, for bodies that lie so under these loads, beside points.
 ///
@@ -25,14 +25,13 @@ use flows::Free;
 /// A method that has no form for bodies; plans refuse it.
 pub fn body_stepper(
     method: &'static Method,
-    free: Free,
     h: f64,
     assembly: (Arrangement, Loads),
     state: &State<Lanes>,
 ) -> Result<Box<dyn Stepper<Lanes>>> {
     match &method.scheme {
         Scheme::Splitting(table) | Scheme::NystromSplitting(table) => {
-            Ok(Box::new(splitting::BodySplitting::new((table, free), h, assembly)))
+            Ok(Box::new(splitting::BodySplitting::new(table, h, assembly)))
         }
         Scheme::RungeKutta(tableau) => {
             Ok(Box::new(runge_kutta::BodyRungeKutta::new(tableau, h, assembly, state)))

@@ -7,7 +7,7 @@
 
 use super::acting::{Loads, Seen};
 use super::bodies::Arrangement;
-use super::flows::{Free, Room, Twist, settle_held, turn_bodies};
+use super::flows::{Room, Twist, settle_held, turn_bodies};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Scaled};
@@ -71,7 +71,6 @@ pub struct BodySplitting {
     h: f64,
     moves: Vec<Move>,
     nodes: Nodes,
-    free: Free,
     pulls: Pulls,
     /// Whether the pulls are those at the present place and time.
     fresh: bool,
@@ -81,7 +80,7 @@ pub struct BodySplitting {
 impl BodySplitting {
     /// The method `table` with step `h`.
     pub fn new(
-        (table, free): (&'static Splitting, Free),
+        table: &'static Splitting,
         h: f64,
         (arrangement, loads): (Arrangement, Loads),
     ) -> Self {
@@ -90,7 +89,6 @@ impl BodySplitting {
             h,
             moves: Vec::new(),
             nodes: Nodes::always(h),
-            free,
             pulls: Pulls::new(arrangement, loads),
             fresh: false,
             room: Room::default(),
@@ -119,7 +117,7 @@ impl BodySplitting {
         system: &mut dyn System<Lanes>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let Self { moves, nodes, free, pulls, fresh, room, .. } = self;
+        let Self { moves, nodes, pulls, fresh, room, .. } = self;
         for Move { time, kick, drift } in moves.iter() {
             if let Some(kick) = kick {
                 if !*fresh {
@@ -138,7 +136,7 @@ impl BodySplitting {
                 let ((q, rest), (v, _)) = state.halves_mut();
                 let y = (&mut q[..points], &mut rest[..points]);
                 Lanes::pass(Advance { y, k: &v[..points], step: drift });
-                turn_bodies(*free, &pulls.arrangement, state, &drift.0, room);
+                turn_bodies(&pulls.arrangement, state, &drift.0, room);
                 *fresh = false;
             }
         }

@@ -1,7 +1,6 @@
 //! Fixed steps: up to sixteen units in lockstep, each recorded until it is no longer finite.
 
 use super::super::layout::Layout;
-use super::super::plan::Turning;
 use super::super::unit::{self, Prepared, Unit};
 use super::events::{Abreast, Along, Interpolant, Span, Watch};
 use super::report::{Counts, Ending, Report};
@@ -59,9 +58,9 @@ fn lockstep(
     if own || room.as_ref().is_none_or(|(other, ..)| *other != shape) {
         let state = prepared[0].blank_state(units.len());
         let h = scale(dt, -plan.units.time);
-        let stepper = match (rigid, plan.turning) {
-            (Some(assembly), Turning::Stepped(free)) => body_stepper(plan.method, free, h, assembly, &state)?,
-            _ => stepper(plan.method, h, &dynamics, &state)?,
+        let stepper = match rigid {
+            Some(assembly) => body_stepper(plan.method, h, assembly, &state)?,
+            None => stepper(plan.method, h, &dynamics, &state)?,
         };
         *room = Some((shape, state, stepper));
     }

@@ -6,10 +6,11 @@ use super::Plan;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::{Method, Scheme};
-use crate::registry::METHODS;
+use crate::registry::{BODY_METHODS, METHODS};
 use crate::rigid::motion::bodies::RigidBodies;
 use crate::rigid::motion::flows::Free;
 use crate::rigid::motion::loads::Load;
+use crate::rigid::motion::methods::discrete;
 use std::sync::Arc;
 
 /// How rigid bodies turn.
@@ -24,9 +25,12 @@ pub enum Turning {
 }
 
 impl Turning {
-    /// That of the rigid bodies of a scene under these forces.
-    pub(super) fn of(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> Self {
+    /// That of the rigid bodies of a scene under these forces, by a method that was named or not.
+    pub(super) fn of(scene: &Scene, method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Self {
         let Some(bodies) = &scene.rigid else { return Self::None };
+        if let Some(order) = discrete(method) {
+            return Self::Stepped(Free::Discrete(order));
+        }
         let pulls = forces.iter().any(|force| force.as_newtonian().is_some());
         if bodies.is_loaded() || (pulls && scene.particles > 1 && bodies.any_shape()) {
             return Self::Stepped(Free::Exact);
@@ -65,7 +69,8 @@ pub(super) fn check(
     let looking =
         looking.or_else(|| forces.iter().find(|force| force.needs().velocities()).map(|f| f.declaration().class_name));
     if automatic || !serves(method, looking.is_some()) {
-        let names = METHODS.iter().filter(|method| serves(method, looking.is_some())).map(|method| method.name);
+        let all = METHODS.iter().copied().chain(BODY_METHODS.iter().map(|(method, _)| *method));
+        let names = all.filter(|method| serves(method, looking.is_some())).map(|method| method.name);
         let best = if looking.is_some() { "rk4" } else { "kahan_li8" };
         let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
         let message = format!(
@@ -108,12 +113,13 @@ impl Plan {
         match self.turning {
             Turning::None => None,
             Turning::Exact => Some(("elliptic functions".to_owned(), format!("no torque turns {bodies}"))),
-            Turning::Stepped(_) => {
-                let how = match self.method.scheme {
-                    Scheme::RungeKutta(_) => "Runge–Kutta on the group of rotations",
-                    _ => "exact free turns between kicks",
+            Turning::Stepped(free) => {
+                let how = match (&self.method.scheme, free) {
+                    (Scheme::RungeKutta(_), _) => "Runge–Kutta on the group of rotations",
+                    (_, Free::Exact) => "exact free turns between kicks",
+                    (_, Free::Discrete(_)) => "discrete free turns between kicks",
                 };
-                Some((how.to_owned(), format!("torques turn {bodies}")))
+                Some((how.to_owned(), format!("torques turn {bodies}, or the method was named")))
             }
         }
     }

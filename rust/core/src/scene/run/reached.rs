@@ -127,7 +127,9 @@ fn bring_together(
     {
         return Ok(());
     }
-    let recorded = !columns.position.is_empty() && !columns.velocity.is_empty() && outcome.time != scene.t0;
+    let turning = scene.rigid.is_none() || columns.rigid > 0;
+    let recorded =
+        !columns.position.is_empty() && !columns.velocity.is_empty() && turning && outcome.time != scene.t0;
     let places = copy * scene.particles..(copy + 1) * scene.particles;
     match outcome.rows.checked_sub(1).filter(|_| recorded) {
         Some(row) => {
@@ -168,8 +170,8 @@ fn again(
     reached: &mut Reached,
     ticker: &mut Ticker<'_>,
 ) -> Result<bool> {
-    let rigid = part.plan.rigid;
-    let nothing = Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false, rigid };
+    let nothing =
+        Wanted { position: false, velocity: false, derived: Vec::new(), keep_states: false, rigid: 0 };
     let mut columns = Columns::new(part.scene.copies, 1, part.scene.particles, &nothing)?;
     let writer = columns.writer(part.scene, None, part.plan.threads.1);
     let times = [time];

@@ -37,7 +37,7 @@ pub(super) fn turn_freely(
             let (orientation, spin) = bodies.principal(body);
             let motion = FreeRotation::new(bodies.moments[body], spin, orientation)?;
             let outcome = &outcomes[body / bodies.count];
-            let rows = request.times[..outcome.rows].iter();
+            let rows = request.times[..if columns.rigid > 0 { outcome.rows } else { 0 }].iter();
             for &t in rows.chain([&outcome.time]) {
                 motion.check_time(t - scene.t0)?;
                 let state = motion.state(t - scene.t0);
@@ -54,7 +54,7 @@ pub(super) fn turn_freely(
     let mut found = found.into_iter().flatten();
     for body in all {
         let (copy, place) = (body / bodies.count, body % bodies.count);
-        let rows = outcomes[copy].rows;
+        let rows = if columns.rigid > 0 { outcomes[copy].rows } else { 0 };
         for (row, (orientation, spin)) in found.by_ref().take(rows + 1).enumerate() {
             if row == rows {
                 reached.orientation[body] = orientation;

@@ -10,6 +10,7 @@ use crate::rigid::motion::bodies::{Arrangement, LaneBody, RigidBodies, Start};
 use crate::rigid::motion::vectors::turned_back;
 use crate::rigid::quaternion::Quaternion;
 use crate::scene::Scene;
+use crate::scene::plan::Turning;
 
 /// The orientation and the angular velocity of a body, of the caller's axes.
 pub type Turned = (Quaternion, [f64; 3]);
@@ -114,7 +115,8 @@ pub(in crate::scene) fn assembled(
     scene: &Scene,
     units: &[Prepared],
 ) -> Option<(Arrangement, Loads)> {
-    let bodies = scene.rigid.as_ref().filter(|_| plan.turning.steps() && !units[0].starts.is_empty())?;
+    let Turning::Stepped(free) = plan.turning else { return None };
+    let bodies = scene.rigid.as_ref().filter(|_| !units[0].starts.is_empty())?;
     let first = &units[0];
     let constants = plan.forces_of(first.unit.copy).iter().filter_map(|force| force.as_newtonian());
     let constant = constants.map(|(constant, _)| constant).sum();
@@ -126,7 +128,7 @@ pub(in crate::scene) fn assembled(
         let slots = (0..first.unit.bodies.len()).filter(|&slot| plan.rigid_place(first.unit.bodies[slot]).is_some());
         for (place, slot) in slots.enumerate() {
             let of_lanes: Vec<Start> = starts.iter().map(|of| of[place]).collect();
-            of_block.push(LaneBody::new(&of_lanes, row + slot));
+            of_block.push(LaneBody::new(free, &of_lanes, row + slot));
         }
         let systems = Systems {
             bodies,
