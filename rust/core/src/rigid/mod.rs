@@ -1,6 +1,7 @@
 //! Rigid bodies: orientation, and the motions that are known at every time.
 
 pub mod conventions;
+pub mod flow;
 pub mod free;
 pub mod heavy_top;
 pub mod mesh;
