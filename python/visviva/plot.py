@@ -10,6 +10,8 @@ from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Collection
+
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
@@ -23,8 +25,8 @@ _POINTS = 4000
 _LEGEND = 24
 
 
-def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axes]]:
-    """A figure with a row of panels.
+def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = ()) -> tuple[Figure, list[Axes]]:
+    """A figure with a row of panels, of which some show three dimensions.
 
     Raises
     ------
@@ -36,7 +38,8 @@ def new_figure(panels: int, size: tuple[float, float]) -> tuple[Figure, list[Axe
     except ImportError as error:
         raise InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'") from error
     figure = Figure(figsize=size, layout="constrained")
-    return figure, [figure.add_subplot(1, panels, panel + 1) for panel in range(panels)]
+    kinds = ["3d" if panel in solid else "rectilinear" for panel in range(panels)]
+    return figure, [figure.add_subplot(1, panels, at, projection=kind) for at, kind in enumerate(kinds, start=1)]
 
 
 def plot_trajectory(trajectory: Trajectory) -> Figure:

@@ -8,7 +8,7 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
-from visviva.rigid._heavy_top import HeavyTop, Nutation, SteadyPrecession, TopMotion
+from visviva.rigid._heavy_top import HeavyTop, Nutation, SteadyPrecession
 from visviva.rigid._mass import (
     MassProperties,
     PrincipalAxes,
@@ -46,6 +46,7 @@ from visviva.rigid._solids import (
     tetrahedron,
     torus,
 )
+from visviva.rigid._top_motion import TopMotion
 
 __all__ = [
     "FreeRotation",

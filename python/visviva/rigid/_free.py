@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from visviva.rigid._arguments import rows
 from visviva.rigid._orientation import rotate
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -54,6 +55,48 @@ class FreeRotation:
         """The kinetic energy, (T,): at every time the same, but for rounding."""
         value: NDArray[np.float64] = 0.5 * (self.body_angular_momentum * self.angular_velocity).sum(axis=-1)
         return value
+
+    @property
+    def casimir(self) -> NDArray[np.float64]:
+        """|L|² of the angular momentum in the body, (T,), a Casimir function: the same whatever the moments are."""
+        value: NDArray[np.float64] = (self.body_angular_momentum**2).sum(axis=-1)
+        return value
+
+    def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
+        """Draw the motion, as a matplotlib Figure.
+
+        Parameters
+        ----------
+        kind : {"polhode", "herpolhode", "axes", "components"}
+            The path of the angular velocity on the inertia ellipsoid Σ I x² = 1 in the body, or on the plane across the
+            angular momentum in space (Poinsot); where the body's three axes point in space; or the angular velocity
+            along them against time.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            With one panel.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For another kind, fewer than two times, no matplotlib, a body at rest where a direction is asked for, or the
+            inertia ellipsoid of a rod, which has no end.
+
+        Notes
+        -----
+        Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. § 5.6.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> out = vv.rigid.free_rotation([1.0, 2.0, 3.0], [0.1, 1.0, 0.1], np.linspace(0.0, 20.0, 201))
+        >>> out.plot("herpolhode").axes[0].get_title()
+        'herpolhode'
+        """
+        from visviva.rigid._pictures import plot_free_rotation
+
+        return plot_free_rotation(self, kind)
 
     def __repr__(self) -> str:
         return f"FreeRotation(t of shape {self.t.shape}, moments={self.moments.tolist()})"

@@ -10,10 +10,10 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._keywords import known_keywords
-from visviva.rigid._euler import quaternion_from_euler
+from visviva.rigid._top_motion import TopMotion
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
 
 class SteadyPrecession(NamedTuple):
@@ -57,47 +57,6 @@ class Nutation:
     kind: Literal["loop", "cusp", "wave", "plane", "steady"]
     roots: tuple[float, float, float]
     turning: float
-
-
-@known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class TopMotion:
-    """The states of a heavy top; what `HeavyTop.solve` returns.
-
-    Of a single time, arrays have no axis over the times. All are read-only.
-
-    Attributes
-    ----------
-    t : ndarray, shape (T,)
-        The times, as given.
-    theta, phi, psi : ndarray, shape (T,)
-        Euler's angles: θ in [0, π]; φ and ψ without jumps of 2π. Where the axis goes through the vertical itself, φ
-        jumps by π, and ψ with it.
-    theta_dot, phi_dot, psi_dot : ndarray, shape (T,)
-        Their rates.
-    """
-
-    t: NDArray[np.float64]
-    theta: NDArray[np.float64]
-    phi: NDArray[np.float64]
-    psi: NDArray[np.float64]
-    theta_dot: NDArray[np.float64]
-    phi_dot: NDArray[np.float64]
-    psi_dot: NDArray[np.float64]
-
-    @property
-    def orientation(self) -> NDArray[np.float64]:
-        """Quaternions (x, y, z, w) from the body, whose third axis is the top's, to space, (T, 4)."""
-        return quaternion_from_euler(np.stack([self.phi, self.theta, self.psi], axis=-1))
-
-    @property
-    def axis(self) -> NDArray[np.float64]:
-        """The top's axis in space, (T, 3): (sin θ sin φ, −sin θ cos φ, cos θ)."""
-        sine = np.sin(self.theta)
-        return np.stack([sine * np.sin(self.phi), -sine * np.cos(self.phi), np.cos(self.theta)], axis=-1)
-
-    def __repr__(self) -> str:
-        return f"TopMotion(t of shape {self.t.shape})"
 
 
 @known_keywords
@@ -334,4 +293,13 @@ class HeavyTop:
         for array in (kept, *columns):
             array.flags.writeable = False
         one, two, three, one_dot, two_dot, three_dot = columns
-        return TopMotion(t=kept, theta=one, phi=two, psi=three, theta_dot=one_dot, phi_dot=two_dot, psi_dot=three_dot)
+        return TopMotion(
+            top=self,
+            t=kept,
+            theta=one,
+            phi=two,
+            psi=three,
+            theta_dot=one_dot,
+            phi_dot=two_dot,
+            psi_dot=three_dot,
+        )

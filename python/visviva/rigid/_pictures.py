@@ -1,0 +1,160 @@
+"""Pictures of rigid motions, as matplotlib figures that belong to the caller."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import did_you_mean
+from visviva._text import count
+from visviva.errors import InvalidInput
+from visviva.plot import new_figure
+from visviva.rigid._orientation import matrix, rotate
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from visviva.rigid._free import FreeRotation
+    from visviva.rigid._top_motion import TopMotion
+
+__all__ = ["plot_free_rotation", "plot_top", "polhode", "traces"]
+
+_LETTERS = "xyz"
+# More points than this cannot be told apart in a figure and make the file large.
+_POINTS = 4000
+
+
+def plot_free_rotation(motion: FreeRotation, kind: str) -> Figure:
+    """A picture of a free rotation; see `FreeRotation.plot`."""
+    return _plotted(motion, kind, {"polhode": polhode, "herpolhode": herpolhode, "axes": traces, "components": spin})
+
+
+def plot_top(motion: TopMotion, kind: str) -> Figure:
+    """A picture of the motion of a heavy top; see `TopMotion.plot`."""
+    return _plotted(motion, kind, {"nutation": nutation, "theta": theta})
+
+
+_SOLID = ("polhode", "axes", "nutation")
+
+
+def _plotted(motion: Any, kind: str, pictures: dict[str, Callable[[Any, Any], None]]) -> Figure:
+    if not isinstance(kind, str) or kind not in pictures:
+        hint = did_you_mean(str(kind), tuple(pictures))
+        expected = ", ".join(repr(name) for name in pictures)
+        raise InvalidInput("kind", f"expected one of {expected}, got {kind!r}{hint}")
+    if motion.t.ndim != 1 or len(motion.t) < 2:
+        raise InvalidInput("plot", f"expected a path along several times, got {count(motion.t.size, 'time')}")
+    figure, (axes,) = new_figure(1, (5.5, 5.0), solid=(0,) if kind in _SOLID else ())
+    pictures[kind](axes, motion)
+    return figure
+
+
+def _thinned(motion: Any) -> slice:
+    return slice(None, None, max(1, len(motion.t) // _POINTS))
+
+
+def polhode(axes: Any, motion: FreeRotation) -> None:
+    """The path of the angular velocity on the inertia ellipsoid Σ I x² = 1, as the body has it."""
+    if not np.all(motion.moments > 0.0):
+        raise InvalidInput("plot", "expected three moments above 0: the inertia ellipsoid of a rod has no end")
+    direction = _directions(motion.angular_velocity[_thinned(motion)])
+    path = direction / np.sqrt((motion.moments * direction**2).sum(axis=-1))[:, None]
+    half = 1.0 / np.sqrt(motion.moments)
+    _ellipsoid(axes, half)
+    axes.plot(*path.T, linewidth=1.4, color="C3")
+    axes.plot(*path[:1].T, "o", markersize=4, color="C3")
+    axes.set_box_aspect(half)
+    axes.set(**{f"{letter}label": f"ω{letter} / √2T" for letter in _LETTERS}, title="polhode")
+
+
+def herpolhode(axes: Any, motion: FreeRotation) -> None:
+    """The path of the angular velocity on the plane across the angular momentum, which stays where it is in space."""
+    momentum = motion.angular_momentum[0]
+    _directions(momentum[None])
+    first, second = _across(momentum)
+    velocity = rotate(motion.orientation, motion.angular_velocity)[_thinned(motion)]
+    axes.plot(velocity @ first, velocity @ second, linewidth=0.8, color="C3")
+    axes.plot(velocity[0] @ first, velocity[0] @ second, "o", markersize=4, color="C3")
+    axes.plot(0.0, 0.0, "+", color="0.4")
+    axes.set_aspect("equal", adjustable="datalim")
+    axes.set(xlabel="ω across L", ylabel="ω across L", title="herpolhode")
+
+
+def traces(axes: Any, motion: FreeRotation) -> None:
+    """Where the body's three axes point in space, on the unit sphere, and the angular momentum."""
+    columns = matrix(motion.orientation)[_thinned(motion)]
+    _ellipsoid(axes, np.ones(3))
+    for at, letter in enumerate(_LETTERS):
+        axes.plot(*columns[:, :, at].T, linewidth=0.8, label=letter)
+    along = 1.2 * _directions(motion.angular_momentum[:1])[0]
+    axes.plot(*np.array([np.zeros(3), along]).T, color="0.2", label="L")
+    axes.set_box_aspect(np.ones(3))
+    axes.set(xlabel="x", ylabel="y", zlabel="z", title="the body's axes in space")
+    axes.legend(fontsize="small", loc="upper right")
+
+
+def spin(axes: Any, motion: FreeRotation) -> None:
+    """The angular velocity along the body's axes against time."""
+    chosen = _thinned(motion)
+    for at, letter in enumerate(_LETTERS):
+        axes.plot(motion.t[chosen], motion.angular_velocity[chosen, at], linewidth=0.8, label=f"ω{letter}")
+    axes.set(xlabel="t", ylabel="ω in the body", title="angular velocity")
+    axes.margins(x=0.01)
+    axes.legend(fontsize="small", loc="upper right")
+
+
+def nutation(axes: Any, motion: TopMotion) -> None:
+    """Where the top's axis points, on the unit sphere, between the circles that it nods between."""
+    low, high = motion.top.nutation_range(
+        float(motion.theta[0]),
+        psi_dot=float(motion.psi_dot[0]),
+        theta_dot=float(motion.theta_dot[0]),
+        phi_dot=float(motion.phi_dot[0]),
+    )
+    _ellipsoid(axes, np.ones(3))
+    around = np.linspace(0.0, 2.0 * np.pi, 200)
+    for angle in (low, high):
+        height = np.full_like(around, np.cos(angle))
+        axes.plot(np.sin(angle) * np.cos(around), np.sin(angle) * np.sin(around), height, linewidth=0.6, color="0.4")
+    path = motion.axis[_thinned(motion)]
+    axes.plot(*path.T, linewidth=1.2, color="C3")
+    axes.plot(*path[:1].T, "o", markersize=4, color="C3")
+    axes.set_box_aspect(np.ones(3))
+    axes.set(xlabel="x", ylabel="y", zlabel="z", title="nutation")
+
+
+def theta(axes: Any, motion: TopMotion) -> None:
+    """The angle of the axis from the vertical against time."""
+    chosen = _thinned(motion)
+    axes.plot(motion.t[chosen], motion.theta[chosen], linewidth=0.8)
+    axes.set(xlabel="t", ylabel="θ", title="angle from the vertical")
+    axes.margins(x=0.01)
+
+
+def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Unit vectors of vectors of any size."""
+    largest = np.abs(vectors).max(axis=-1, keepdims=True)
+    if not np.all(largest > 0.0):
+        raise InvalidInput("plot", "expected a body that turns, got one at rest")
+    scaled = vectors / largest
+    unit: NDArray[np.float64] = scaled / np.linalg.norm(scaled, axis=-1, keepdims=True)
+    return unit
+
+
+def _across(along: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Two unit vectors that stand at right angles on a third, and on each other."""
+    unit = _directions(along[None])[0]
+    other = np.eye(3)[np.argmin(np.abs(unit))]
+    first = _directions(np.cross(other, unit)[None])[0]
+    return first, np.cross(unit, first)
+
+
+def _ellipsoid(axes: Any, half: NDArray[np.float64]) -> None:
+    """A transparent ellipsoid."""
+    around, down = np.meshgrid(np.linspace(0.0, 2.0 * np.pi, 49), np.linspace(0.0, np.pi, 25))
+    x, y, z = np.sin(down) * np.cos(around), np.sin(down) * np.sin(around), np.cos(down)
+    axes.plot_surface(half[0] * x, half[1] * y, half[2] * z, color="0.8", alpha=0.25, linewidth=0.0)
