@@ -1,4 +1,4 @@
-"""The command line: ``visviva demo``, ``visviva methods``, ``visviva stress``, ``visviva info``."""
+"""The command line: ``visviva demo``, ``toutatis``, ``dzhanibekov``, ``methods``, ``stress`` and ``info``."""
 
 from __future__ import annotations
 
@@ -54,11 +54,19 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--version", action="version", version=f"visviva {__version__}")
     commands = parser.add_subparsers(required=True, metavar="COMMAND")
     demo = commands.add_parser("demo", help="the outer Solar System, and Rutherford's experiment")
-    demo.add_argument("--output", type=Path, default=Path("demo-output"), help="folder for pictures and the saved run")
+    _output(demo)
     demo.add_argument("--days", type=_finite, default=1e6, help="how long to follow the planets (default: 1e6)")
     demo.add_argument("--events", type=_finite, default=1e8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
+    toutatis = commands.add_parser("toutatis", help="the asteroid that tumbles, against what radar saw of it")
+    _output(toutatis)
+    toutatis.add_argument("--days", type=_finite, default=42.0, help="how long to follow it (default: 42)")
+    toutatis.set_defaults(command=_toutatis)
+    dzhanibekov = commands.add_parser("dzhanibekov", help="the handle that flips over and over")
+    _output(dzhanibekov)
+    dzhanibekov.add_argument("--flips", type=int, default=6, help="how many (default: 6)")
+    dzhanibekov.set_defaults(command=_dzhanibekov)
     commands.add_parser("methods", help="the integration methods").set_defaults(command=_methods)
     stress = commands.add_parser("stress", help="what each method makes of scenes that nobody should ask for")
     stress.add_argument("--long", action="store_true", help="with the cases that take minutes")
@@ -66,6 +74,10 @@ def _parser() -> argparse.ArgumentParser:
     stress.set_defaults(command=_stress)
     commands.add_parser("info", help="version, SIMD tier, threads, build profile").set_defaults(command=_info)
     return parser
+
+
+def _output(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--output", type=Path, default=Path("demo-output"), help="folder for pictures and saved runs")
 
 
 def _finite(text: str) -> float:
@@ -82,6 +94,24 @@ def _demo(options: argparse.Namespace) -> None:
     pictures = outer_solar_system(options.output, options.days, options.threads)
     print()
     pictures += rutherford(options.output, int(options.events), options.threads)
+    _say(pictures)
+
+
+def _toutatis(options: argparse.Namespace) -> None:
+    from visviva.tumbling import toutatis
+
+    options.output.mkdir(parents=True, exist_ok=True)
+    _say(toutatis(options.output, options.days))
+
+
+def _dzhanibekov(options: argparse.Namespace) -> None:
+    from visviva.tumbling import dzhanibekov
+
+    options.output.mkdir(parents=True, exist_ok=True)
+    _say(dzhanibekov(options.output, options.flips))
+
+
+def _say(pictures: list[Path]) -> None:
     print()
     if pictures:
         print("pictures:", ", ".join(map(str, pictures)))

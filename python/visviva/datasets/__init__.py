@@ -3,15 +3,20 @@
 from visviva.datasets.geiger_marsden import GeigerMarsden, RutherfordComparison, geiger_marsden_1913
 from visviva.datasets.outer_solar_system import OuterSolarSystem, outer_solar_system
 from visviva.datasets.solar_system import SolarSystem, solar_system
+from visviva.datasets.toutatis import RadarAttitudes, Toutatis, ToutatisComparison, toutatis
 
 __all__ = [
     "GeigerMarsden",
     "OuterSolarSystem",
+    "RadarAttitudes",
     "RutherfordComparison",
     "SolarSystem",
+    "Toutatis",
+    "ToutatisComparison",
     "geiger_marsden_1913",
     "outer_solar_system",
     "solar_system",
+    "toutatis",
 ]
 
 

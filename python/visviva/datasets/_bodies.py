@@ -14,7 +14,7 @@ from visviva.scene import Scene
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-__all__ = ["Bodies", "columns"]
+__all__ = ["Bodies", "columns", "read_only"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -44,7 +44,11 @@ def columns(
     mass: object, position: object, velocity: object
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]:
     """Read-only arrays of all bodies."""
-    arrays = np.array(mass, dtype=float), np.array(position, dtype=float), np.array(velocity, dtype=float)
-    for array in arrays:
-        array.flags.writeable = False
-    return arrays
+    return read_only(mass), read_only(position), read_only(velocity)
+
+
+def read_only(values: object) -> NDArray[np.float64]:
+    """Numbers as an array that nobody can change."""
+    array = np.array(values, dtype=float)
+    array.flags.writeable = False
+    return array
