@@ -66,13 +66,15 @@ def _size(vectors: NDArray[np.float64]) -> float:
 def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float, float]:
     """The event's function of a state, and below what it is zero to round-off.
 
-    Coordinates are rounded once, and by what bodies move in a rounding of the step, which the run's span bounds.
+    Coordinates are rounded once, and by what bodies move in a rounding of the step, which the run's span bounds: about an
+    origin that goes with most of them, so a body that rests moves there as fast as they do.
     """
     told = dict(event.parameters)
     x, v = scene.particles.position, scene.particles.velocity
+    moved = span * _size(v)
     if event.kind == "energy":
         bodies, a = scene.particles, scene.acceleration()
-        near = EPSILON * (_size(x) + span * _size(v))
+        near = EPSILON * (_size(x) + moved)
         mass, invariants = bodies.mass, scene.invariants()
         kinetic = 0.5 * float((mass[:, None] * v * v).sum())
         scale = kinetic + abs(invariants.energy - kinetic) + abs(told["value"])
@@ -82,11 +84,11 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
     if event.kind == "plane":
         normal = np.array(told["normal"])
         body, point = told["body"], np.array(told["point"])
-        near = EPSILON * (_size(x[body]) + _size(point) + span * _size(v[body]))
+        near = EPSILON * (_size(x[body]) + _size(point) + moved)
         return float((x[body] - point) @ normal), 64 * near * _size(normal)
     if event.kind == "distance":
         i, j = told["first"], told["second"]
-        near = EPSILON * (_size(x[[i, j]]) + told["distance"] + span * _size(v[[i, j]]))
+        near = EPSILON * (_size(x[[i, j]]) + told["distance"] + moved)
         return float(np.linalg.norm(x[i] - x[j])) - told["distance"], 64 * near
     body, about = told["body"], told["about"]
     named = isinstance(about, int)
@@ -94,7 +96,7 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
     places = x[[body, about]] if named else np.stack([x[body], np.array(about)])
     speeds = v[[body, about]] if named else v[[body]]
     a = scene.acceleration()
-    near = EPSILON * (_size(places) + span * _size(speeds))
+    near = EPSILON * (_size(places) + moved)
     boost = EPSILON * (_size(speeds) + span * _size(a))
     return float(r @ u), 64 * 3 * (near * _size(u) + boost * _size(r))
 

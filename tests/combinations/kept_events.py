@@ -125,4 +125,17 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             backward=True,
         ),
     ),
+    # The law took a body at rest for exact, which is integrated about an origin that moves.
+    (
+        "a_located_event_is_a_zero_at_its_state",
+        Recipe(
+            method="sofroniou_spaletta10",
+            bodies=3,
+            forces=(("Spring", 39), ("Spring", 39)),
+            seed=7907,
+            at_origin=True,
+            steps=1,
+            collisions="stop",
+        ),
+    ),
 ]

@@ -145,4 +145,39 @@ KEPT_MOTIONS: list[tuple[str, Recipe]] = [
         "declared_invariants_hold",
         Recipe(bodies=25, forces=(("CentralField", 0), ("SampledDrag", 0)), tame=False, steps=1, backward=True),
     ),
+    # The first expansion of a series was in so short a unit of time that its coefficients lost digits: a velocity next to
+    # nothing, 1e87 away.
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(
+            method="taylor",
+            bodies=3,
+            forces=(("RotatingFrame", 36),),
+            seed=57826,
+            tame=False,
+            at_origin=True,
+            drifting=True,
+            members=7,
+            own=("mass", "numbers", "position", "parameters", "radius", "velocity"),
+            wild_member=True,
+            steps=5,
+            ragged=True,
+            decades=12,
+            outputs=1,
+            backward=True,
+        ),
+    ),
+    # Steps in another time came to the end but for what rounding leaves out, and one more was taken through that.
+    (
+        "final_is_the_last_state",
+        Recipe(
+            method="yoshida4",
+            bodies=1,
+            forces=(("Coulomb", 86), ("DrivenForce", 9)),
+            seed=366,
+            drifting=True,
+            steps=39,
+            transformation="distance",
+        ),
+    ),
 ]

@@ -109,10 +109,12 @@ impl<S: Real> Clock<S> {
     /// A step that time does not feel, or that goes back, is none.
     pub(super) fn pass(&mut self, running: S::Mask, (taken, rest): (S, S), forward: S) -> Settled<S> {
         let remaining = (self.end - self.elapsed) - self.error;
-        let last = remaining.abs().less_equal(taken.abs());
-        let h = S::select(running, S::select(last, remaining, taken), S::zero());
         let from = self.elapsed;
         let (elapsed, error) = two_sum(self.elapsed, (self.error + rest) + taken);
+        // What comes so near to the end that no time is left but what rounding leaves out is there.
+        let there = (self.end - elapsed).abs().less_equal(S::zero());
+        let last = remaining.abs().less_equal(taken.abs()).or(there);
+        let h = S::select(running, S::select(last, remaining, taken), S::zero());
         let smallest = (S::splat(SMALLEST_STEP) * from.abs()).max(S::splat(f64::MIN_POSITIVE));
         let along = S::select(forward.less(S::zero()), -taken, taken);
         let accepted = smallest.less(along).and(running);

@@ -6,7 +6,7 @@
 
 use super::Taylor;
 use super::norm::{Change, Norm};
-use super::passes::errors::PairTerm;
+use super::passes::errors::{HUGE, PairTerm};
 use super::passes::series::{Choice, LargestRoot, Sum, nest};
 use super::series::Jet;
 use super::state::State;
@@ -20,6 +20,11 @@ use crate::parallel::Ticker;
 
 /// Of a step that does not end well, so much is tried next.
 const SHRINK: f64 = 1.0 / 256.0;
+/// Of a step of so many units of time the last coefficients may be too small for all their digits, and for a step that other
+/// units of the scene leave as it is: the motion is expanded once more, in a unit longer by this.
+const FAR: f64 = 4_294_967_296.0; // 2^32
+/// Of the whole time, the shortest unit with which a run begins: a body that hardly moves would ask for less.
+const BRIEFEST: f64 = 1.0 / (FAR * FAR * FAR * FAR);
 /// A tolerance ε asks for the order `-ln(ε)/2 + 1` (Jorba & Zou); so much for the 1, as what a step costs besides its
 /// coefficients makes longer ones pay: measured on Kepler's orbits and three bodies.
 const FIRST_ORDER: usize = 6;
@@ -35,6 +40,8 @@ pub struct TaylorStep<S: Element> {
     jet: Jet<S>,
     /// The unit of time of the next expansion.
     unit: S,
+    /// The shortest unit that was too long for this step.
+    too_long: S,
     /// The step tried last.
     h: S,
     rule: Rule<S>,
@@ -51,7 +58,8 @@ impl<S: Controlled> TaylorStep<S> {
         // The step is chosen before it is taken; what settles it leaves it alone.
         rule.limits = (SHRINK, 1.0);
         let jet = Jet::new(len, orders.highest);
-        Self { orders, jet, unit: S::one(), h: S::zero(), rule, margin: 1.0, next: state.clone() }
+        let too_long = S::splat(f64::INFINITY);
+        Self { orders, jet, unit: S::one(), too_long, h: S::zero(), rule, margin: 1.0, next: state.clone() }
     }
 
     /// The order for a tolerance.
@@ -149,8 +157,9 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let slope2 = norm.sizes(state, state, &clock.elapsed, &[change(state.v()), change(&a)])[0];
         let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
         let time = S::one() / (norm.rtol * slope2.sqrt());
-        let time = S::select(time.less(span), time, span);
+        let time = S::select(time.less(span), time, span).max(span * S::splat(BRIEFEST));
         self.unit = S::select(fresh, time.power_below(), self.unit);
+        self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
         Ok(())
     }
 
@@ -178,9 +187,15 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         });
         clock.h = h;
         self.h = S::next_step(clock, running);
+        let sound = size2.less(S::one());
+        self.too_long = S::select(sound, self.too_long, self.unit);
+        let far = S::splat(FAR) * self.unit;
+        let again = far.less(longest.min(self.too_long)).and(sound);
+        let size2 = S::select(again, S::splat(HUGE), size2);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
         let outcome = S::settle(clock, running, size2, &self.rule);
-        let next = S::select(size2.less(S::one()), longest, clock.h);
+        self.too_long = S::select(outcome.accepted, S::splat(f64::INFINITY), self.too_long);
+        let next = S::select(again, far, S::select(sound, longest, clock.h));
         self.unit = S::select(running, next.power_below(), self.unit);
         Ok(outcome)
     }
