@@ -180,4 +180,48 @@ KEPT_MOTIONS: list[tuple[str, Recipe]] = [
             transformation="distance",
         ),
     ),
+    # The stats of a copy whose numbers ceased to be were those of the others beside it.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            method="heun",
+            bodies=3,
+            forces=(("Gravity", 88), ("DrivenForce", 54), ("QuadraticDrag", 26)),
+            seed=2569,
+            tame=False,
+            planar=True,
+            drifting=True,
+            members=9,
+            own=("parameters", "mass", "numbers", "radius", "position", "velocity"),
+            steps=23,
+            outputs=1,
+            events=(("distance", 83),),
+            t0=41.888855517907984,
+            backward=True,
+        ),
+    ),
+    # An energy beyond numbers, of velocities of 1e201: the law took it for a failure.
+    (
+        "what_is_ok_is_finite",
+        Recipe(
+            method="euler",
+            forces=(("UniformMagneticField", 3), ("QuadraticDrag", 71), ("QuadraticDrag", 71)),
+            seed=2171,
+            tame=False,
+            planar=True,
+            drifting=True,
+            steps=15,
+            columns=("energy",),
+            events=(("energy", 97),),
+            terminal=1,
+            backward=True,
+        ),
+    ),
+    # A center's k/m vanished below the least number, and the closed form went straight on.
+    ("a_closed_form_is_what_integration_gives", Recipe(seed=879, units=(-310, 187, 110), backward=True)),
+    # The law's other frame had a velocity of 4 in units in which bodies have 1e-86.
+    (
+        "a_scene_moves_alike_in_another_frame",
+        Recipe(method="rk4", bodies=20, massless=3, forces=(("Gravity", 27),), seed=518, units=(5, 276, 288)),
+    ),
 ]

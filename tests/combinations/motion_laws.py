@@ -27,6 +27,13 @@ def _here(recipe: Recipe) -> Case:
     return tame(replace(recipe, members=0, offset=0, drifting=False))
 
 
+def _units(recipe: Recipe) -> tuple[float, float]:
+    """Of length and time, in which the scene is what it is without any: another frame has a size that is one to it."""
+    here, plain = (_here(each) for each in (recipe, replace(recipe, units=(0, 0, 0))))
+    sizes_of = [float(np.abs(_scene(case).particles.position).max(initial=0.0)) for case in (here, plain)]
+    return (sizes_of[0] / sizes_of[1] if sizes_of[1] > 0.0 else 1.0), _span(here) / _span(plain)
+
+
 def _how(case: Case, name: str) -> dict[str, Any]:
     """Steps that are as long here as there, or a tolerance that low orders reach, too."""
     method = METHODS.get(name)
@@ -87,6 +94,8 @@ def a_scene_moves_alike_in_another_frame(recipe: Recipe) -> None:
     scene, rng = _scene(case), np.random.default_rng(recipe.seed + 4)
     origin = 10.0 ** (recipe.offset % 7) * rng.uniform(-1.0, 1.0, 3)
     velocity = 4.0 * rng.uniform(-1.0, 1.0, 3)
+    length, time = _units(recipe)
+    origin, velocity = origin * length, velocity * (length / time)
     if recipe.planar:
         origin[2] = velocity[2] = 0.0
     if any(force._at_rest for force in scene.forces):

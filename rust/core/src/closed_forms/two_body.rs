@@ -49,7 +49,7 @@ fn constant(member: &Member<'_>) -> Option<f64> {
         }
         _ => None,
     };
-    sum.filter(|constant| constant.is_finite() && *constant != 0.0)
+    sum.filter(|constant| constant.is_normal())
 }
 
 impl Motion for TwoBody {

@@ -101,6 +101,16 @@ pub trait Recorder<S: Element> {
 
     /// Whether the run is worth going on with; asked every few steps.
     fn goes_on(&mut self, state: &State<S>) -> bool;
+
+    /// Whether it has just seen the end of something that wants to know what was [spent](Self::spent) on it.
+    fn asks(&self) -> bool {
+        false
+    }
+
+    /// Told when it asks: steps, and evaluations but for those of steps that were taken again.
+    fn spent(&mut self, steps: u64, evaluations: u64) {
+        let _ = (steps, evaluations);
+    }
 }
 
 /// A step that was taken, to be looked into, or the last part of the run, which is shorter than a step.
@@ -192,6 +202,14 @@ impl<S: Element> Walk<'_, S> {
         outcome
     }
 
+    /// Tells the recorder what was spent since the node `from`, if it asks.
+    #[inline(always)]
+    fn tell(&self, from: u64, recorder: &mut impl Recorder<S>) {
+        if recorder.asks() {
+            recorder.spent(self.node - from, self.system.evaluations() - self.repeated);
+        }
+    }
+
     /// Has the last step looked into, which began at that state.
     ///
     /// # Errors
@@ -280,7 +298,9 @@ fn through<S: Element>(
             }
             if past.is_multiple_of(WATCH_STEPS) {
                 walk.stepper.settle(walk.state);
-                if !recorder.goes_on(walk.state) {
+                let goes_on = recorder.goes_on(walk.state);
+                walk.tell(from, recorder);
+                if !goes_on {
                     return Ok(());
                 }
             }
@@ -311,6 +331,7 @@ fn through<S: Element>(
             let _: bool = recorder.look(taken, ticker)?;
         }
         recorder.record(index, reached, ticker)?;
+        walk.tell(from, recorder);
     }
     ticker.advance((walk.node - from) % PROGRESS_STEPS);
     Ok(())

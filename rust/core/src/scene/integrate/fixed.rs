@@ -115,7 +115,8 @@ fn lockstep(
         between: None,
         watched: watches.iter().any(Option::is_some),
         looks: vec![0; watches.len()],
-        stopped: vec![None; watches.len()],
+        spent: vec![None; units.len()],
+        asks: false,
         watches,
         failed: vec![None; units.len()],
         running: units.len(),
@@ -167,8 +168,10 @@ struct Records<'a> {
     watches: Vec<Option<Box<Watch<'a>>>>,
     /// What looking for them took, which each unit pays for itself.
     looks: Vec<u64>,
-    /// What a unit that an event ended had cost by then.
-    stopped: Vec<Option<Counts>>,
+    /// What a unit that ended before the others had cost by then.
+    spent: Vec<Option<Counts>>,
+    /// Whether one has ended whose cost is to be told.
+    asks: bool,
     units: Vec<Prepared>,
     /// The output time at which a unit was no longer finite.
     failed: Vec<Option<usize>>,
@@ -191,6 +194,7 @@ impl Recorder<Lanes> for Records<'_> {
             if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);
                 self.running -= 1;
+                self.asks = true;
             }
         }
         self.rows = index + 1;
@@ -268,7 +272,7 @@ impl Recorder<Lanes> for Records<'_> {
                     going |= !watch.stopped;
                     if watch.stopped {
                         let counts = Counts { steps, rejected: 0, evaluations: evaluations - repeated };
-                        self.stopped[lane] = Some(paid_by(lane, counts, &self.looks));
+                        self.spent[lane] = Some(paid_by(lane, counts, &self.looks));
                     }
                 }
                 None => going = true,
@@ -282,9 +286,24 @@ impl Recorder<Lanes> for Records<'_> {
             if self.failed[lane].is_none() && !unit.is_finite(state, lane) {
                 self.failed[lane] = Some(self.rows);
                 self.running -= 1;
+                self.asks = true;
             }
         }
         self.running > 0
+    }
+
+    fn asks(&self) -> bool {
+        self.asks
+    }
+
+    fn spent(&mut self, steps: u64, evaluations: u64) {
+        let counts = Counts { steps, rejected: 0, evaluations };
+        for (lane, spent) in self.spent.iter_mut().enumerate() {
+            if self.failed[lane].is_some() && spent.is_none() {
+                *spent = Some(paid_by(lane, counts, &self.looks));
+            }
+        }
+        self.asks = false;
     }
 }
 
@@ -303,7 +322,7 @@ impl Records<'_> {
                 Some(failed) => (failed, Ending::NotFinite),
                 None => (self.rows, otherwise.clone()),
             };
-            let counts = self.stopped.get(lane).copied().flatten();
+            let counts = self.spent[lane];
             let counts = counts.unwrap_or_else(|| paid_by(lane, all, &self.looks));
             let mut report = self.job.report(unit, state, lane, time, ending, rows, counts);
             if let Some(watch) = watch {
