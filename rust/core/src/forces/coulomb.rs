@@ -5,11 +5,14 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System, of_body};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::{Turns, Weight};
 use super::gravity::{energy, newton, series};
 use super::series::Series;
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::{Error, Result};
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
@@ -113,11 +116,11 @@ impl ForceTerm for Coulomb {
     }
     /// Gravity has the distances, if it is softened alike.
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
-        let (constant, softening) = other.as_newtonian()?;
-        let ring = newton::ring(context, constant, softening).filter(|_| softening == self.softening)?;
-        let system = context.first();
-        let charges: Vec<f64> = system.bodies.iter().map(|&body| self.near(body)).collect();
-        Some(Box::new(ring.beside(&charges, self.factors(context)[0])))
+        beside(other, Some(self.softening), context, || {
+            let bodies = context.first().bodies;
+            let charges: Vec<f64> = bodies.iter().map(|&body| self.near(body)).collect();
+            Charges { weights: Weight::of_turns(&charges), factor: self.factors(context)[0] }
+        })
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         Some(Box::new(CoulombSeries {
@@ -241,6 +244,34 @@ impl Series<Lanes> for CoulombSeries {
         self.field.coefficient(n, jet, &mut self.scratch, true, ticker)?;
         kernel_tier(&self.scratch, &self.factor, a, first);
         Ok(())
+    }
+}
+
+/// The charges of few bodies, beside gravity.
+struct Charges {
+    /// In the place of `G·m`.
+    weights: Vec<Weight>,
+    /// −k qᵢ/mᵢ.
+    factor: Lanes,
+}
+
+impl Beside for Charges {
+    const VELOCITY: bool = false;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        _: [V; 3],
+        _: [V; 3],
+        found: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        let mut term = found.sum::<PLANAR, EVEN>(&self.weights);
+        let factor = V::load(self.factor);
+        let neutral = factor.abs().less_equal(V::zero());
+        for c in 0..3 {
+            term[c] = V::select(neutral, V::zero(), factor * term[c]);
+        }
+        term
     }
 }
 

@@ -4,11 +4,10 @@ use super::Force;
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
 use super::links::{check_counts, of_link};
-use super::sources::{Kernel, Law};
+use super::sources::{Kernel, Law, Relative};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
@@ -96,6 +95,16 @@ impl Oblate {
             axis: near.map(|x| x / length),
         })
     }
+
+    fn sources(&self, context: &Context<'_>) -> Kernel<Flattening> {
+        let harmonics = self.shapes.iter().map(|shape| {
+            let radius = context.units.take(shape.radius, [1, 0, 0]);
+            let square = radius * radius;
+            [1.5 * shape.j2 * square, 0.625 * shape.j4 * square * square]
+        });
+        let law = Flattening { axis: self.axis, harmonics: harmonics.collect() };
+        Kernel::new(law, &self.bodies, context.units.take(self.constant, CONSTANT), context)
+    }
 }
 
 impl ForceTerm for Oblate {
@@ -103,14 +112,10 @@ impl ForceTerm for Oblate {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let harmonics = self.shapes.iter().map(|shape| {
-            let radius = context.units.take(shape.radius, [1, 0, 0]);
-            let square = radius * radius;
-            [1.5 * shape.j2 * square, 0.625 * shape.j4 * square * square]
-        });
-        let law = Flattening { axis: self.axis, harmonics: harmonics.collect() };
-        let constant = context.units.take(self.constant, CONSTANT);
-        Box::new(Kernel::new(law, &self.bodies, constant, context))
+        Box::new(self.sources(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        self.sources(context).beside(other, context)
     }
     fn potential_and_virial(
         &self,
@@ -238,12 +243,11 @@ impl Law for Flattening {
     /// With z = axis·d and s = z/r: GM r⁻⁵ 3/2 J2 R² ((5 s² − 1) d − 2 z axis), and
     /// GM r⁻⁷ 5/8 J4 R⁴ ((63 s⁴ − 42 s² + 3) d − (28 s² − 12) z axis).
     #[inline(always)]
-    fn pull<S: InverseCube>(&self, source: usize, strength: S, d: [S; 3], _: [S; 3]) -> [S; 3] {
+    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> [S; 3] {
+        let Relative { d, square: r2, inverse_cube: w, .. } = *relative;
         let [second, fourth] = self.harmonics[source];
         let [x, y, z] = [S::splat(self.axis[0]), S::splat(self.axis[1]), S::splat(self.axis[2])];
-        let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
         let along = d[2].multiply_add(z, d[1].multiply_add(y, d[0] * x));
-        let w = r2.inverse_cube();
         let inverse = w * r2;
         let inverse2 = inverse * inverse;
         let square = along * along * inverse2;

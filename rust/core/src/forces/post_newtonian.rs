@@ -4,11 +4,11 @@ use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::oblate::{CONSTANT, check_sources, sources_act};
-use super::sources::{Kernel, Law};
+use super::sources::{Kernel, Law, Relative};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
-use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
+use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
@@ -50,15 +50,23 @@ struct PostNewtonian {
     c: f64,
 }
 
+impl PostNewtonian {
+    fn sources(&self, context: &Context<'_>) -> Kernel<Schwarzschild> {
+        let c = context.units.take(self.c, [1, 0, -1]);
+        let law = Schwarzschild { inverse_square: 1.0 / c / c };
+        Kernel::new(law, &self.bodies, context.units.take(self.constant, CONSTANT), context)
+    }
+}
+
 impl ForceTerm for PostNewtonian {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let c = context.units.take(self.c, [1, 0, -1]);
-        let law = Schwarzschild { inverse_square: 1.0 / c / c };
-        let constant = context.units.take(self.constant, CONSTANT);
-        Box::new(Kernel::new(law, &self.bodies, constant, context))
+        Box::new(self.sources(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        self.sources(context).beside(other, context)
     }
     fn potential_and_virial(
         &self,
@@ -102,11 +110,10 @@ impl Law for Schwarzschild {
     const VELOCITY: bool = true;
 
     #[inline(always)]
-    fn pull<S: InverseCube>(&self, _: usize, strength: S, d: [S; 3], v: [S; 3]) -> [S; 3] {
-        let r2 = d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]));
+    fn pull<S: Real>(&self, _: usize, strength: S, relative: &Relative<S>) -> [S; 3] {
+        let Relative { d, velocity: v, square: r2, inverse_cube: w } = *relative;
         let v2 = v[2].multiply_add(v[2], v[1].multiply_add(v[1], v[0] * v[0]));
         let product = d[2].multiply_add(v[2], d[1].multiply_add(v[1], d[0] * v[0]));
-        let w = r2.inverse_cube();
         let four = S::splat(4.0) * strength;
         let factor = strength * w * S::splat(self.inverse_square);
         // 4 GM/r − v², 1/r being r² r⁻³.

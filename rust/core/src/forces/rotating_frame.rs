@@ -2,12 +2,15 @@
 
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::Turns;
 use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::points::distance;
 use crate::numerics::power_of_two::{exponent, scale};
@@ -54,22 +57,31 @@ struct RotatingFrame {
     center: [f64; 3],
 }
 
-impl ForceTerm for RotatingFrame {
-    fn declaration(&self) -> &'static ForceDeclaration {
-        &DECLARATION
-    }
-    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+impl RotatingFrame {
+    fn turning(&self, context: &Context<'_>) -> Kernel {
         let omega =
             |system: &System<'_>, c: usize| context.units.take(context.own(self, system).omega[c], FREQUENCY);
         let center = |system: &System<'_>, c: usize| {
             context.units.take(context.own(self, system).center[c], [1, 0, 0])
         };
-        Box::new(Kernel {
+        Kernel {
             shape: context.shape,
             omega: [0, 1, 2].map(|c| context.per_system(|system| omega(system, c))),
             center: [0, 1, 2].map(|c| context.per_system(|system| center(system, c))),
             there: context.per_body(|_, _| 1.0),
-        })
+        }
+    }
+}
+
+impl ForceTerm for RotatingFrame {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(self.turning(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        beside(other, None, context, || self.turning(context))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         let linear = Self { center: [0.0; 3], ..*self };
@@ -144,35 +156,85 @@ struct Kernel {
     there: Vec<Lanes>,
 }
 
-/// 2 v × ω + (ω² d − (ω·d) ω), d from the center. In the plane z = 0 the axis is across it, and d_z is not seen.
 #[inline(always)]
 fn kernel<V: Vector8>(force: &Kernel, q: &[Lanes], v: &[Lanes], a: &mut [Lanes], first: bool) {
-    let Shape { rows, components } = force.shape;
-    let (q, v, a, there) = (V::view(q), V::view(v), V::view_mut(a), V::view(&force.there));
+    if force.shape.components == 2 {
+        rotate::<V, 2>(force, q, v, a, first);
+    } else {
+        rotate::<V, 3>(force, q, v, a, first);
+    }
+}
+
+#[inline(always)]
+fn rotate<V: Vector8, const COMPONENTS: usize>(
+    force: &Kernel,
+    q: &[Lanes],
+    v: &[Lanes],
+    a: &mut [Lanes],
+    first: bool,
+) {
+    let rows = force.shape.rows;
+    let (q, v, a) = (V::view(q), V::view(v), V::view_mut(a));
     let blocks = force.center[0].len();
     let bodies = rows / blocks;
     for block in 0..blocks {
-        let (mut omega, mut twice, mut center) = ([V::zero(); 3], [V::zero(); 3], [V::zero(); 3]);
-        for c in 0..3 {
-            omega[c] = V::load(force.omega[c][block]);
-            twice[c] = omega[c] + omega[c];
-            center[c] = V::load(force.center[c][block]);
-        }
-        let square = omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2];
         for row in block * bodies..(block + 1) * bodies {
-            let (mut d, mut speed) = ([V::zero(); 3], [V::zero(); 3]);
-            for c in 0..components {
-                d[c] = q[c * rows + row] - center[c];
-                speed[c] = v[c * rows + row];
+            let (mut place, mut velocity) = ([V::zero(); 3], [V::zero(); 3]);
+            for c in 0..COMPONENTS {
+                place[c] = q[c * rows + row];
+                velocity[c] = v[c * rows + row];
             }
-            let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
-            for c in 0..components {
-                let (e, f) = ((c + 1) % 3, (c + 2) % 3);
-                let turning = speed[e] * twice[f] - speed[f] * twice[e];
-                let term = there[row] * (turning + (square * d[c] - along * omega[c]));
+            let term = turned::<V, COMPONENTS>(force, (block, row), place, velocity);
+            for c in 0..COMPONENTS {
                 let a = &mut a[c * rows + row];
-                *a = if first { term } else { *a + term };
+                *a = if first { term[c] } else { *a + term[c] };
             }
+        }
+    }
+}
+
+/// 2 v × ω + (ω² d − (ω·d) ω) of a row, d from the center. In the plane z = 0 the axis is across it, and d_z is not seen.
+#[inline(always)]
+fn turned<V: Vector8, const COMPONENTS: usize>(
+    force: &Kernel,
+    (block, row): (usize, usize),
+    place: [V; 3],
+    velocity: [V; 3],
+) -> [V; 3] {
+    let (mut omega, mut twice, mut d) = ([V::zero(); 3], [V::zero(); 3], [V::zero(); 3]);
+    for c in 0..3 {
+        omega[c] = V::load(force.omega[c][block]);
+        twice[c] = omega[c] + omega[c];
+    }
+    for c in 0..COMPONENTS {
+        d[c] = place[c] - V::load(force.center[c][block]);
+    }
+    let square = omega[0] * omega[0] + omega[1] * omega[1] + omega[2] * omega[2];
+    let along = omega[0] * d[0] + omega[1] * d[1] + omega[2] * d[2];
+    let there = V::load(force.there[row]);
+    let mut term = [V::zero(); 3];
+    for c in 0..COMPONENTS {
+        let (e, f) = ((c + 1) % 3, (c + 2) % 3);
+        let turning = velocity[e] * twice[f] - velocity[f] * twice[e];
+        term[c] = there * (turning + (square * d[c] - along * omega[c]));
+    }
+    term
+}
+
+impl Beside for Kernel {
+    const VELOCITY: bool = true;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        place: [V; 3],
+        velocity: [V; 3],
+        _: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        if PLANAR {
+            turned::<V, 2>(self, (0, 0), place, velocity)
+        } else {
+            turned::<V, 3>(self, (0, 0), place, velocity)
         }
     }
 }

@@ -7,12 +7,14 @@
 //! Products and sums of that sum are not fused. In lanes over bodies nothing is read or written by single numbers: a
 //! vector that is read soon after waits long for them.
 
+mod beside_gravity;
+
 use super::context::{Arrangement, Context, packed_place};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
-use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Real;
 use crate::ode::system::Needs;
 use crate::parallel::Ticker;
@@ -23,9 +25,33 @@ pub(super) trait Law: Send + 'static {
     /// Whether it looks at velocities.
     const VELOCITY: bool;
 
-    /// The acceleration of a body at `d` from the source of that place in the list, which moves with `w` relative to it;
-    /// `strength` is the source's gravitational parameter. Inlined, and without closures: it is compiled for each tier.
-    fn pull<S: InverseCube>(&self, source: usize, strength: S, d: [S; 3], w: [S; 3]) -> [S; 3];
+    /// The acceleration that the source of that place in the list gives to a body; `strength` is the source's gravitational
+    /// parameter. Inlined, and without closures: it is compiled for each tier.
+    fn pull<S: Real>(&self, source: usize, strength: S, relative: &Relative<S>) -> [S; 3];
+}
+
+/// Where a body is and how it moves, relative to a source.
+#[derive(Debug)]
+pub(super) struct Relative<S> {
+    pub d: [S; 3],
+    /// If the law looks at it.
+    pub velocity: [S; 3],
+    /// Of the distance, the square and the power −3.
+    pub square: S,
+    pub inverse_cube: S,
+}
+
+#[inline(always)]
+fn squared<S: Real>(d: [S; 3]) -> S {
+    d[2].multiply_add(d[2], d[1].multiply_add(d[1], d[0] * d[0]))
+}
+
+impl<S: InverseCube> Relative<S> {
+    #[inline(always)]
+    fn new(d: [S; 3], velocity: [S; 3]) -> Self {
+        let square = squared(d);
+        Self { d, velocity, square, inverse_cube: square.inverse_cube() }
+    }
 }
 
 /// A source in lanes.
@@ -38,8 +64,8 @@ struct Source {
     /// Its gravitational parameter, and 1/mass, in each block; one number in every lane if packed.
     strength: Vec<Lanes>,
     inverse_mass: Vec<Lanes>,
-    /// Above zero where another body is.
-    others: Vec<Lanes>,
+    /// If packed, where other bodies are, row after row.
+    others: Vec<Bits>,
     /// If packed, 1/mass in its lane and zero in the others.
     alone: Lanes,
     /// If packed, its lane, eight times.
@@ -75,6 +101,7 @@ impl<L: Law> Kernel<L> {
                 }
                 context.in_rows(1, |system, _| mass(system.mass[slot]))
             };
+            let others = context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 });
             let inverse = |mass: f64| if mass > 0.0 { 1.0 / mass } else { 0.0 };
             let mut alone = Lanes::zero();
             alone.0[place.1] = inverse(context.first().mass[slot]);
@@ -86,7 +113,7 @@ impl<L: Law> Kernel<L> {
                 strength: of(&|mass| constant * mass),
                 // Some ensemble members may have it without mass: there it does nothing.
                 inverse_mass: of(&inverse),
-                others: context.per_body(|_, other| if other == slot { 0.0 } else { 1.0 }),
+                others: others.iter().map(|row| Lanes::zero().less(*row)).collect(),
             }
         });
         Self {
@@ -120,6 +147,40 @@ fn difference<S: Real>(to: [S; 3], from: [S; 3]) -> [S; 3] {
 const TURNS: [[i64; WIDTH]; 3] =
     [[1, 0, 3, 2, 5, 4, 7, 6], [2, 3, 0, 1, 6, 7, 4, 5], [4, 5, 6, 7, 0, 1, 2, 3]];
 
+/// What a source gives to a row of bodies, at places and speeds: zero where nobody is or the source itself.
+#[inline(always)]
+fn on_row<V: Vector8 + InverseCube, L: Law>(
+    (kernel, source): (&Kernel<L>, &Source),
+    row: usize,
+    (place, speed): ([V; 3], [V; 3]),
+    (own, own_speed): ([V; 3], [V; 3]),
+) -> [V; 3] {
+    let there = source.others[row];
+    let mut d = difference(place, own);
+    let mut velocity = [V::zero(); 3];
+    if L::VELOCITY {
+        velocity = difference(speed, own_speed);
+    }
+    // Where nobody else is, a place that gives a number.
+    d[0] = V::select(there, d[0], V::one());
+    let strength = V::load(source.strength[0]);
+    let mut pull = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
+    for c in 0..3 {
+        pull[c] = V::select(there, pull[c], V::zero());
+    }
+    pull
+}
+
+/// Σ mᵢ aᵢ of a row of bodies, in every lane.
+#[inline(always)]
+fn sum_of_eight<V: Vector8>(mass: V, a: V) -> V {
+    let mut sum = mass * a;
+    for turn in &TURNS {
+        sum += sum.permute(turn);
+    }
+    sum
+}
+
 /// Bodies of one system: a row of them at a time, or `ONE` row alone. What is known when compiled stays in registers.
 #[inline(always)]
 fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>(
@@ -143,33 +204,24 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
                 speed[c] = v[c * rows + own].permute(&source.lane);
             }
         }
-        let strength = V::load(source.strength[0]);
         let mut sum = [V::zero(); 3];
         // Of the row that the source is in, which waits for the reaction.
         let mut beside = [V::zero(); 3];
         for row in 0..rows {
-            let there = V::zero().less(V::load(source.others[row]));
-            let mut d = difference(vector(q, row, rows, components), place);
-            let mut w = [V::zero(); 3];
+            let mut own_speed = [V::zero(); 3];
             if L::VELOCITY {
-                w = difference(vector(v, row, rows, components), speed);
+                own_speed = vector(v, row, rows, components);
             }
-            // Where nobody else is, a place that gives a number.
-            d[0] = V::select(there, d[0], V::one());
-            let pull = kernel.law.pull(source.index, strength, d, w);
+            let bodies = (vector(q, row, rows, components), own_speed);
+            let term = on_row((kernel, source), row, bodies, (place, speed));
             for c in 0..components {
-                let term = V::select(there, pull[c], V::zero());
                 if row == own {
-                    beside[c] = term;
+                    beside[c] = term[c];
                 } else {
-                    a[c * rows + row] += term;
+                    a[c * rows + row] += term[c];
                 }
                 if row < massive {
-                    let mut part = mass[row] * term;
-                    for turn in &TURNS {
-                        part += part.permute(turn);
-                    }
-                    sum[c] += part;
+                    sum[c] += sum_of_eight(mass[row], term[c]);
                 }
             }
         }
@@ -205,12 +257,12 @@ fn batched<V: Vector8 + InverseCube, L: Law>(kernel: &Kernel<L>, q: &[Lanes], v:
                     if at == own {
                         continue;
                     }
-                    let mut w = [V::zero(); 3];
+                    let mut velocity = [V::zero(); 3];
                     if L::VELOCITY {
-                        w = difference(vector(v, at, rows, components), speed);
+                        velocity = difference(vector(v, at, rows, components), speed);
                     }
                     let d = difference(vector(q, at, rows, components), place);
-                    let term = kernel.law.pull(source.index, strength, d, w);
+                    let term = kernel.law.pull(source.index, strength, &Relative::new(d, velocity));
                     for c in 0..components {
                         a[c * rows + at] += term[c];
                         if slot < kernel.active {

@@ -11,6 +11,7 @@
 //!
 //! A massless body exerts nothing, so pairs of them are never formed.
 
+pub(super) mod beside;
 pub mod closed;
 pub mod energy;
 pub mod few;

@@ -25,7 +25,7 @@ struct Turn {
 
 /// A number of the bodies that a turn brings together.
 #[derive(Debug)]
-struct Weight {
+pub(in crate::forces) struct Weight {
     /// Of the body ahead, zero in the lanes without a body.
     ahead: Lanes,
     /// Of the body behind; not looked at when ahead and behind are the same body.
@@ -34,22 +34,13 @@ struct Weight {
 
 impl Weight {
     /// Of so many turns, from the numbers of the bodies.
-    fn of_turns(numbers: &[f64]) -> Vec<Self> {
+    pub(in crate::forces) fn of_turns(numbers: &[f64]) -> Vec<Self> {
         let n = numbers.len();
         let weight = |distance: usize| {
             Lanes(core::array::from_fn(|lane| if lane < n { numbers[(lane + distance) % n] } else { 0.0 }))
         };
         (1..=n / 2).map(|k| Self { ahead: weight(k), behind: weight(n - k) }).collect()
     }
-}
-
-/// Another force along the same directions, by the same power of the distance.
-#[derive(Debug)]
-struct Beside {
-    /// In the place of `G·m`, turn by turn.
-    weights: Vec<Weight>,
-    /// What each body multiplies its sum by; zero for none, whatever the sum is.
-    factor: Lanes,
 }
 
 /// Gravity among the first `n ≤ 8` bodies (row 0) and on the massless ones (rows from 1).
@@ -61,7 +52,6 @@ pub struct Ring {
     /// `ε²`, and 1 in the lanes without a body, which keeps their distance to themselves from being 0.
     softening2_first_row: Lanes,
     softening2: f64,
-    beside: Option<Beside>,
 }
 
 impl Ring {
@@ -80,34 +70,97 @@ impl Ring {
         let softening2 = softening * softening;
         let softening2_first_row =
             Lanes(core::array::from_fn(|lane| if lane < n { softening2 } else { 1.0 }));
-        Self { shape, turns, strength, softening2_first_row, softening2, beside: None }
+        Self { shape, turns, strength, softening2_first_row, softening2 }
     }
 
-    /// With another force of these numbers, added after gravity, where there are no massless bodies.
-    pub fn beside(self, numbers: &[f64], factor: Lanes) -> Self {
-        Self { beside: Some(Beside { weights: Weight::of_turns(numbers), factor }), ..self }
+    /// How many bodies are on it.
+    pub(super) fn bodies(&self) -> usize {
+        self.strength.len()
+    }
+
+    /// Whether they stay in a plane.
+    pub(super) fn planar(&self) -> bool {
+        self.shape.components == 2
     }
 }
 
-/// Adds the pulls of a turn, along `d` and, unless it is `half` a turn, back.
-#[inline(always)]
-fn add_turn<V: Vector8, const PLANAR: bool>(
-    sum: &mut [V; 3],
-    (d, back): (&[V; 3], &[V; 3]),
-    weight: &Weight,
-    half: bool,
-) {
-    let components = if PLANAR { 2 } else { 3 };
-    let ahead = V::load(weight.ahead);
-    for c in 0..components {
-        sum[c] = ahead.multiply_add(d[c], sum[c]);
+/// What is found between the bodies of a ring, turn by turn.
+#[derive(Debug)]
+pub(in crate::forces) struct Turns<V, const TURNS: usize> {
+    /// r⁻³ of each body and the one ahead.
+    pub weight: [V; TURNS],
+    /// `(x_j - x_i)·r⁻³` of the body ahead.
+    ahead: [[V; 3]; TURNS],
+    /// What that is for the body behind, against its direction; not in half a turn.
+    behind: [[V; 3]; TURNS],
+}
+
+impl<V: Vector8, const TURNS: usize> Turns<V, TURNS> {
+    /// Σ (x_j - x_i)·r⁻³, weighted, in the ring's order.
+    #[inline(always)]
+    pub(in crate::forces) fn sum<const PLANAR: bool, const EVEN: bool>(&self, weights: &[Weight]) -> [V; 3] {
+        let mut sum = [V::zero(); 3];
+        for (k, weight) in weights[..TURNS].iter().enumerate() {
+            self.add_turn::<PLANAR>(&mut sum, k, weight, EVEN && k + 1 == TURNS);
+        }
+        sum
     }
-    if !half {
-        let behind = V::load(weight.behind);
+
+    /// Gravity on each body.
+    #[inline(always)]
+    pub(super) fn gravity<const PLANAR: bool, const EVEN: bool>(&self, ring: &Ring) -> [V; 3] {
+        let mut sum = [V::zero(); 3];
+        for (k, turn) in ring.turns[..TURNS].iter().enumerate() {
+            self.add_turn::<PLANAR>(&mut sum, k, &turn.strength, EVEN && k + 1 == TURNS);
+        }
+        sum
+    }
+
+    /// Adds the pulls of a turn, ahead and, unless it is `half` a turn, behind.
+    #[inline(always)]
+    fn add_turn<const PLANAR: bool>(&self, sum: &mut [V; 3], k: usize, weight: &Weight, half: bool) {
+        let components = if PLANAR { 2 } else { 3 };
+        let ahead = V::load(weight.ahead);
         for c in 0..components {
-            sum[c] = behind.multiply_subtract_from(back[c], sum[c]);
+            sum[c] = ahead.multiply_add(self.ahead[k][c], sum[c]);
+        }
+        if !half {
+            let behind = V::load(weight.behind);
+            for c in 0..components {
+                sum[c] = behind.multiply_subtract_from(self.behind[k][c], sum[c]);
+            }
         }
     }
+}
+
+/// What is between bodies at these places.
+#[inline(always)]
+pub(super) fn turns<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+    ring: &Ring,
+    place: [V; 3],
+) -> Turns<V, TURNS> {
+    let softening2 = V::load(ring.softening2_first_row);
+    let components = if PLANAR { 2 } else { 3 };
+    let turns = &ring.turns[..TURNS];
+    let mut ahead = [[V::zero(); 3]; TURNS];
+    let mut r2 = [V::zero(); TURNS];
+    for (k, turn) in turns.iter().enumerate() {
+        for c in 0..components {
+            ahead[k][c] = place[c].permute(&turn.forward) - place[c];
+        }
+        r2[k] = squared_distance::<V, PLANAR, true>(ahead[k], softening2);
+    }
+    let weight = V::inverse_cubes(r2);
+    let mut behind = [[V::zero(); 3]; TURNS];
+    for (k, turn) in turns.iter().enumerate() {
+        for c in 0..components {
+            ahead[k][c] = ahead[k][c] * weight[k];
+            if !(EVEN && k + 1 == TURNS) {
+                behind[k][c] = ahead[k][c].permute(&turn.backward);
+            }
+        }
+    }
+    Turns { weight, ahead, behind }
 }
 
 #[inline(always)]
@@ -120,49 +173,15 @@ fn kernel<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, cons
     let rows = ring.shape.rows;
     // Not copied: a copy is made with narrower instructions than it is read with.
     let (places, sums) = (V::view(q), V::view_mut(&mut *a));
-    let softening2 = V::load(ring.softening2_first_row);
     let components = if PLANAR { 2 } else { 3 };
     let mut place = [V::zero(); 3];
     for c in 0..components {
         place[c] = places[c * rows];
     }
-    let turns = &ring.turns[..TURNS];
-    let mut d = [[V::zero(); 3]; TURNS];
-    let mut r2 = [V::zero(); TURNS];
-    for (k, turn) in turns.iter().enumerate() {
-        for c in 0..components {
-            d[k][c] = place[c].permute(&turn.forward) - place[c];
-        }
-        r2[k] = squared_distance::<V, PLANAR, true>(d[k], softening2);
-    }
-    let w = V::inverse_cubes(r2);
-    let mut back = [[V::zero(); 3]; TURNS];
-    for (k, turn) in turns.iter().enumerate() {
-        for c in 0..components {
-            d[k][c] = d[k][c] * w[k];
-            if !(EVEN && k + 1 == TURNS) {
-                back[k][c] = d[k][c].permute(&turn.backward);
-            }
-        }
-    }
-    let mut sum = [V::zero(); 3];
-    for (k, turn) in turns.iter().enumerate() {
-        add_turn::<V, PLANAR>(&mut sum, (&d[k], &back[k]), &turn.strength, EVEN && k + 1 == TURNS);
-    }
+    let mut sum = turns::<V, PLANAR, TURNS, EVEN>(ring, place).gravity::<PLANAR, EVEN>(ring);
     if !first {
         for c in 0..components {
             sum[c] = sums[c * rows] + sum[c];
-        }
-    }
-    if let Some(beside) = &ring.beside {
-        let mut other = [V::zero(); 3];
-        for (k, weight) in beside.weights[..TURNS].iter().enumerate() {
-            add_turn::<V, PLANAR>(&mut other, (&d[k], &back[k]), weight, EVEN && k + 1 == TURNS);
-        }
-        let factor = V::load(beside.factor);
-        let nothing = factor.abs().less_equal(V::zero());
-        for c in 0..components {
-            sum[c] += V::select(nothing, V::zero(), factor * other[c]);
         }
     }
     for c in 0..components {
@@ -239,7 +258,6 @@ impl Force<Lanes> for Ring {
         Ok(())
     }
     fn adds(&self) -> Adds {
-        // What is beside is added after gravity, which is then first.
-        if self.beside.is_some() { Adds::Severally } else { Adds::OnceAtLast }
+        Adds::OnceAtLast
     }
 }
