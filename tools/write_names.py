@@ -17,7 +17,7 @@ BEGIN, END = (f"# written by tools/write_names.py: {word}\n" for word in ("begin
 def columns() -> list[str]:
     """The columns that can be recorded, from the words with which the core refuses another."""
     try:
-        vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]])).plan(1.0, record="?")  # type: ignore[arg-type]
+        vv.Scene(vv.RigidBody(1.0, [1.0, 1.0, 1.0])).plan(1.0, record="?")  # type: ignore[arg-type]
     except vv.InvalidInput as error:
         return re.findall(r"\b[a-z_]+\b", error.message.removeprefix("expected one of").partition(", got")[0])
     raise AssertionError("the core took '?' for a column")
@@ -49,7 +49,7 @@ def main() -> int:
     text = FILE.read_text(encoding="utf-8")
     before, rest = text.split(BEGIN)
     _, after = rest.split(END)
-    names = literal("MethodName", ["auto", *sorted(method.name for method in vv.methods())])
+    names = literal("MethodName", ["auto", *sorted({method.name for method in (*vv.methods(), *vv.rigid.methods())})])
     names += literal("SolverName", sorted(solvers()))
     names += literal("ColumnName", sorted(columns()))
     wanted = before + BEGIN + names + END + after

@@ -24,6 +24,7 @@ _HOME = {
     "AppliedTorque": "rigid_forces",
     "AttachedSpring": "rigid_springs",
     "BodyMotion": "body",
+    "BodyTurning": "body_turning",
     "CentralField": "forces",
     "CloseEncounter": "errors",
     "CompiledTorque": "rigid_forces",
@@ -100,6 +101,7 @@ __all__ = [
     "AppliedTorque",
     "AttachedSpring",
     "BodyMotion",
+    "BodyTurning",
     "CentralField",
     "CloseEncounter",
     "CompiledTorque",
@@ -187,6 +189,7 @@ if TYPE_CHECKING:
     )
     from visviva.advice import Advice, Option
     from visviva.body import BodyMotion
+    from visviva.body_turning import BodyTurning
     from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
     from visviva.ensemble import EnsembleScene, EnsembleTrajectory

@@ -42,7 +42,7 @@ class Framed(ABC):
         forces: Iterable[Force],
         t0: float,
         change: Callable[[Any], Any] | None = None,
-        **turning: ArrayLike,
+        **turning: Any,
     ) -> Self:
         """One of these parts; rigid bodies and the forces on them as `change` makes them, then turned."""
 
@@ -185,5 +185,5 @@ class Framed(ABC):
         """
         moved = self.particles._changed(position=position, velocity=velocity)
         given = {"orientation": orientation, "angular_velocity": angular_velocity}
-        turning = {name: value for name, value in given.items() if value is not None}
+        turning: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         return self._like(moved, self.forces, self.t0 if t0 is None else t0, **turning)

@@ -60,7 +60,7 @@ def rigid_of_copies(
     *,
     moved: bool,
 ) -> _core._Rigid | None:
-    """What the core is told of the rigid bodies of all copies. Held points stay where they are, unless bodies are moved."""
+    """What the core is told of the rigid bodies of all copies. Held points stay, unless bodies are moved."""
     described = scene._keywords["rigid"]
     rigid = scene.rigid_bodies
     if described is None or rigid is None:
@@ -68,12 +68,14 @@ def rigid_of_copies(
     masses = full["mass"][:, -len(rigid) :]
     if (masses != rigid.mass).any():
         raise InvalidInput("mass", "expected the masses of rigid bodies as they are: their moments belong to them")
-    told: Any = dict(described)
+    told: _core._Rigid = described.copy()
+    arrays: Any = told
     for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
-        each = turning.get(name, described[name])
-        told[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
+        each = turning.get(name, arrays[name])
+        arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
     if rigid.pivoted.any() and "orientation" in turning and not moved:
-        arms = rotate(told["orientation"], np.broadcast_to(rigid.pivot, (count, len(rigid), 3)))
+        pivot = np.nan_to_num(rigid.pivot) if rigid.pivot is not None else np.zeros((len(rigid), 3))
+        arms = rotate(told["orientation"], np.broadcast_to(pivot, (count, len(rigid), 3)))
         centers = full["position"][:, -len(rigid) :]
         held = rigid.pivoted[None, :, None]
         placed = full["position"].copy()
@@ -131,7 +133,9 @@ def saved(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]
     if any("address" in load for load in loads):
         raise InvalidInput("run", "a CompiledTorque is at its address in this process only: such a run cannot be saved")
     own = {name: getattr(rigid, name) for name in ("moments", "inertia", "pivot")}
-    return {"rigid": {"forces": loads, "names": rigid.names}}, {f"rigid/{n}": a for n, a in own.items() if a is not None}
+    return {"rigid": {"forces": loads, "names": rigid.names}}, {
+        f"rigid/{n}": a for n, a in own.items() if a is not None
+    }
 
 
 def restored(
@@ -141,13 +145,13 @@ def restored(
     if "rigid" not in header:
         return [points], []
     turning = {name: arrays[f"rigid/{name}"][0] for name in ("orientation", "angular_velocity")}
-    own = {name: arrays.get(f"rigid/{name}") for name in ("moments", "inertia", "pivot")}
+    own: dict[str, Any] = {name: arrays.get(f"rigid/{name}") for name in ("moments", "inertia", "pivot")}
     count = len(turning["orientation"])
     centers = {name: getattr(points, name)[-count:] for name in ("mass", "position", "velocity")}
     names = header["rigid"]["names"] or points.names[len(points) - count :] or None
     bodies = RigidBodies(**centers, **own, **turning, names=names)
-    kinds = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
-    forces = []
+    kinds: dict[str, Any] = {kind.kind: kind for kind in (AppliedTorque, RotationalDrag, AttachedSpring)}
+    forces: list[BodyForce] = []
     for description in header["rigid"]["forces"]:
         values = dict(description)
         forces.append(kinds[values.pop("kind")](**values))
@@ -155,7 +159,7 @@ def restored(
     return [*([points[:free]] if free else []), bodies], forces
 
 
-def turning_of(keywords: _core._Scene, chosen: int | slice) -> dict[str, NDArray[np.float64]]:
+def turning_of(keywords: _core._Scene, chosen: int | slice) -> dict[str, Any]:
     """Orientations and angular velocities of some copies; nothing without rigid bodies."""
     rigid = keywords["rigid"]
     if rigid is None:

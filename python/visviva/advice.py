@@ -126,6 +126,8 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
         raise InvalidInput("accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1")
     if of not in ("energy", "position"):
         raise InvalidInput("of", f"expected 'energy' or 'position', got {of!r}")
+    if prepared["rigid"] is not None:
+        raise InvalidInput("rigid_bodies", "trials know points only: try steps of vv.rigid.methods() by themselves")
     if closed:
         # Closed forms are right to some ulps.
         return Advice(wanted, of, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)

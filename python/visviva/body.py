@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_label
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import NDArray
 
+    from visviva.body_turning import BodyTurning
     from visviva.orbits import Elements
     from visviva.recorded import Recorded
 
@@ -79,6 +81,38 @@ class BodyMotion:
     def velocity(self) -> NDArray[np.float64]:
         """Velocities, shape (T, 3), or (B, T, 3)."""
         return self._run.velocity[..., self.index, :]
+
+    @property
+    def orientation(self) -> NDArray[np.float64]:
+        """Of a rigid body: quaternions from the body to space, shape (T, 4), or (B, T, 4)."""
+        return self._run.orientation[..., self._place, :]
+
+    @property
+    def angular_velocity(self) -> NDArray[np.float64]:
+        """Of a rigid body: along its axes, shape (T, 3), or (B, T, 3)."""
+        return self._run.angular_velocity[..., self._place, :]
+
+    @property
+    def turning(self) -> BodyTurning:
+        """Of a rigid body: angular momentum, energy, and pictures, along its principal axes.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If it is a particle, or the run is that of an ensemble.
+        """
+        from visviva.body_turning import BodyTurning
+
+        return BodyTurning(self)
+
+    @property
+    def _place(self) -> int:
+        """Its place among the rigid bodies."""
+        scene = self._run._scene
+        particles = len(scene.particles) - (0 if scene.rigid_bodies is None else len(scene.rigid_bodies))
+        if self.index < particles:
+            raise InvalidInput("body", f"expected a rigid body, but {self.name} is a particle")
+        return self.index - particles
 
     def elements(self, *, about: str | int = 0, G: float | None = None) -> Elements:
         """Its osculating elements at the output times, as of `Trajectory.elements`.

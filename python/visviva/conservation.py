@@ -68,10 +68,12 @@ class Conservation:
     ----------
     energy, momentum, angular_momentum, center_of_mass : Drift
         Scales: |E₀| (kinetic + |potential| if the energy cancels to round-off), Σ m|v|,
-        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The centre of mass is compared with uniform motion.
+        Σ m|r||v| (and the spins of rigid bodies), and the size of the system. The centre of mass is
+        compared with uniform motion.
     virial : float
         ⟨2T + Σ r·F⟩ / ⟨2T⟩ over the time recorded, T being the internal kinetic energy: tends to zero
-        in a bound system. NaN if positions or velocities were not recorded, and with rigid bodies.
+        in a bound system. NaN if positions or velocities were not recorded, and with rigid
+        bodies.
     about : str
         The reference point of the angular momentum.
     massless : int

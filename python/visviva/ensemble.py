@@ -15,8 +15,8 @@ from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, left_behind, of_copies
 from visviva._keywords import frozen, known_keywords
 from visviva._own_forces import described, forces_of_copies
-from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
 from visviva._text import count
+from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
 from visviva.errors import InvalidInput
 from visviva.particles import Particles, radius_array, read_only
 from visviva.recorded import Recorded
@@ -352,6 +352,6 @@ def _rebuild(
     radius: NDArray[np.float64] | None = None,
     turning: dict[str, NDArray[np.float64]] | None = None,
 ) -> EnsembleScene:
-    own = turning or {}
+    own: dict[str, Any] = turning or {}
     copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
     return attached(copies if forces is None else copies._own(forces), continuation)

@@ -74,8 +74,9 @@ class Method:
         >>> (6 * rk4.coefficients["b"]).tolist()
         [1.0, 2.0, 2.0, 1.0]
         """
-        (tables,) = (row["coefficients"] for row in _core.methods() if row["name"] == self.name)
-        return {name: _triangle(rows) if name == "a" else np.array(rows[0]) for name, rows in tables.items()}
+        rows = {row["name"]: row["coefficients"] for row in (*_core.methods(), *_core.methods(rigid=True))}
+        tables = rows[self.name].items()
+        return {name: _triangle(each) if name == "a" else np.array(each[0]) for name, each in tables}
 
 
 def _triangle(rows: list[list[float]]) -> NDArray[np.float64]:
@@ -100,4 +101,9 @@ def methods() -> list[Method]:
     >>> [method.name for method in vv.methods() if method.adaptive and method.order == 8]
     ['dop853']
     """
-    return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods()]
+    return _records(rigid=False)
+
+
+def _records(*, rigid: bool) -> list[Method]:
+    """The methods of scenes, or those that step rigid bodies."""
+    return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid)]

@@ -88,7 +88,8 @@ def conserved(
             raise InvalidInput("virial", "it is not known of rigid bodies that torques turn")
         if turning is None:
             turning = (rigid["orientation"], rigid["angular_velocity"])
-        own = (rigid, *(np.broadcast_to(each, (len(position), *each.shape[1:])) for each in turning))
+        turns, spins = (np.broadcast_to(each, (len(position), *each.shape[1:])) for each in turning)
+        own = (rigid, turns, spins)
     return _core.conserved(
         mass=scene.particles.mass,
         forces=scene._keywords["forces"],

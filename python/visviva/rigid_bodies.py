@@ -298,7 +298,9 @@ class RigidBodies:
         return cls(
             all_of("mass", None),
             moments=all_of("moments", None) if by_moments else None,
-            inertia=None if by_moments else all_of("inertia", lambda part: np.apply_along_axis(np.diag, -1, part.moments)),
+            inertia=None
+            if by_moments
+            else all_of("inertia", lambda part: np.apply_along_axis(np.diag, -1, part.moments)),
             pivot=all_of("pivot", lambda part: np.full((len(part), 3), np.nan)),
             names=names if any(part.names for part in parts) else None,
             **{name: all_of(name, None) for name in ("position", "velocity", "orientation", "angular_velocity")},

@@ -38,7 +38,7 @@ if TYPE_CHECKING:
     from visviva.invariants import Invariants
     from visviva.orbits import Elements
 
-    Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
+    _Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
 
 __all__ = ["Scene"]
 
@@ -95,7 +95,7 @@ class Scene(Runnable[Trajectory], Framed):
 
     def __init__(
         self,
-        *parts: Part | Sequence[Part],
+        *parts: _Part | Sequence[_Part],
         particles: Particles | None = None,
         forces: Force | BodyForce | Sequence[Force | BodyForce] = (),
         t0: float = 0.0,
@@ -300,7 +300,7 @@ class Scene(Runnable[Trajectory], Framed):
         from visviva.request import PlanRequest
 
         asked = PlanRequest(t).to_core(self._keywords, self._names)
-        return advise(self._keywords, asked, accuracy, of, closed=self.plan(t).closed_form)
+        return advise(self._keywords, asked, accuracy, of, closed=self._turns_freely and self.plan(t).closed_form)
 
     def acceleration(self) -> NDArray[np.float64]:
         """Accelerations of the bodies at the scene's state and time, shape (N, 3).
@@ -395,7 +395,7 @@ class Scene(Runnable[Trajectory], Framed):
         forces: Iterable[Force],
         t0: float,
         change: Callable[[Any], Any] | None = None,
-        **turning: ArrayLike,
+        **turning: Any,
     ) -> Scene:
         scene = object.__new__(type(self))
         if self.rigid_bodies is None:

@@ -66,8 +66,8 @@ def _size(vectors: NDArray[np.float64]) -> float:
 def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float, float]:
     """The event's function of a state, and below what it is zero to round-off.
 
-    Coordinates are rounded once, and by what bodies move in a rounding of the step, which the run's span bounds: about an
-    origin that goes with most of them, so a body that rests moves there as fast as they do.
+    Coordinates are rounded once, and by what bodies move in a rounding of the step, which the run's span bounds: about
+    an origin that goes with most of them, so a body that rests moves there as fast as they do.
     """
     told = dict(event.parameters)
     x, v = scene.particles.position, scene.particles.velocity

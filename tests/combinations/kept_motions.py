@@ -145,8 +145,8 @@ KEPT_MOTIONS: list[tuple[str, Recipe]] = [
         "declared_invariants_hold",
         Recipe(bodies=25, forces=(("CentralField", 0), ("SampledDrag", 0)), tame=False, steps=1, backward=True),
     ),
-    # The first expansion of a series was in so short a unit of time that its coefficients lost digits: a velocity next to
-    # nothing, 1e87 away.
+    # The first expansion of a series was in so short a unit of time that its coefficients lost digits: a velocity next
+    # to nothing, 1e87 away.
     (
         "units_of_powers_of_two_change_no_bit",
         Recipe(

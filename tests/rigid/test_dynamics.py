@@ -1,6 +1,6 @@
 """Rigid bodies in a scene, stepped: what runs promise of points they promise of bodies that turn.
 
-Numbers of the top: Brüls, Cardona & Arnold, Mech. Mach. Theory 48 (2012) 121, integrated to 34 digits; of the free body:
+Numbers of the top: Brüls, Cardona & Arnold, Mech. Mach. Theory 48 (2012) 121, to 34 digits; of the free body:
 Hairer & Vilmart, J. Phys. A 39 (2006) 13225, likewise.
 """
 
@@ -24,9 +24,7 @@ FREE_100 = np.array([-0.401161607031241803, 0.3660001367406887, 0.05083995291587
 
 
 def top() -> vv.Scene:
-    return vv.Scene(
-        vv.RigidBody(15.0, position=[0, 1, 0], pivot=[0, -1, 0], **TOP), vv.UniformField([0.0, 0.0, -9.81])
-    )
+    return vv.Scene(vv.RigidBody(15.0, position=[0, 1, 0], pivot=[0, -1, 0], **TOP), vv.UniformField([0.0, 0.0, -9.81]))
 
 
 def pair(scale: float = 1.0) -> list[vv.RigidBodies]:
@@ -142,7 +140,9 @@ def test_what_should_be_kept_is_kept(name: str) -> None:
 def test_outputs_do_not_steer(name: str) -> None:
     scene = SCENES[name]()
     few = scene.run(t=1.0, method="kahan_li6", dt=0.02)
-    many = scene.run(t=np.linspace(0.0, 1.0, 38), method="kahan_li6", dt=0.02, record=("orientation", "position", "energy"))
+    many = scene.run(
+        t=np.linspace(0.0, 1.0, 38), method="kahan_li6", dt=0.02, record=("orientation", "position", "energy")
+    )
     assert (few.orientation[-1] == many.orientation[-1]).all()
     assert (few.position[-1] == many.position[-1]).all()
     assert many.energy[-1] == few.energy[-1]

@@ -20,6 +20,7 @@ from visviva.rigid._mass import (
     rotate_tensor,
 )
 from visviva.rigid._mesh import load_mesh, mesh
+from visviva.rigid._methods import methods
 from visviva.rigid._orientation import (
     from_scipy,
     matrix,
@@ -75,6 +76,7 @@ __all__ = [
     "load_mesh",
     "matrix",
     "mesh",
+    "methods",
     "parallel_axis",
     "particles",
     "period",

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from visviva.body_turning import BodyTurning
     from visviva.rigid._free import FreeRotation
     from visviva.rigid._top_motion import TopMotion
 
@@ -28,7 +29,7 @@ _LETTERS = "xyz"
 _POINTS = 4000
 
 
-def plot_free_rotation(motion: FreeRotation, kind: str) -> Figure:
+def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str) -> Figure:
     """A picture of a free rotation; see `FreeRotation.plot`."""
     return _plotted(motion, kind, {"polhode": polhode, "herpolhode": herpolhode, "axes": traces, "components": spin})
 
@@ -57,7 +58,7 @@ def _thinned(motion: Any) -> slice:
     return slice(None, None, max(1, len(motion.t) // _POINTS))
 
 
-def polhode(axes: Any, motion: FreeRotation) -> None:
+def polhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     """The path of the angular velocity on the inertia ellipsoid Σ I x² = 1, as the body has it."""
     if not np.all(motion.moments > 0.0):
         raise InvalidInput("plot", "expected three moments above 0: the inertia ellipsoid of a rod has no end")
@@ -71,7 +72,7 @@ def polhode(axes: Any, motion: FreeRotation) -> None:
     axes.set(**{f"{letter}label": f"ω{letter} / √2T" for letter in _LETTERS}, title="polhode")
 
 
-def herpolhode(axes: Any, motion: FreeRotation) -> None:
+def herpolhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     """The path of the angular velocity on the plane across the angular momentum, which stays where it is in space."""
     momentum = motion.angular_momentum[0]
     _directions(momentum[None])
@@ -84,7 +85,7 @@ def herpolhode(axes: Any, motion: FreeRotation) -> None:
     axes.set(xlabel="ω across L", ylabel="ω across L", title="herpolhode")
 
 
-def traces(axes: Any, motion: FreeRotation) -> None:
+def traces(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     """Where the body's three axes point in space, on the unit sphere, and the angular momentum."""
     columns = matrix(motion.orientation)[_thinned(motion)]
     _ellipsoid(axes, np.ones(3))
@@ -97,7 +98,7 @@ def traces(axes: Any, motion: FreeRotation) -> None:
     axes.legend(fontsize="small", loc="upper right")
 
 
-def spin(axes: Any, motion: FreeRotation) -> None:
+def spin(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     """The angular velocity along the body's axes against time."""
     chosen = _thinned(motion)
     for at, letter in enumerate(_LETTERS):

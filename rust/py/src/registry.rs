@@ -14,12 +14,14 @@ use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
 use visviva_core::potentials::{Potential, screening};
 use visviva_core::registry;
+use visviva_core::scene::plan::steps_bodies;
 use visviva_core::words::unknown;
 
-/// What every integration method declares about itself.
+/// What every integration method declares about itself, or every one that steps rigid bodies.
 #[pyfunction]
-pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
-    let row = |method: &&'static visviva_core::ode::Method| {
+#[pyo3(signature = (rigid=false))]
+pub(crate) fn methods(py: Python<'_>, rigid: bool) -> PyResult<Vec<Bound<'_, PyDict>>> {
+    let row = |method: &'static visviva_core::ode::Method| {
         let dict = PyDict::new(py);
         dict.set_item("name", method.name)?;
         dict.set_item("summary", method.summary)?;
@@ -39,7 +41,9 @@ pub(crate) fn methods(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
         dict.set_item("coefficients", coefficients)?;
         Ok(dict)
     };
-    registry::METHODS.iter().map(row).collect()
+    let own = registry::BODY_METHODS.iter().map(|(method, _)| *method);
+    let all = registry::METHODS.iter().copied().filter(|method| !rigid || steps_bodies(method));
+    all.chain(own.filter(|_| rigid)).map(row).collect()
 }
 
 /// What every potential declares about itself.

@@ -12,10 +12,10 @@ use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::{compute, is_ctrl_c};
 use input::{Array, Asked, forces as described, point, points, snapshot};
-use rigid::{Described, Turning};
 use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};
+use rigid::{Described, Turning};
 use visviva_core::Error;
 use visviva_core::conservation::PreciseBodies;
 use visviva_core::conservation::columns::{COLUMNS, Snapshot, column};
@@ -102,7 +102,8 @@ pub(crate) fn conserved<'py>(
             for (column, values) in columns.iter().zip(&mut values) {
                 let own = state.value(column)?;
                 let places = &position[time * particles..(time + 1) * particles];
-                let share = turning.as_ref().map_or([0.0; 3], |of| of.share(column.name, time, &mass, places));
+                let share =
+                    turning.as_ref().map_or([0.0; 3], |of| of.share(column.name, time, &mass, places));
                 values.extend(own.iter().zip(share).map(|(own, share)| own + share).take(column.width));
             }
             ticker.tick()?;

@@ -121,5 +121,8 @@ fn may_touch(scene: &Scene, copy: usize) -> bool {
 
 /// What collisions are asked for and may happen.
 pub fn wanted(scene: &Scene, request: &Request) -> Option<Collisions> {
-    request.collisions.filter(|_| scene.rigid.is_none()).filter(|_| (0..scene.copies).any(|copy| may_touch(scene, copy)))
+    request
+        .collisions
+        .filter(|_| scene.rigid.is_none())
+        .filter(|_| (0..scene.copies).any(|copy| may_touch(scene, copy)))
 }

@@ -15,7 +15,7 @@ mod units;
 pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
-pub use turning::Turning;
+pub use turning::{Turning, steps_bodies};
 
 use super::Scene;
 use super::closed_form::rows_per_chunk;

@@ -20,12 +20,12 @@ use super::room::give_back;
 use crate::error::{Error, Result};
 use crate::memory;
 use crate::parallel::Ticker;
+use crate::rigid::quaternion::Quaternion;
 use begun::Begun;
 pub use begun::plan;
 pub(super) use begun::plan_through;
 use derived::derive;
 pub use events::Events;
-use crate::rigid::quaternion::Quaternion;
 use reached::gather;
 use turning::turn_freely;
 
@@ -180,7 +180,11 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
     let mut reached = Reached::start(scene);
     // A method that chooses its steps has no nodes, and a closed form holds nothing.
     let plans = parts.iter().map(|part| part.plan);
-    let held = if plan.dt.is_some() && !plan.turning.steps() { Held::room(scene, plan.method, plans)? } else { None };
+    let held = if plan.dt.is_some() && !plan.turning.steps() {
+        Held::room(scene, plan.method, plans)?
+    } else {
+        None
+    };
     let mut kept = held.map(|held| Kept { nodes: vec![u64::MAX; scene.copies], t0: plan.t0, held });
     let mut missing = Vec::new();
     let mut events = Events::default();

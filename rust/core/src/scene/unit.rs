@@ -12,8 +12,8 @@ mod size;
 mod turning;
 
 pub use forces::{Kernel, dynamics, uncoupled};
-pub(super) use turning::assembled;
 pub use turning::Turned;
+pub(super) use turning::assembled;
 
 use super::Scene;
 use super::frame::{Origin, Units};

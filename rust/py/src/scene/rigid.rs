@@ -44,7 +44,11 @@ impl Described<'_> {
             pivoted: self.pivoted.repeat(copies),
             orientation: quaternions(copied("orientation", &self.orientation, four)?.0),
             angular_velocity: points(&copied("angular_velocity", &self.angular_velocity, three)?.0),
-            loads: self.loads.iter().map(|load| described(load.cast::<PyDict>()?)).collect::<PyResult<_>>()?,
+            loads: self
+                .loads
+                .iter()
+                .map(|load| described(load.cast::<PyDict>()?))
+                .collect::<PyResult<_>>()?,
         })
     }
 }
@@ -107,9 +111,10 @@ fn described(load: &Bound<'_, PyDict>) -> PyResult<Load> {
             in_body: value("frame")?.extract::<String>()? == "body",
         }),
         "rotational_drag" => Ok(Load::Drag { body: body("body")?, coefficient: number("coefficient")? }),
-        "compiled_torque" => {
-            Ok(Load::Function { body: body("body")?, function: called(value("address")?.extract::<usize>()?) })
-        }
+        "compiled_torque" => Ok(Load::Function {
+            body: body("body")?,
+            function: called(value("address")?.extract::<usize>()?),
+        }),
         "attached_spring" => {
             let own = End::Body(value("body")?.extract()?, point("point")?.unwrap_or_default());
             let other = match (body("to")?, body("particle")?, point("anchor")?) {
@@ -124,7 +129,9 @@ fn described(load: &Bound<'_, PyDict>) -> PyResult<Load> {
                 damping: number("damping")?,
             })
         }
-        other => Err(raised(py, Error::invalid("forces", format!("a load of the kind {other} is not known")))),
+        other => {
+            Err(raised(py, Error::invalid("forces", format!("a load of the kind {other} is not known"))))
+        }
     }
 }
 

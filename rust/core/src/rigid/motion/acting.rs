@@ -166,16 +166,21 @@ impl Loads {
                             }
                             End::Particle(index) => {
                                 let slot = members.iter().position(|&member| member == index).unwrap_or(0);
-                                let inverse = lane_by_lane(systems.mass.len(), |system| 1.0 / systems.mass[system][slot]);
+                                let inverse = lane_by_lane(systems.mass.len(), |system| {
+                                    1.0 / systems.mass[system][slot]
+                                });
                                 LaneEnd::Point(systems.row + slot, inverse)
                             }
-                            End::Anchor(point) => LaneEnd::Anchor(point.map(|x| Lanes::splat(units.take(x, [1, 0, 0])))),
+                            End::Anchor(point) => {
+                                LaneEnd::Anchor(point.map(|x| Lanes::splat(units.take(x, [1, 0, 0]))))
+                            }
                         });
                         self.acting.push(Acting::Spring {
                             ends,
                             stiffness: Lanes::splat(units.take(*stiffness, [0, 1, -2])),
                             length: Lanes::splat(units.take(*length, [1, 0, 0])),
-                            damping: (*damping != 0.0).then(|| Lanes::splat(units.take(*damping, [0, 1, -1]))),
+                            damping: (*damping != 0.0)
+                                .then(|| Lanes::splat(units.take(*damping, [0, 1, -1]))),
                         });
                     }
                 }
@@ -257,9 +262,12 @@ pub(super) fn is_sphere(bodies: &RigidBodies, at: usize) -> bool {
 }
 
 fn tensor(bodies: &RigidBodies, starts: &[Vec<Start>], place: usize, units: Units) -> [[Lanes; 3]; 3] {
-    let each: Vec<[[f64; 3]; 3]> =
-        starts.iter().map(|of| about_center(bodies, of[place].at, scale(of[place].mass(), units.mass))).collect();
-    let part = |i: usize, j: usize| lane_by_lane(each.len(), |system| units.take(each[system][i][j], [2, 1, 0]));
+    let each: Vec<[[f64; 3]; 3]> = starts
+        .iter()
+        .map(|of| about_center(bodies, of[place].at, scale(of[place].mass(), units.mass)))
+        .collect();
+    let part =
+        |i: usize, j: usize| lane_by_lane(each.len(), |system| units.take(each[system][i][j], [2, 1, 0]));
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| part(i, j)))
 }
 
@@ -330,8 +338,7 @@ fn end<V: View<Lanes>>(end: &LaneEnd, sight: &Sight<'_, V>, bodies: &[LaneBody],
             }
             let turning = cross(sight.angular_velocity(*body, &of.inverse), arm);
             let velocity = sight.velocity(of.row);
-            let velocity =
-                [velocity[0] + turning[0], velocity[1] + turning[1], velocity[2] + turning[2]];
+            let velocity = [velocity[0] + turning[0], velocity[1] + turning[1], velocity[2] + turning[2]];
             [at, velocity, arm]
         }
     }
@@ -376,8 +383,7 @@ impl Pass<Lanes> for Apply<'_, '_> {
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
         let Arrangement { rows, bodies } = self.seen.arrangement;
-        let sight =
-            Sight { rows: *rows, points: 3 * rows, q: V::view(self.seen.q), v: V::view(self.seen.v) };
+        let sight = Sight { rows: *rows, points: 3 * rows, q: V::view(self.seen.q), v: V::view(self.seen.v) };
         let (a, torque) = (V::view_mut(self.a), V::view_mut(self.torque));
         for acting in self.loads {
             match acting {

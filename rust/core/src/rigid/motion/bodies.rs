@@ -255,7 +255,9 @@ impl LaneBody {
             pivoted: starts.iter().any(|start| start.pivoted),
             discrete: match free {
                 // A rod has no inverse of its moment, and is symmetric.
-                Free::Discrete(order) if starts.iter().all(|start| start.moments.iter().all(|of| *of > 0.0)) => {
+                Free::Discrete(order)
+                    if starts.iter().all(|start| start.moments.iter().all(|of| *of > 0.0)) =>
+                {
                     Some(Box::new(MoserVeselov::new(order, &vector(|start| start.moments))))
                 }
                 _ => None,

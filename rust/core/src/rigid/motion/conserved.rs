@@ -40,7 +40,11 @@ impl Scenery<'_> {
     /// The number of a body in the batch, the orientation of its principal axes, and its angular velocity along them.
     fn principal(&self, body: usize) -> (usize, Quaternion, [f64; 3]) {
         let at = self.copy * self.bodies.count + body;
-        let state = RigidBodies::to_principal(self.bodies.axes[at], self.orientation[body], self.angular_velocity[body]);
+        let state = RigidBodies::to_principal(
+            self.bodies.axes[at],
+            self.orientation[body],
+            self.angular_velocity[body],
+        );
         (at, state.0, state.1)
     }
 

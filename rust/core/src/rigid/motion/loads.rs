@@ -156,9 +156,10 @@ impl Load {
                         exists(*body)
                     }
                     End::Particle(index) if *index < particles => Ok(()),
-                    End::Particle(index) => {
-                        Err(Error::invalid("particle", format!("expected one of {particles} bodies, got {index}")))
-                    }
+                    End::Particle(index) => Err(Error::invalid(
+                        "particle",
+                        format!("expected one of {particles} bodies, got {index}"),
+                    )),
                     End::Anchor(point) => finite("anchor", point),
                 })
             }

@@ -68,12 +68,7 @@ impl BodyRungeKutta {
             at.copy_from(state);
             if stage > 0 {
                 sum(row, &rates[..stage], sums);
-                Lanes::pass(Apply {
-                    arrangement: &pulls.arrangement,
-                    sums,
-                    h: step,
-                    state: at,
-                });
+                Lanes::pass(Apply { arrangement: &pulls.arrangement, sums, h: step, state: at });
                 hold(&pulls.arrangement, at);
                 settle_held(&pulls.arrangement, at);
             }
@@ -100,7 +95,11 @@ fn sum(weights: &[DoubleDouble], rates: &[[Vec<Lanes>; 2]], sums: &mut [Vec<Lane
     for (half, sum) in sums.iter_mut().enumerate() {
         sum.fill(Lanes::zero());
         for (weight, rate) in weights.iter().zip(rates).filter(|(weight, _)| weight.to_f64() != 0.0) {
-            Lanes::pass(AddTimes { into: sum, what: &rate[half], factor: Lanes::from_double_double(*weight) });
+            Lanes::pass(AddTimes {
+                into: sum,
+                what: &rate[half],
+                factor: Lanes::from_double_double(*weight),
+            });
         }
     }
 }
@@ -193,8 +192,10 @@ impl Pass<Lanes> for Apply<'_> {
         let (sums, (q, rest)) = (V::view(of_q), V::pair_mut(q));
         for body in 0..self.arrangement.bodies.len() {
             let at = self.arrangement.at(body);
-            let (from, left) =
-                ([q[at], q[at + 1], q[at + 2], q[at + 3]], [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]]);
+            let (from, left) = (
+                [q[at], q[at + 1], q[at + 2], q[at + 3]],
+                [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]],
+            );
             let turn = rotation(times([sums[at], sums[at + 1], sums[at + 2]], half));
             // Seen from the body, as all turns that are added to an orientation.
             let own = turned_back(from, [turn[0], turn[1], turn[2]]);
@@ -235,12 +236,7 @@ impl Stepper<Lanes> for BodyRungeKutta {
 }
 
 #[inline(always)]
-fn advance<V: View<Lanes>>(
-    y: PairMut<'_, Lanes>,
-    rates: &[Lanes],
-    h: V,
-    which: core::ops::Range<usize>,
-) {
+fn advance<V: View<Lanes>>(y: PairMut<'_, Lanes>, rates: &[Lanes], h: V, which: core::ops::Range<usize>) {
     let (y, rest) = V::pair_mut(y);
     let rates = V::view(rates);
     for at in which {

@@ -79,11 +79,7 @@ pub struct BodySplitting {
 
 impl BodySplitting {
     /// The method `table` with step `h`.
-    pub fn new(
-        table: &'static Splitting,
-        h: f64,
-        (arrangement, loads): (Arrangement, Loads),
-    ) -> Self {
+    pub fn new(table: &'static Splitting, h: f64, (arrangement, loads): (Arrangement, Loads)) -> Self {
         let mut step = Self {
             table,
             h,

@@ -89,8 +89,12 @@ pub fn rotation<S: Real>(half: [S; 3]) -> [S; 4] {
     let mut left = S::zero().less(doublings);
     while left.any() {
         let twice = S::splat(2.0) * (one + turn[3]);
-        let doubled =
-            [turn[0] * twice, turn[1] * twice, turn[2] * twice, S::splat(2.0) * turn[3] * (S::splat(2.0) + turn[3])];
+        let doubled = [
+            turn[0] * twice,
+            turn[1] * twice,
+            turn[2] * twice,
+            S::splat(2.0) * turn[3] * (S::splat(2.0) + turn[3]),
+        ];
         for c in 0..4 {
             turn[c] = S::select(left, doubled[c], turn[c]);
         }
@@ -155,11 +159,8 @@ fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) 
     let (m, rest) = room.split_at_mut(3 * LENGTH);
     let (rate, q) = rest.split_at_mut(3 * LENGTH);
     let q = &mut q[..4 * LENGTH];
-    let differences = [
-        h * (inverse[2] - inverse[1]),
-        h * (inverse[0] - inverse[2]),
-        h * (inverse[1] - inverse[0]),
-    ];
+    let differences =
+        [h * (inverse[2] - inverse[1]), h * (inverse[0] - inverse[2]), h * (inverse[1] - inverse[0])];
     for c in 0..3 {
         m[c * LENGTH] = momentum[c];
         rate[c * LENGTH] = half * (inverse[c] * momentum[c]);
@@ -184,7 +185,10 @@ fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) 
             turning[0] = w.multiply_add(a, y.multiply_add(c, z.multiply_subtract_from(b, turning[0])));
             turning[1] = w.multiply_add(b, z.multiply_add(a, x.multiply_subtract_from(c, turning[1])));
             turning[2] = w.multiply_add(c, x.multiply_add(b, y.multiply_subtract_from(a, turning[2])));
-            turning[3] = x.multiply_subtract_from(a, y.multiply_subtract_from(b, z.multiply_subtract_from(c, turning[3])));
+            turning[3] = x.multiply_subtract_from(
+                a,
+                y.multiply_subtract_from(b, z.multiply_subtract_from(c, turning[3])),
+            );
         }
         order += 1;
         let per = S::splat(1.0 / order as f64);
@@ -250,8 +254,10 @@ pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 
         to[c] = q[c] + increment;
         left[c] = increment - (to[c] - q[c]);
     }
-    let square = to[0].multiply_add(to[0], to[1].multiply_add(to[1], to[2].multiply_add(to[2], to[3] * to[3])));
-    let twice = to[0].multiply_add(left[0], to[1].multiply_add(left[1], to[2].multiply_add(left[2], to[3] * left[3])));
+    let square =
+        to[0].multiply_add(to[0], to[1].multiply_add(to[1], to[2].multiply_add(to[2], to[3] * to[3])));
+    let twice = to[0]
+        .multiply_add(left[0], to[1].multiply_add(left[1], to[2].multiply_add(left[2], to[3] * left[3])));
     let missing = S::splat(0.5) * ((S::one() - square) - (twice + twice));
     for c in 0..4 {
         let increment = to[c].multiply_add(missing, left[c]);

@@ -99,7 +99,17 @@ impl Job<'_> {
             states.push([entry.position, entry.velocity]);
         }
         let turned = unit.turned(self.scene, state, lane);
-        Report { unit: unit.unit.clone(), ending, rows, counts, time, states, turned, found: Vec::new(), held: None }
+        Report {
+            unit: unit.unit.clone(),
+            ending,
+            rows,
+            counts,
+            time,
+            states,
+            turned,
+            found: Vec::new(),
+            held: None,
+        }
     }
 
     /// The report of a unit that was interrupted before it began: where it was at the start.

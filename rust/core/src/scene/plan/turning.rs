@@ -53,6 +53,11 @@ const fn serves(method: &Method, velocities: bool) -> bool {
     }
 }
 
+/// Whether a method can step bodies that turn.
+pub const fn steps_bodies(method: &Method) -> bool {
+    serves(method, false)
+}
+
 /// Refuses what bodies that turn cannot be run with.
 ///
 /// # Errors
@@ -66,8 +71,9 @@ pub(super) fn check(
 ) -> Result<()> {
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let looking = bodies.loads.iter().find(|load| load.needs_velocity()).map(Load::name);
-    let looking =
-        looking.or_else(|| forces.iter().find(|force| force.needs().velocities()).map(|f| f.declaration().class_name));
+    let looking = looking.or_else(|| {
+        forces.iter().find(|force| force.needs().velocities()).map(|f| f.declaration().class_name)
+    });
     if automatic || !serves(method, looking.is_some()) {
         let all = METHODS.iter().copied().chain(BODY_METHODS.iter().map(|(method, _)| *method));
         let names = all.filter(|method| serves(method, looking.is_some())).map(|method| method.name);
@@ -86,7 +92,8 @@ pub(super) fn check(
         let message = "expected None for rigid bodies that torques turn";
         return Err(Error::invalid("time_transformation", message));
     }
-    let softened = forces.iter().any(|force| force.as_newtonian().is_some_and(|(_, softening)| softening != 0.0));
+    let softened =
+        forces.iter().any(|force| force.as_newtonian().is_some_and(|(_, softening)| softening != 0.0));
     if softened && bodies.any_shape() {
         let message = "expected 0 beside rigid bodies that are no spheres, whose shape is not softened";
         return Err(Error::invalid("softening", message));

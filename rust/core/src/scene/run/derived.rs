@@ -2,9 +2,9 @@
 
 use super::super::Scene;
 use super::super::columns::{Columns, Derived};
+use super::turning::Turning;
 use crate::conservation::columns::Snapshot;
 use crate::error::Result;
-use super::turning::Turning;
 use crate::forces::bodies::PreciseBodies;
 use crate::parallel::{Ticker, for_chunks};
 

@@ -142,9 +142,11 @@ fn bring_together(
                 reached.velocity[place] = point(&columns.velocity);
             }
             for body in 0..columns.rigid {
-                let (from, into) = ((copy * columns.times + row) * columns.rigid + body, copy * columns.rigid + body);
+                let (from, into) =
+                    ((copy * columns.times + row) * columns.rigid + body, copy * columns.rigid + body);
                 reached.orientation[into] = core::array::from_fn(|c| columns.orientation[4 * from + c]);
-                reached.angular_velocity[into] = core::array::from_fn(|c| columns.angular_velocity[3 * from + c]);
+                reached.angular_velocity[into] =
+                    core::array::from_fn(|c| columns.angular_velocity[3 * from + c]);
             }
         }
         None => {

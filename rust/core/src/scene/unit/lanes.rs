@@ -79,9 +79,9 @@ impl Prepared {
         let rows = self.rows_in(state.q().len());
         self.turning_is_finite(state, unit_lane)
             && (0..self.position.len()).all(|slot| {
-            let (row, lane) = self.locate(slot, unit_lane);
-            (0..self.shape.components).all(|c| state.q()[c * rows + row].0[lane].is_finite())
-        })
+                let (row, lane) = self.locate(slot, unit_lane);
+                (0..self.shape.components).all(|c| state.q()[c * rows + row].0[lane].is_finite())
+            })
     }
 
     /// What a block that lies as the coordinates do holds of a body.

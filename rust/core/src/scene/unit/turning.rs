@@ -74,7 +74,13 @@ impl Prepared {
     }
 
     /// Reads a rigid body off a state.
-    fn read_turning(&self, bodies: &RigidBodies, place: usize, state: &State<Lanes>, unit_lane: usize) -> Turned {
+    fn read_turning(
+        &self,
+        bodies: &RigidBodies,
+        place: usize,
+        state: &State<Lanes>,
+        unit_lane: usize,
+    ) -> Turned {
         let (at, lane) = self.turning_at(place, state.q().len(), unit_lane);
         let start = &self.starts[place];
         let q: Quaternion = core::array::from_fn(|c| state.q()[at + c].0[lane]);
@@ -85,7 +91,12 @@ impl Prepared {
     }
 
     /// The rigid bodies among those that are recorded, in their order.
-    pub(in crate::scene) fn turned(&self, scene: &Scene, state: &State<Lanes>, unit_lane: usize) -> Vec<Turned> {
+    pub(in crate::scene) fn turned(
+        &self,
+        scene: &Scene,
+        state: &State<Lanes>,
+        unit_lane: usize,
+    ) -> Vec<Turned> {
         let Some(bodies) = &scene.rigid else { return Vec::new() };
         (0..self.starts.len()).map(|place| self.read_turning(bodies, place, state, unit_lane)).collect()
     }
@@ -125,7 +136,8 @@ pub(in crate::scene) fn assembled(
         let row = block * first.shape.rows;
         let starts: Vec<Vec<Start>> = units.iter().map(|unit| unit.starts.clone()).collect();
         let mut of_block = Vec::new();
-        let slots = (0..first.unit.bodies.len()).filter(|&slot| plan.rigid_place(first.unit.bodies[slot]).is_some());
+        let slots =
+            (0..first.unit.bodies.len()).filter(|&slot| plan.rigid_place(first.unit.bodies[slot]).is_some());
         for (place, slot) in slots.enumerate() {
             let of_lanes: Vec<Start> = starts.iter().map(|of| of[place]).collect();
             of_block.push(LaneBody::new(free, &of_lanes, row + slot));

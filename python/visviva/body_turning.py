@@ -1,0 +1,135 @@
+"""How one rigid body of a run turns: what is conserved, and pictures of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from visviva._keywords import frozen, known_keywords
+from visviva.errors import InvalidInput
+from visviva.rigid._orientation import quaternion_product, rotate, rotate_back
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from visviva.body import BodyMotion
+
+__all__ = ["BodyTurning"]
+
+
+@known_keywords
+@frozen
+class BodyTurning:
+    """How a rigid body turns along a run. Made by ``out["name"].turning``.
+
+    Attributes
+    ----------
+    t : ndarray, shape (T,)
+    moments : ndarray, shape (3,)
+        Principal moments about the center of mass, or about the point that is held; axes are the principal ones here.
+    orientation : ndarray, shape (T, 4)
+        Quaternions (x, y, z, w) from the principal axes to space.
+    angular_velocity : ndarray, shape (T, 3)
+        Along the principal axes.
+    body_angular_momentum : ndarray, shape (T, 3)
+        Likewise, about the center of mass or the point that is held.
+    angular_momentum : ndarray, shape (T, 3)
+        The same in space.
+    energy : ndarray, shape (T,)
+        ½ ω·I ω.
+    casimir : ndarray, shape (T,)
+        ``|L|²``, which no torque-free motion changes, whatever the moments.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1e-3, 1.0, 1e-3], name="book")
+    >>> turning = vv.Scene(book).run(t=np.linspace(0.0, 50.0, 501))["book"].turning
+    >>> bool(np.ptp(turning.casimir) < 1e-14), turning.plot("polhode").axes[0].get_title()
+    (True, 'polhode')
+    """
+
+    __slots__ = ("_motion", "angular_velocity", "moments", "orientation", "t")
+
+    t: NDArray[np.float64]
+    moments: NDArray[np.float64]
+    orientation: NDArray[np.float64]
+    angular_velocity: NDArray[np.float64]
+    _motion: BodyMotion
+
+    def __init__(self, motion: BodyMotion) -> None:
+        run = motion._run
+        if run._start._is_ensemble:
+            raise InvalidInput("turning", "expected the run of one member: out[i] of an ensemble has them")
+        rigid = run._scene.rigid_bodies
+        place = motion.index - len(run._scene.particles) + (0 if rigid is None else len(rigid))
+        if rigid is None or place < 0:
+            raise InvalidInput("body", f"expected a rigid body, but {motion.name} is a particle")
+        axes = rigid.axes[place]
+        values = {
+            "_motion": motion,
+            "t": motion.t,
+            "moments": rigid.principal_moments[place],
+            "orientation": quaternion_product(run.orientation[:, place], axes),
+            "angular_velocity": rotate_back(axes, run.angular_velocity[:, place]),
+        }
+        for name, value in values.items():
+            if isinstance(value, np.ndarray):
+                value.setflags(write=False)
+            object.__setattr__(self, name, value)
+
+    def __repr__(self) -> str:
+        return f"BodyTurning({self._motion.name!r}, {len(self.t)} times)"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), (self._motion,)
+
+    @property
+    def body_angular_momentum(self) -> NDArray[np.float64]:
+        """Along the principal axes, (T, 3)."""
+        return self.moments * self.angular_velocity
+
+    @property
+    def angular_momentum(self) -> NDArray[np.float64]:
+        """In space, (T, 3)."""
+        return rotate(self.orientation, self.body_angular_momentum)
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """½ ω·I ω, (T,)."""
+        value: NDArray[np.float64] = 0.5 * (self.body_angular_momentum * self.angular_velocity).sum(axis=-1)
+        return value
+
+    @property
+    def casimir(self) -> NDArray[np.float64]:
+        """|L|², (T,)."""
+        value: NDArray[np.float64] = (self.body_angular_momentum**2).sum(axis=-1)
+        return value
+
+    def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
+        """Draw how the body turns, as `visviva.rigid.FreeRotation.plot` does.
+
+        Parameters
+        ----------
+        kind : {"polhode", "herpolhode", "axes", "components"}
+            The path of the angular velocity on the inertia ellipsoid, or on the plane across the angular momentum at
+            the start; where the body's three axes point in space (the nutation of a top is that of its axis); or the
+            angular velocity along them against time.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            As there.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> out = vv.Scene(vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0])).run(t=np.arange(9.0))
+        >>> out.body(0).turning.plot("axes").axes[0].get_title()
+        "the body's axes in space"
+        """
+        from visviva.rigid._pictures import plot_free_rotation
+
+        return plot_free_rotation(self, kind)

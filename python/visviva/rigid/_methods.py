@@ -1,0 +1,30 @@
+"""The methods that rigid bodies in a scene can be stepped with."""
+
+from __future__ import annotations
+
+from visviva._keywords import known_keywords
+from visviva.integrators import Method, _records
+
+__all__ = ["methods"]
+
+
+@known_keywords
+def methods() -> list[Method]:
+    """Every method that steps rigid bodies which torques turn, for ``Scene.run(method=..., dt=...)``.
+
+    Splittings alternate kicks with drifts in which bodies turn exactly, and have the order that they have for points;
+    Runge–Kutta methods run on the group of rotations and take forces that look at velocities, too. ``rattle`` and the
+    ``moser_veselov`` methods are for rigid bodies alone: in their drifts bodies turn by a discrete motion that keeps
+    energy and angular momentum. Their order is that of a body that nothing turns; with torques it is 2.
+
+    Returns
+    -------
+    list of Method
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [method.name for method in vv.rigid.methods() if method.order == 10]
+    ['sofroniou_spaletta10', 'moser_veselov10']
+    """
+    return _records(rigid=True)
