@@ -88,6 +88,21 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close((further.flip_time - path.flip_time) / (2 * np.log(1e10)), 1 / expected["growth_rate_about_B"])
 
 
+@golden("G9.9-rigid-velocity")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    start = (given["v_A"], given["omega"], given["r_A"])
+    velocity = vv.rigid.velocity_at(given["r_P"], *start)
+    close(velocity, expected["v_P"])
+    apart = np.array(given["r_P"]) - given["r_A"]
+    close(apart @ (velocity - given["v_A"]), expected["rigidity"], scale=1.0)
+    # From the other point the field is the same, and so is the screw.
+    close(vv.rigid.velocity_at(given["r_A"], velocity, given["omega"], given["r_P"]), given["v_A"])
+    here, there = vv.rigid.screw_axis(*start), vv.rigid.screw_axis(velocity, given["omega"], given["r_P"])
+    close(there.pitch, here.pitch)
+    close(there.speed, here.speed)
+    close(np.cross(there.point - here.point, here.direction), np.zeros(3), scale=1.0)
+
+
 @golden("G9.14-inertia-tensor")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     masses, places = np.array(given["m"]), np.array(given["r"])

@@ -4,6 +4,7 @@ import itertools
 import sys
 from types import SimpleNamespace
 
+import mpmath
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -59,6 +60,14 @@ SOLIDS = {
     "ellipsoid": (
         vv.rigid.ellipsoid(1.0, RADIUS, RADIUS, HEIGHT),
         stacked(lambda z: RADIUS * np.sqrt(max(1 - (z / HEIGHT) ** 2, 0.0)), -HEIGHT, HEIGHT),
+    ),
+    "ellipsoid shell": (
+        vv.rigid.ellipsoid(1.0, RADIUS, RADIUS, HEIGHT, shell=True),
+        revolved(
+            lambda s: np.sin(np.pi * s) * np.hypot(HEIGHT * np.sin(np.pi * s), RADIUS * np.cos(np.pi * s)),
+            lambda s: (RADIUS * np.sin(np.pi * s)) ** 2 / 2,
+            lambda s: HEIGHT * np.cos(np.pi * s),
+        ),
     ),
     "pipe": (
         vv.rigid.cylinder(1.0, RADIUS, HEIGHT, inner_radius=INNER),
@@ -126,6 +135,49 @@ def test_shells_are_their_parts():
         faces += [face.moved(sign * sides[2] / 2 * np.eye(3)[axes[2]]) for sign in (1, -1)]
     shell = vv.rigid.composite(faces)
     assert vv.rigid.box(shell.mass, a, b, c, shell=True).tensor == pytest.approx(shell.tensor, rel=1e-14, abs=1e-16)
+
+
+def surface_moments(half):
+    """Second moments of the surface of an ellipsoid, over its area, by quadrature over an eighth of the unit sphere."""
+
+    def mean(power, axis):
+        def at(polar, around):
+            sine = mpmath.sin(polar)
+            n = (sine * mpmath.cos(around), sine * mpmath.sin(around), mpmath.cos(polar))
+            size = mpmath.sqrt(sum((part / a) ** 2 for part, a in zip(n, half, strict=True)))
+            return size * sine * (half[axis] * n[axis]) ** power
+
+        quarter = [0, mpmath.pi / 2]
+        return mpmath.quad(at, quarter, quarter)
+
+    area = mean(0, 0)
+    return np.array([float(mean(2, axis) / area) for axis in range(3)])
+
+
+@pytest.mark.parametrize("half", [(1.0, 2.0, 3.0), (3.0, 1.0, 2.0), (1.0, 1.0, 2.5), (2.0, 0.8, 0.8), (1.3, 1.3, 1.3)])
+def test_the_surface_of_an_ellipsoid(half):
+    moments = surface_moments(half)
+    shell = vv.rigid.ellipsoid(1.0, *half, shell=True)
+    # mpmath's quadrature is exact to 1e-15 at these shapes.
+    assert shell.tensor == pytest.approx(np.diag(moments.sum() - moments), rel=4e-15, abs=1e-16)
+
+
+def test_the_surface_of_an_ellipsoid_at_its_limits():
+    """A sphere, an ellipse with two sides, a needle (mass as √(1 − x²)); continuous, however flat or thin."""
+    sphere = vv.rigid.ellipsoid(1.0, 2.0, 2.0, 2.0, shell=True).tensor
+    assert sphere == pytest.approx(vv.rigid.sphere(1.0, 2.0, inner_radius=2.0).tensor, rel=1e-15)
+    for small in (1e-9, 1e-30, 1e-59, 1e-61, 1e-150, 1e-300):
+        flat = vv.rigid.ellipsoid(1.0, 3.0, 2.0, small, shell=True).tensor.diagonal()
+        assert flat == pytest.approx([1.0, 2.25, 3.25], rel=1e-14)
+        across, _, along = vv.rigid.ellipsoid(1.0, small, small, 2.0, shell=True).tensor.diagonal()
+        assert across == pytest.approx(1.0, rel=1e-14)
+        assert along == pytest.approx(0.75 * small * small, rel=1e-14, abs=0.0)
+    almost = [vv.rigid.ellipsoid(1.0, 1.0, 1.0 + step, 2.0, shell=True).tensor for step in (0.0, 1e-15)]
+    assert almost[0] == pytest.approx(almost[1], rel=4e-15)
+    # The moments of a body whatever the shape: the triangle inequality, and less than the box about it.
+    for shape in np.exp(np.random.default_rng(2).normal(size=(50, 3)) * 4):
+        moments = vv.rigid.ellipsoid(1.0, *shape, shell=True).principal_axes().moments
+        assert moments[2] <= (moments[0] + moments[1]) * (1 + 1e-15)
 
 
 def box_mesh(a, b, c):

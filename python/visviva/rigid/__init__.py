@@ -48,6 +48,7 @@ from visviva.rigid._solids import (
     torus,
 )
 from visviva.rigid._top_motion import TopMotion
+from visviva.rigid._velocity import ScrewAxis, screw_axis, velocity_at
 
 __all__ = [
     "FreeRotation",
@@ -56,6 +57,7 @@ __all__ = [
     "Nutation",
     "Polhode",
     "PrincipalAxes",
+    "ScrewAxis",
     "SteadyPrecession",
     "TopMotion",
     "angular_velocity_from_euler",
@@ -93,10 +95,12 @@ __all__ = [
     "rotate_back",
     "rotate_tensor",
     "rotation_vector",
+    "screw_axis",
     "sphere",
     "tetrahedron",
     "to_scipy",
     "torus",
+    "velocity_at",
 ]
 
 

@@ -24,6 +24,20 @@ def rows(name: str, value: ArrayLike, axes: tuple[int, ...]) -> NDArray[np.float
     return array
 
 
+def joined(arguments: dict[str, ArrayLike]) -> tuple[tuple[int, ...], NDArray[np.float64]]:
+    """Check vectors and broadcast their leading axes; give these, and flat rows of one vector after the other."""
+    checked = {name: rows(name, value, (3,)) for name, value in arguments.items()}
+    shape: tuple[int, ...] = ()
+    for name, array in checked.items():
+        try:
+            shape = np.broadcast_shapes(shape, array.shape[:-1])
+        except ValueError:
+            message = f"expected axes that broadcast with {shape} of the arguments before, got {array.shape[:-1]}"
+            raise InvalidInput(name, message) from None
+    whole = [np.broadcast_to(array, (*shape, 3)) for array in checked.values()]
+    return shape, np.concatenate(whole, axis=-1).reshape(-1, 3 * len(whole))
+
+
 def together(
     first: tuple[str, NDArray[np.float64]], second: tuple[str, NDArray[np.float64]]
 ) -> tuple[tuple[int, ...], NDArray[np.float64], NDArray[np.float64]]:

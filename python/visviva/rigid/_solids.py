@@ -114,13 +114,16 @@ def hemisphere(mass: float, radius: float) -> MassProperties:
 
 
 @known_keywords
-def ellipsoid(mass: float, a: float, b: float, c: float) -> MassProperties:
-    """Give a solid ellipsoid with the semi-axes a, b, c along x, y, z.
+def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> MassProperties:
+    """Give an ellipsoid with the semi-axes a, b, c along x, y, z; as a shell, its surface.
 
     Parameters
     ----------
     mass, a, b, c : float
         Positive.
+    shell : bool
+        Whether the mass is on the surface, evenly: a sheet of one thickness. What is between two ellipsoids of the same
+        shape is thicker at the tips, and is the solid less another.
 
     Returns
     -------
@@ -132,13 +135,20 @@ def ellipsoid(mass: float, a: float, b: float, c: float) -> MassProperties:
     InvalidInput
         For a mass or a length that is not positive.
 
+    Notes
+    -----
+    Of the surface, ∫ x² dS/S = a²(1 + ⟨N²⟩)/4 with the mean square of what the unit normal has along x; by Carlson's
+    R_D (DLMF 19.33 has the area).
+
     Examples
     --------
     >>> import visviva as vv
     >>> vv.rigid.ellipsoid(5.0, 1.0, 2.0, 3.0).tensor.diagonal()
     array([13., 10.,  5.])
+    >>> vv.rigid.ellipsoid(3.0, 1.0, 1.0, 1.0, shell=True).tensor.diagonal().round(12)
+    array([2., 2., 2.])
     """
-    return _solid("ellipsoid", mass, a=a, b=b, c=c)
+    return _solid("ellipsoid", mass, shell=shell, a=a, b=b, c=c)
 
 
 @known_keywords

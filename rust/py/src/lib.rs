@@ -59,7 +59,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::rigid::{
-        free_rotation, polhode, rotated, rotation_euler, rotation_form, rotation_product, rotation_rates,
+        free_rotation, polhode, rigid_screw, rigid_velocity, rotated, rotation_euler, rotation_form,
+        rotation_product, rotation_rates,
     };
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};

@@ -2,7 +2,7 @@
 //!
 //! Rows of rotations are read where they are: these functions take less time than a copy of their arguments.
 
-use crate::arrays::{copied, moved};
+use crate::arrays::{copied, in_place, moved};
 use crate::errors::raised;
 use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
@@ -12,7 +12,7 @@ use visviva_core::memory::{reserved, room};
 use visviva_core::parallel::Ticker;
 use visviva_core::rigid::conventions::Convention;
 use visviva_core::rigid::free::FreeRotation;
-use visviva_core::rigid::quaternion as q;
+use visviva_core::rigid::{quaternion as q, velocity};
 use visviva_core::{Error, Result};
 
 type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
@@ -20,18 +20,6 @@ type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 
 /// Rows between two looks at the clock.
 const STRIDE: usize = 4096;
-
-/// The numbers of rows of `K`.
-fn rows<'a, const K: usize>(name: &str, array: &'a Array<'_>) -> PyResult<&'a [[f64; K]]> {
-    let refused = || {
-        raised(
-            array.py(),
-            Error::invalid(name, format!("expected contiguous rows of {K} numbers, aligned in memory")),
-        )
-    };
-    let (rows, []) = array.as_slice().map_err(|_| refused())?.as_chunks::<K>() else { return Err(refused()) };
-    Ok(rows)
-}
 
 /// Which row a refusal is about, if there are several.
 fn located(index: usize, count: usize, error: Error) -> Error {
@@ -92,7 +80,7 @@ fn given<'py>(py: Python<'py>, values: Vec<f64>, width: usize) -> PyResult<Colum
 pub(crate) fn rotation_form<'py>(py: Python<'py>, name: &str, values: Array<'py>) -> PyResult<Column<'py>> {
     let (result, width) = match name {
         "matrix" => {
-            let rows = rows::<4>("quaternion", &values)?;
+            let rows = in_place::<_, 4>("quaternion", &values)?;
             let one = |row: &[f64; 4]| {
                 let [[a, b, c], [d, e, f], [g, h, i]] = q::matrix(q::unit("quaternion", *row)?);
                 Ok([a, b, c, d, e, f, g, h, i])
@@ -100,7 +88,7 @@ pub(crate) fn rotation_form<'py>(py: Python<'py>, name: &str, values: Array<'py>
             (compute(py, 0, None, |ticker| mapped(ticker, rows, one))?, 9)
         }
         "from_matrix" => {
-            let rows = rows::<9>("matrix", &values)?;
+            let rows = in_place::<_, 9>("matrix", &values)?;
             let one = |row: &[f64; 9]| {
                 let [a, b, c, d, e, f, g, h, i] = *row;
                 q::from_matrix("matrix", [[a, b, c], [d, e, f], [g, h, i]])
@@ -108,16 +96,16 @@ pub(crate) fn rotation_form<'py>(py: Python<'py>, name: &str, values: Array<'py>
             (compute(py, 0, None, |ticker| mapped(ticker, rows, one))?, 4)
         }
         "rotation_vector" => {
-            let rows = rows::<4>("quaternion", &values)?;
+            let rows = in_place::<_, 4>("quaternion", &values)?;
             let one = |row: &[f64; 4]| Ok(q::rotation_vector(q::unit("quaternion", *row)?));
             (compute(py, 0, None, |ticker| mapped(ticker, rows, one))?, 3)
         }
         "from_rotation_vector" => {
-            let rows = rows::<3>("rotation_vector", &values)?;
+            let rows = in_place::<_, 3>("rotation_vector", &values)?;
             (compute(py, 0, None, |ticker| mapped(ticker, rows, |row| Ok(q::from_rotation_vector(*row))))?, 4)
         }
         "normalized" => {
-            let rows = rows::<4>("quaternion", &values)?;
+            let rows = in_place::<_, 4>("quaternion", &values)?;
             (compute(py, 0, None, |ticker| mapped(ticker, rows, |row| q::unit("quaternion", *row)))?, 4)
         }
         _ => return Err(raised(py, Error::Internal(format!("no form '{name}'")))),
@@ -128,7 +116,7 @@ pub(crate) fn rotation_form<'py>(py: Python<'py>, name: &str, values: Array<'py>
 /// The product of rotations, row by row.
 #[pyfunction]
 pub(crate) fn rotation_product<'py>(py: Python<'py>, a: Array<'py>, b: Array<'py>) -> PyResult<Column<'py>> {
-    let both = (rows::<4>("a", &a)?, rows::<4>("b", &b)?);
+    let both = (in_place::<_, 4>("a", &a)?, in_place::<_, 4>("b", &b)?);
     let one = |a: &[f64; 4], b: &[f64; 4]| Ok(q::product(q::unit("a", *a)?, q::unit("b", *b)?));
     let result = compute(py, 0, None, |ticker| combined(ticker, both, one))?.whole(py)?;
     given(py, result, 4)
@@ -142,7 +130,7 @@ pub(crate) fn rotated<'py>(
     vector: Array<'py>,
     back: bool,
 ) -> PyResult<Column<'py>> {
-    let both = (rows::<4>("quaternion", &quaternion)?, rows::<3>("vector", &vector)?);
+    let both = (in_place::<_, 4>("quaternion", &quaternion)?, in_place::<_, 3>("vector", &vector)?);
     let sign = if back { -1.0 } else { 1.0 };
     let one = |turn: &[f64; 4], v: &[f64; 3]| {
         let [x, y, z, w] = q::unit("quaternion", *turn)?;
@@ -162,11 +150,11 @@ pub(crate) fn rotation_euler<'py>(
 ) -> PyResult<Column<'py>> {
     let convention = Convention::new(convention).map_err(|error| raised(py, error))?;
     if to_angles {
-        let rows = rows::<4>("quaternion", &values)?;
+        let rows = in_place::<_, 4>("quaternion", &values)?;
         let one = |row: &[f64; 4]| Ok(convention.angles(q::unit("quaternion", *row)?));
         return given(py, compute(py, 0, None, |ticker| mapped(ticker, rows, one))?.whole(py)?, 3);
     }
-    let rows = rows::<3>("angles", &values)?;
+    let rows = in_place::<_, 3>("angles", &values)?;
     let one = |row: &[f64; 3]| Ok(convention.quaternion(*row));
     given(py, compute(py, 0, None, |ticker| mapped(ticker, rows, one))?.whole(py)?, 4)
 }
@@ -182,7 +170,7 @@ pub(crate) fn rotation_rates<'py>(
     to_rates: bool,
 ) -> PyResult<Column<'py>> {
     let convention = Convention::new(convention).map_err(|error| raised(py, error))?;
-    let both = (rows::<3>("angles", &angles)?, rows::<3>("values", &values)?);
+    let both = (in_place::<_, 3>("angles", &angles)?, in_place::<_, 3>("values", &values)?);
     let one = |angles: &[f64; 3], values: &[f64; 3]| {
         if to_rates {
             convention.rates(*angles, *values, in_body)
@@ -191,6 +179,29 @@ pub(crate) fn rotation_rates<'py>(
         }
     };
     given(py, compute(py, 0, None, |ticker| combined(ticker, both, one))?.whole(py)?, 3)
+}
+
+/// Velocities of points of bodies, from rows of point, velocity, angular velocity and base point.
+#[pyfunction]
+pub(crate) fn rigid_velocity<'py>(py: Python<'py>, values: Array<'py>) -> PyResult<Column<'py>> {
+    let rows = in_place::<_, 12>("values", &values)?;
+    let one = |&[x, y, z, a, b, c, d, e, f, g, h, i]: &[f64; 12]| {
+        velocity::at([x, y, z], [a, b, c], [d, e, f], [g, h, i])
+    };
+    given(py, compute(py, 0, None, |ticker| mapped(ticker, rows, one))?.whole(py)?, 3)
+}
+
+/// The screws that bodies move as (point, direction, rate, speed and pitch), from rows of velocity, angular velocity and
+/// base point.
+#[pyfunction]
+pub(crate) fn rigid_screw<'py>(py: Python<'py>, values: Array<'py>) -> PyResult<Column<'py>> {
+    let rows = in_place::<_, 9>("values", &values)?;
+    let one = |&[a, b, c, d, e, f, g, h, i]: &[f64; 9]| {
+        let found = velocity::screw([a, b, c], [d, e, f], [g, h, i])?;
+        let ([x, y, z], [u, v, w]) = (found.point, found.direction);
+        Ok([x, y, z, u, v, w, found.rate, found.speed, found.pitch])
+    };
+    given(py, compute(py, 0, None, |ticker| mapped(ticker, rows, one))?.whole(py)?, 9)
 }
 
 /// Three numbers of an argument.

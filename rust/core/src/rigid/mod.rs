@@ -10,3 +10,4 @@ pub mod motion;
 pub mod quaternion;
 pub mod solids;
 pub mod tensor;
+pub mod velocity;

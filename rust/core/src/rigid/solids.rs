@@ -2,11 +2,14 @@
 //!
 //! The one idea: a body with three planes of symmetry has three second moments ∫ x² dm, and its tensor follows; they
 //! are written so that a wall may be as thin as one likes.
-//! Sources: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. § 5.4; integrals of one line each.
+//! Sources: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. § 5.4; integrals of one line each, but for the shell
+//! of an ellipsoid.
 
 use super::quaternion::Matrix;
 use super::tensor::from_second_moments;
 use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::symmetric_second_kind;
 use crate::words::{number, unknown};
 
 /// What a body is called, the lengths it takes, and its second moments per mass.
@@ -18,6 +21,26 @@ struct Solid {
 
 fn squared(x: f64) -> f64 {
     x * x
+}
+
+/// Of the surface of an ellipsoid: of the square of a semi-axis a quarter, times one more than the mean square of what
+/// the unit normal has along it.
+///
+/// With Q = Σ nᵢ²/aᵢ² on the unit sphere and mean values over it, x = a n and dS ∝ √Q; integrals of derivatives along
+/// circles vanish, and give 4⟨nᵢ² √Q⟩ = ⟨√Q⟩ + ⟨nᵢ²/√Q⟩/aᵢ² and 2⟨nᵢ²/√Q⟩ = Σ_{j≠i} ⟨nⱼ² Q^(−3/2)⟩/aⱼ², which are R_D.
+fn ellipsoid_shell(l: &[f64]) -> [f64; 3] {
+    let half = [l[0], l[1], l[2]];
+    let least = half[0].min(half[1]).min(half[2]);
+    // 1/a, 1/b and 1/c in units of the largest of them; what is further off is as flat or as thin as can be told.
+    let inverse = half.map(|a| DoubleDouble::from(least) / DoubleDouble::from(a.min(least * 1e60)));
+    let parts: [DoubleDouble; 3] = core::array::from_fn(|at| {
+        let [x, y, z] = [inverse[(at + 1) % 3], inverse[(at + 2) % 3], inverse[at]];
+        symmetric_second_kind([x, y, z]) * z * z
+    });
+    let normal: [DoubleDouble; 3] =
+        core::array::from_fn(|at| inverse[at] * inverse[at] * (parts[(at + 1) % 3] + parts[(at + 2) % 3]));
+    let whole = normal[0] + normal[1] + normal[2];
+    core::array::from_fn(|at| squared(half[at]) * (0.25 + 0.25 * (normal[at] / whole).to_f64()))
 }
 
 const SOLIDS: &[Solid] = &[
@@ -57,6 +80,7 @@ const SOLIDS: &[Solid] = &[
         lengths: &["a", "b", "c"],
         moments: |l| [l[0], l[1], l[2]].map(|half| squared(half) / 5.0),
     },
+    Solid { name: "ellipsoid_shell", lengths: &["a", "b", "c"], moments: ellipsoid_shell },
     Solid {
         name: "cylinder",
         lengths: &["radius", "height", "inner_radius"],
