@@ -1,7 +1,8 @@
-"""Rows of quaternions, vectors and matrices for the core, and their axes back."""
+"""Arrays of quaternions, vectors and matrices: checked, as rows for the core, and their axes back."""
 
 from __future__ import annotations
 
+from math import prod
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +11,8 @@ from visviva._arrays import float_array
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -24,36 +27,41 @@ def rows(name: str, value: ArrayLike, axes: tuple[int, ...]) -> NDArray[np.float
     return array
 
 
-def joined(arguments: dict[str, ArrayLike]) -> tuple[tuple[int, ...], NDArray[np.float64]]:
-    """Check vectors and broadcast their leading axes; give these, and flat rows of one vector after the other."""
-    checked = {name: rows(name, value, (3,)) for name, value in arguments.items()}
-    shape: tuple[int, ...] = ()
-    for name, array in checked.items():
+def mapped(
+    function: Callable[..., NDArray[np.float64]],
+    result: tuple[int, ...],
+    *arguments: tuple[str, ArrayLike, tuple[int, ...]],
+) -> NDArray[np.float64]:
+    """Give a function of the core for each entry of arrays, whose leading axes broadcast.
+
+    Parameters
+    ----------
+    function : callable
+        Of one array of rows for each argument; an argument that is the same for all entries has a single row.
+    result : tuple of int
+        The last axes of what it gives for one entry.
+    *arguments : tuple
+        The name of each argument, what came, and its last axes.
+    """
+    lead: tuple[int, ...] = ()
+    checked: list[NDArray[np.float64]] = []
+    for name, value, axes in arguments:
+        array = rows(name, value, axes)
+        own = array.shape[: array.ndim - len(axes)]
         try:
-            shape = np.broadcast_shapes(shape, array.shape[:-1])
+            shape = np.broadcast_shapes(lead, own)
         except ValueError:
-            message = f"expected axes that broadcast with {shape} of the arguments before, got {array.shape[:-1]}"
-            raise InvalidInput(name, message) from None
-    whole = [np.broadcast_to(array, (*shape, 3)) for array in checked.values()]
-    return shape, np.concatenate(whole, axis=-1).reshape(-1, 3 * len(whole))
+            before = " and ".join(other for other, *_ in arguments[: len(checked)])
+            raise InvalidInput(name, f"expected axes that broadcast with {lead} of {before}, got {own}") from None
+        lead = shape
+        checked.append(array)
+    flat = [_flat(array, lead, axes) for array, (_, _, axes) in zip(checked, arguments, strict=True)]
+    return function(*flat).reshape(*lead, *result)
 
 
-def together(
-    first: tuple[str, NDArray[np.float64]], second: tuple[str, NDArray[np.float64]]
-) -> tuple[tuple[int, ...], NDArray[np.float64], NDArray[np.float64]]:
-    """Broadcast the leading axes of two arrays of rows; give them and flat rows, a single one where one is enough."""
-    (name_a, a), (name_b, b) = first, second
-    try:
-        shape = np.broadcast_shapes(a.shape[:-1], b.shape[:-1])
-    except ValueError:
-        message = f"expected axes that broadcast with {a.shape[:-1]} of {name_a}, got {b.shape[:-1]}"
-        raise InvalidInput(name_b, message) from None
-    return shape, _flat(a, shape), _flat(b, shape)
-
-
-def _flat(array: NDArray[np.float64], shape: tuple[int, ...]) -> NDArray[np.float64]:
-    width = array.shape[-1]
+def _flat(array: NDArray[np.float64], lead: tuple[int, ...], axes: tuple[int, ...]) -> NDArray[np.float64]:
+    width = prod(axes)
     # A single row serves all rows, but not none.
-    if array.size != width or 0 in shape:
-        array = np.ascontiguousarray(np.broadcast_to(array, (*shape, width)))
+    if array.size != width or 0 in lead:
+        array = np.ascontiguousarray(np.broadcast_to(array, (*lead, *axes)))
     return array.reshape(-1, width)

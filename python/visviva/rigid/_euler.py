@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from visviva import _core
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import rows, together
+from visviva.rigid._arguments import mapped
 
 if TYPE_CHECKING:
     import numpy as np
@@ -51,8 +52,8 @@ def euler_angles(quaternion: ArrayLike, convention: str = "ZXZ") -> NDArray[np.f
     >>> vv.rigid.euler_angles(vv.rigid.quaternion_from_euler([0.7, 0.0, -0.4])).round(12)
     array([0.3, 0. , 0. ])
     """
-    turns = rows("quaternion", quaternion, (4,))
-    return _core.rotation_euler(_name(convention), turns.reshape(-1, 4), to_angles=True).reshape(*turns.shape[:-1], 3)
+    function = partial(_core.rotation_euler, _name(convention), to_angles=True)
+    return mapped(function, (3,), ("quaternion", quaternion, (4,)))
 
 
 @known_keywords
@@ -82,8 +83,8 @@ def quaternion_from_euler(angles: ArrayLike, convention: str = "ZXZ") -> NDArray
     >>> vv.rigid.quaternion_from_euler([0.7, 1.1, -0.4])
     array([0.44560368, 0.27320194, 0.12739967, 0.84295159])
     """
-    given = rows("angles", angles, (3,))
-    return _core.rotation_euler(_name(convention), given.reshape(-1, 3), to_angles=False).reshape(*given.shape[:-1], 4)
+    function = partial(_core.rotation_euler, _name(convention), to_angles=False)
+    return mapped(function, (4,), ("angles", angles, (3,)))
 
 
 @known_keywords
@@ -117,9 +118,8 @@ def angular_velocity_from_euler(
     >>> vv.rigid.angular_velocity_from_euler([0.7, 1.1, -0.4], [0.3, -0.2, 1.5])
     array([-0.28832795,  0.16837323,  1.63607884])
     """
-    both = together(("angles", rows("angles", angles, (3,))), ("rates", rows("rates", rates, (3,))))
-    shape, first, second = both
-    return _core.rotation_rates(_name(convention), first, second, _in_body(frame), to_rates=False).reshape(*shape, 3)
+    function = partial(_core.rotation_rates, _name(convention), in_body=_in_body(frame), to_rates=False)
+    return mapped(function, (3,), ("angles", angles, (3,)), ("rates", rates, (3,)))
 
 
 @known_keywords
@@ -158,9 +158,8 @@ def euler_rates(
     >>> vv.rigid.euler_rates([0.7, 1.1, -0.4], omega).round(12)
     array([ 0.3, -0.2,  1.5])
     """
-    given = ("angular_velocity", rows("angular_velocity", angular_velocity, (3,)))
-    shape, first, second = together(("angles", rows("angles", angles, (3,))), given)
-    return _core.rotation_rates(_name(convention), first, second, _in_body(frame), to_rates=True).reshape(*shape, 3)
+    function = partial(_core.rotation_rates, _name(convention), in_body=_in_body(frame), to_rates=True)
+    return mapped(function, (3,), ("angles", angles, (3,)), ("angular_velocity", angular_velocity, (3,)))
 
 
 def _name(convention: object) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,7 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._arguments import rows, together
+from visviva.rigid._arguments import mapped, rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -41,8 +42,7 @@ def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     >>> vv.rigid.quaternion_product(half_turn, half_turn)
     array([ 0.,  0.,  0., -1.])
     """
-    shape, first, second = together(("a", rows("a", a, (4,))), ("b", rows("b", b, (4,))))
-    return _core.rotation_product(first, second).reshape(*shape, 4)
+    return mapped(_core.rotation_product, (4,), ("a", a, (4,)), ("b", b, (4,)))
 
 
 @known_keywords
@@ -106,9 +106,8 @@ def rotate_back(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]
 
 
 def _rotated(quaternion: ArrayLike, vector: ArrayLike, back: bool) -> NDArray[np.float64]:
-    turns, vectors = rows("quaternion", quaternion, (4,)), rows("vector", vector, (3,))
-    shape, first, second = together(("quaternion", turns), ("vector", vectors))
-    return _core.rotated(first, second, back).reshape(*shape, 3)
+    function = partial(_core.rotated, back=back)
+    return mapped(function, (3,), ("quaternion", quaternion, (4,)), ("vector", vector, (3,)))
 
 
 @known_keywords
@@ -138,8 +137,7 @@ def matrix(quaternion: ArrayLike) -> NDArray[np.float64]:
            [ 0., -1.,  0.],
            [ 0.,  0.,  1.]])
     """
-    turns = rows("quaternion", quaternion, (4,))
-    return _core.rotation_form("matrix", turns.reshape(-1, 4)).reshape(*turns.shape[:-1], 3, 3)
+    return _form("matrix", (3, 3), ("quaternion", quaternion, (4,)))
 
 
 @known_keywords
@@ -172,8 +170,7 @@ def quaternion_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
     >>> vv.rigid.quaternion_from_matrix([[-1, 0, 0], [0, -1, 0], [0, 0, 1]])
     array([0., 0., 1., 0.])
     """
-    given = rows("matrix", matrix, (3, 3))
-    return _core.rotation_form("from_matrix", given.reshape(-1, 9)).reshape(*given.shape[:-2], 4)
+    return _form("from_matrix", (4,), ("matrix", matrix, (3, 3)))
 
 
 @known_keywords
@@ -201,8 +198,7 @@ def rotation_vector(quaternion: ArrayLike) -> NDArray[np.float64]:
     >>> vv.rigid.rotation_vector([0.0, 0.0, 1.0, 0.0])
     array([0.        , 0.        , 3.14159265])
     """
-    turns = rows("quaternion", quaternion, (4,))
-    return _core.rotation_form("rotation_vector", turns.reshape(-1, 4)).reshape(*turns.shape[:-1], 3)
+    return _form("rotation_vector", (3,), ("quaternion", quaternion, (4,)))
 
 
 @known_keywords
@@ -230,8 +226,7 @@ def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.fl
     >>> vv.rigid.quaternion_from_rotation_vector([0.0, 0.0, np.pi]).round(15)
     array([0., 0., 1., 0.])
     """
-    vectors = rows("rotation_vector", rotation_vector, (3,))
-    return _core.rotation_form("from_rotation_vector", vectors.reshape(-1, 3)).reshape(*vectors.shape[:-1], 4)
+    return _form("from_rotation_vector", (4,), ("rotation_vector", rotation_vector, (3,)))
 
 
 @known_keywords
@@ -294,5 +289,9 @@ def to_scipy(quaternion: ArrayLike) -> Any:
     """
     from scipy.spatial.transform import Rotation
 
-    turns = rows("quaternion", quaternion, (4,))
-    return Rotation.from_quat(_core.rotation_form("normalized", turns.reshape(-1, 4)).reshape(turns.shape))
+    return Rotation.from_quat(_form("normalized", (4,), ("quaternion", quaternion, (4,))))
+
+
+def _form(name: str, result: tuple[int, ...], argument: tuple[str, ArrayLike, tuple[int, ...]]) -> NDArray[np.float64]:
+    """Give another form of each rotation, by its name in the core."""
+    return mapped(partial(_core.rotation_form, name), result, argument)

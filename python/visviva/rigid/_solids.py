@@ -182,11 +182,10 @@ def cylinder(
     >>> vv.rigid.cylinder(12.0, 1.0, 2.0).tensor.diagonal()
     array([7., 7., 6.])
     """
-    if not shell:
-        return _solid("cylinder", mass, shell=shell, radius=radius, height=height, inner_radius=inner_radius)
-    if inner_radius != 0.0:
+    inner = {"inner_radius": number("inner_radius", inner_radius)}
+    if shell and inner["inner_radius"] != 0.0:
         raise InvalidInput("inner_radius", f"expected 0 of a shell, got {inner_radius!r}")
-    return _solid("cylinder", mass, shell=shell, radius=radius, height=height)
+    return _solid("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
 
 
 @known_keywords

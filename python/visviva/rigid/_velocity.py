@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+import numpy as np
+
 from visviva import _core
 from visviva._keywords import known_keywords
-from visviva.rigid._arguments import joined
+from visviva.rigid._arguments import mapped
 
 if TYPE_CHECKING:
-    import numpy as np
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
 _ORIGIN = (0.0, 0.0, 0.0)
@@ -83,9 +86,19 @@ def velocity_at(
     array([[0., 0., 0.],
            [6., 0., 0.]])
     """
-    arguments = {"point": point, "velocity": velocity, "angular_velocity": angular_velocity, "about": about}
-    shape, values = joined(arguments)
-    return _core.rigid_velocity(values).reshape(*shape, 3)
+    motion = (("velocity", velocity, (3,)), ("angular_velocity", angular_velocity, (3,)), ("about", about, (3,)))
+    return mapped(_of_joined(_core.rigid_velocity), (3,), ("point", point, (3,)), *motion)
+
+
+def _of_joined(function: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -> Callable[..., NDArray[np.float64]]:
+    """Give the function of separate columns that a function of their joined rows is."""
+
+    def joined(*columns: NDArray[np.float64]) -> NDArray[np.float64]:
+        # Single rows serve all, but all have none where one has none.
+        count = max(map(len, columns))
+        return function(np.concatenate([np.broadcast_to(column, (count, 3)) for column in columns], axis=-1))
+
+    return joined
 
 
 @known_keywords
@@ -131,7 +144,6 @@ def screw_axis(velocity: ArrayLike, angular_velocity: ArrayLike, about: ArrayLik
     >>> axis.point, axis.direction, float(axis.pitch)
     (array([ 0.,  0., -1.]), array([0., 1., 0.]), 0.0)
     """
-    arguments = {"velocity": velocity, "angular_velocity": angular_velocity, "about": about}
-    shape, values = joined(arguments)
-    found = _core.rigid_screw(values).reshape(*shape, 9)
+    motion = (("velocity", velocity, (3,)), ("angular_velocity", angular_velocity, (3,)), ("about", about, (3,)))
+    found = mapped(_of_joined(_core.rigid_screw), (9,), *motion)
     return ScrewAxis(found[..., :3], found[..., 3:6], found[..., 6], found[..., 7], found[..., 8])
