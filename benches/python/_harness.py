@@ -74,7 +74,7 @@ def machine() -> str:
         model = names[0] if names else model
     info = _core.info()
     versions = [f"Python {sys.version.split()[0]}", f"visviva {info['version']} ({info['profile']})"]
-    for name in ("numpy", "scipy", "rebound", "heyoka", "numba"):
+    for name in ("numpy", "scipy", "rebound", "heyoka", "numba", "mujoco", "trimesh"):
         try:
             versions.append(f"{name} {version(name)}")
         except PackageNotFoundError:

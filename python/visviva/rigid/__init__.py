@@ -38,15 +38,13 @@ from visviva.rigid._solids import (
     capsule,
     cone,
     cylinder,
-    disc,
     ellipsoid,
     hemisphere,
-    plate,
-    rod,
     sphere,
     tetrahedron,
     torus,
 )
+from visviva.rigid._thin import disc, plate, rod
 from visviva.rigid._top_motion import TopMotion
 from visviva.rigid._velocity import ScrewAxis, screw_axis, velocity_at
 

@@ -16,7 +16,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
 
-def _solid(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
+def of_kind(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
+    """Check the arguments of a body that the core knows by name, and give it."""
     if not isinstance(shell, bool | np.bool_):
         raise InvalidInput("shell", f"expected True or False, got {shell!r}")
     weight = positive("mass", mass, "mass")
@@ -52,7 +53,7 @@ def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> Ma
     >>> vv.rigid.box(12.0, 1.0, 2.0, 3.0).principal_axes().moments
     array([ 5., 10., 13.])
     """
-    return _solid("box", mass, shell=shell, a=a, b=b, c=c)
+    return of_kind("box", mass, shell=shell, a=a, b=b, c=c)
 
 
 @known_keywords
@@ -82,7 +83,7 @@ def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProp
     >>> vv.rigid.sphere(5.0, 1.0).tensor[0, 0], vv.rigid.sphere(3.0, 1.0, inner_radius=1.0).tensor[0, 0]
     (np.float64(2.0), np.float64(2.0))
     """
-    return _solid("sphere", mass, radius=radius, inner_radius=inner_radius)
+    return of_kind("sphere", mass, radius=radius, inner_radius=inner_radius)
 
 
 @known_keywords
@@ -110,7 +111,7 @@ def hemisphere(mass: float, radius: float) -> MassProperties:
     >>> vv.rigid.hemisphere(5.0, 1.0).tensor.diagonal()
     array([1.296875, 1.296875, 2.      ])
     """
-    return _solid("hemisphere", mass, radius=radius)
+    return of_kind("hemisphere", mass, radius=radius)
 
 
 @known_keywords
@@ -148,7 +149,7 @@ def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False)
     >>> vv.rigid.ellipsoid(3.0, 1.0, 1.0, 1.0, shell=True).tensor.diagonal().round(12)
     array([2., 2., 2.])
     """
-    return _solid("ellipsoid", mass, shell=shell, a=a, b=b, c=c)
+    return of_kind("ellipsoid", mass, shell=shell, a=a, b=b, c=c)
 
 
 @known_keywords
@@ -185,7 +186,7 @@ def cylinder(
     inner = {"inner_radius": number("inner_radius", inner_radius)}
     if shell and inner["inner_radius"] != 0.0:
         raise InvalidInput("inner_radius", f"expected 0 of a shell, got {inner_radius!r}")
-    return _solid("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
+    return of_kind("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
 
 
 @known_keywords
@@ -215,7 +216,7 @@ def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> M
     >>> vv.rigid.cone(80.0, 1.0, 2.0).tensor.diagonal()
     array([24., 24., 24.])
     """
-    return _solid("cone", mass, shell=shell, radius=radius, height=height)
+    return of_kind("cone", mass, shell=shell, radius=radius, height=height)
 
 
 @known_keywords
@@ -245,7 +246,7 @@ def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -
     >>> vv.rigid.capsule(10.0, 1.0, 2.0).tensor.diagonal().round(12)
     array([12.1, 12.1,  4.6])
     """
-    return _solid("capsule", mass, shell=shell, radius=radius, height=height)
+    return of_kind("capsule", mass, shell=shell, radius=radius, height=height)
 
 
 @known_keywords
@@ -276,93 +277,7 @@ def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool 
     >>> vv.rigid.torus(8.0, 2.0, 1.0).tensor.diagonal()
     array([21., 21., 38.])
     """
-    return _solid("torus", mass, shell=shell, major_radius=major_radius, minor_radius=minor_radius)
-
-
-@known_keywords
-def rod(mass: float, length: float) -> MassProperties:
-    """Give a thin rod along z, which has no moment about itself.
-
-    Parameters
-    ----------
-    mass, length : float
-        Positive.
-
-    Returns
-    -------
-    MassProperties
-        About the middle.
-
-    Raises
-    ------
-    InvalidInput
-        For a mass or a length that is not positive.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> vv.rigid.rod(12.0, 1.0).tensor.diagonal()
-    array([1., 1., 0.])
-    """
-    return _solid("rod", mass, length=length)
-
-
-@known_keywords
-def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
-    """Give a thin disc across z, with a hole of the inner radius; with ``inner_radius=radius`` a thin ring.
-
-    Parameters
-    ----------
-    mass, radius : float
-        Positive.
-    inner_radius : float
-        From 0 to the radius.
-
-    Returns
-    -------
-    MassProperties
-        About the center.
-
-    Raises
-    ------
-    InvalidInput
-        For a mass or a length out of range.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> vv.rigid.disc(4.0, 1.0).tensor.diagonal()
-    array([1., 1., 2.])
-    """
-    return _solid("disc", mass, radius=radius, inner_radius=inner_radius)
-
-
-@known_keywords
-def plate(mass: float, a: float, b: float) -> MassProperties:
-    """Give a thin rectangle with sides a, b along x, y.
-
-    Parameters
-    ----------
-    mass, a, b : float
-        Positive.
-
-    Returns
-    -------
-    MassProperties
-        About the center.
-
-    Raises
-    ------
-    InvalidInput
-        For a mass or a length that is not positive.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> vv.rigid.plate(12.0, 1.0, 2.0).tensor.diagonal()
-    array([4., 1., 5.])
-    """
-    return _solid("plate", mass, a=a, b=b)
+    return of_kind("torus", mass, shell=shell, major_radius=major_radius, minor_radius=minor_radius)
 
 
 @known_keywords

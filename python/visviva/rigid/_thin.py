@@ -1,0 +1,97 @@
+"""Thin bodies of uniform density: rods along z, discs and plates across it, their centers of mass at the origin."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from visviva._keywords import known_keywords
+from visviva.rigid._solids import of_kind
+
+if TYPE_CHECKING:
+    from visviva.rigid._mass import MassProperties
+
+
+@known_keywords
+def rod(mass: float, length: float) -> MassProperties:
+    """Give a thin rod along z, which has no moment about itself.
+
+    Parameters
+    ----------
+    mass, length : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the middle.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.rod(12.0, 1.0).tensor.diagonal()
+    array([1., 1., 0.])
+    """
+    return of_kind("rod", mass, length=length)
+
+
+@known_keywords
+def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
+    """Give a thin disc across z, with a hole of the inner radius; with ``inner_radius=radius`` a thin ring.
+
+    Parameters
+    ----------
+    mass, radius : float
+        Positive.
+    inner_radius : float
+        From 0 to the radius.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length out of range.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.disc(4.0, 1.0).tensor.diagonal()
+    array([1., 1., 2.])
+    """
+    return of_kind("disc", mass, radius=radius, inner_radius=inner_radius)
+
+
+@known_keywords
+def plate(mass: float, a: float, b: float) -> MassProperties:
+    """Give a thin rectangle with sides a, b along x, y.
+
+    Parameters
+    ----------
+    mass, a, b : float
+        Positive.
+
+    Returns
+    -------
+    MassProperties
+        About the center.
+
+    Raises
+    ------
+    InvalidInput
+        For a mass or a length that is not positive.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.rigid.plate(12.0, 1.0, 2.0).tensor.diagonal()
+    array([4., 1., 5.])
+    """
+    return of_kind("plate", mass, a=a, b=b)
