@@ -72,7 +72,7 @@ def toutatis(output: Path, days: float) -> list[Path]:
 
 
 def dzhanibekov(output: Path, flips: int) -> list[Path]:
-    """Let a handle flip over and over; print when it does by three ways that know nothing of each other."""
+    """Let a handle flip over and over; print when it does: by its period, by its states, by integration in steps."""
     flips = whole_number("flips", flips, 1, _MOST_FLIPS)
     spin = _MOMENTUM / _MOMENTS
     path = vv.rigid.polhode(_MOMENTS, spin)

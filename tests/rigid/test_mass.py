@@ -246,6 +246,21 @@ def test_a_cavity():
     assert body.tensor == pytest.approx(whole.tensor - hole.tensor, rel=1e-14, abs=1e-14)
 
 
+def test_a_part_taken_out():
+    """Hollows, wherever they are: against the mesh with a cavity, the hollow sphere, and the way back."""
+    whole, hole = vv.rigid.box(8.0, 2.0, 2.0, 2.0), vv.rigid.box(1.0, 1.0, 1.0, 1.0).moved([0.25, -0.5, 0.125])
+    left = whole - hole
+    outer, faces = box_mesh(2.0, 2.0, 2.0)
+    inner = (outer - 1.0) / 2 + [0.25, -0.5, 0.125]
+    mesh = vv.rigid.mesh(np.vstack([outer - 1.0, inner]), np.vstack([faces, faces[:, ::-1] + 8]))
+    assert left.mass == pytest.approx(mesh.mass, rel=1e-14)
+    assert left.center == pytest.approx(mesh.center, rel=1e-13)
+    assert left.tensor == pytest.approx(mesh.tensor, rel=1e-13, abs=1e-13)
+    assert (left + hole).tensor == pytest.approx(whole.tensor, rel=1e-14, abs=1e-14)
+    hollow = vv.rigid.sphere(8.0, 2.0) - vv.rigid.sphere(1.0, 1.0)
+    assert hollow.tensor == pytest.approx(vv.rigid.sphere(7.0, 2.0, inner_radius=1.0).tensor, rel=1e-14, abs=1e-15)
+
+
 def test_tetrahedra():
     rng = np.random.default_rng(5)
     for _ in range(20):
@@ -333,6 +348,11 @@ ONE = vv.rigid.sphere(1.0, 1.0)
         (lambda: vv.rigid.torus(1.0, 1.0, 1.1), "minor_radius", "meets itself"),
         (lambda: vv.rigid.box(1.0, 1.0, 1.0, 1.0, shell="no"), "shell", "True or False"),
         (lambda: vv.rigid.cylinder(1, 1, 1, inner_radius=0.5, shell=True), "inner_radius", "expected 0 of a shell"),
+        (lambda: ONE - ONE, "mass", "expected some mass"),
+        (lambda: ONE - vv.rigid.sphere(2.0, 0.1), "mass", "expected some mass"),
+        (lambda: ONE - vv.rigid.sphere(0.5, 3.0), "other", "what is left has the tensor"),
+        (lambda: ONE - ONE.moved([9.0, 0.0, 0.0]), "mass", "expected some mass"),
+        (lambda: ONE - vv.rigid.sphere(0.1, 0.1).moved([9.0, 0.0, 0.0]), "other", "what is left has the tensor"),
         (lambda: vv.rigid.composite([]), "bodies", "list of MassProperties"),
         (lambda: vv.rigid.composite([ONE, 3]), "bodies", r"bodies\[1\] is 3"),
         (lambda: vv.rigid.mesh(BOX[0], BOX[1][:-1]), "faces", "3 of its 18 edges are on the border of a hole"),

@@ -15,6 +15,8 @@ from visviva.rigid._arguments import rows
 from visviva.rigid._orientation import rotate
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -186,7 +188,7 @@ def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float6
 class MassProperties:
     """Mass, center of mass and inertia tensor of a body; what solids, meshes and composites are made of.
 
-    Two bodies are one by ``+``.
+    Two bodies are one by ``+``; ``-`` takes a part out of a body, and refuses what no body is left of.
 
     Parameters
     ----------
@@ -211,6 +213,11 @@ class MassProperties:
     >>> bell = ball.moved([0.0, 0.0, 0.5]) + ball.moved([0.0, 0.0, -0.5]) + rod
     >>> bell.mass, bell.principal_axes().moments.round(12)
     (4.5, array([0.016     , 1.05766667, 1.05766667]))
+
+    A hollow sphere is a sphere less another:
+
+    >>> (vv.rigid.sphere(8.0, 2.0) - vv.rigid.sphere(1.0, 1.0)).tensor[0, 0].round(12)
+    np.float64(12.4)
     """
 
     mass: float
@@ -246,6 +253,34 @@ class MassProperties:
             return NotImplemented
         return composite([self, other])
 
+    def __sub__(self, other: object) -> MassProperties:
+        if not isinstance(other, MassProperties):
+            return NotImplemented
+        left = _together([self, other], [1.0, -1.0])
+        if not _is_a_body(left.tensor):
+            message = (
+                f"expected a part of the body that it is taken out of, but what is left has the tensor {left.tensor}"
+            )
+            raise InvalidInput("other", message)
+        return left
+
+
+def _is_a_body(tensor: NDArray[np.float64]) -> bool:
+    try:
+        principal_axes(tensor)
+    except InvalidInput:
+        return False
+    return True
+
+
+def _together(bodies: Sequence[MassProperties], signs: Sequence[float]) -> MassProperties:
+    found = _core.bodies_together(
+        np.array([sign * body.mass for sign, body in zip(signs, bodies, strict=True)]),
+        np.array([body.center for body in bodies]),
+        np.array([sign * body.tensor.ravel() for sign, body in zip(signs, bodies, strict=True)]),
+    )
+    return MassProperties(*found)
+
 
 @known_keywords
 def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> MassProperties:
@@ -277,12 +312,7 @@ def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> Mass
     for at, body in enumerate(bodies):
         if not isinstance(body, MassProperties):
             raise InvalidInput("bodies", f"expected MassProperties, but bodies[{at}] is {body!r}")
-    found = _core.bodies_together(
-        np.array([body.mass for body in bodies]),
-        np.array([body.center for body in bodies]),
-        np.array([body.tensor.ravel() for body in bodies]),
-    )
-    return MassProperties(*found)
+    return _together(bodies, [1.0] * len(bodies))
 
 
 @known_keywords

@@ -54,8 +54,9 @@ def _plotted(motion: Any, kind: str, pictures: dict[str, Callable[[Any, Any], No
     return figure
 
 
-def _thinned(motion: Any) -> slice:
-    return slice(None, None, max(1, len(motion.t) // _POINTS))
+def _thinned(motion: Any) -> NDArray[np.intp]:
+    """Some of the times, in order."""
+    return np.argsort(motion.t, kind="stable")[:: max(1, len(motion.t) // _POINTS)]
 
 
 def polhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
