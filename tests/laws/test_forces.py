@@ -339,3 +339,21 @@ def test_energies_of_charges_that_a_massless_body_precedes(force: vv.forces.Forc
         assert out.energy[row] == pytest.approx(now.invariants().energy, rel=1e-14)
     end = scene.run(t=1.0, events=[vv.events.energy(scene.invariants().energy + 1.0)], **how)  # type: ignore[arg-type]
     assert len(end.events) == 0
+
+
+def test_a_drive_beyond_what_its_cosine_knows_is_refused() -> None:
+    body = vv.Particles([1.0], [[0.0, 0.0, 0.0]])
+    drive = vv.DrivenForce([1.0, 0.0, 0.0], frequency=1e10)
+    near = vv.Scene(body, drive, t0=3.4e5)
+    assert np.isfinite(near.acceleration()).all()
+    assert abs(near.acceleration()[0, 0]) <= 1.0
+    for ask in (
+        lambda: vv.Scene(body, drive, t0=-3.6e5).acceleration(),
+        lambda: near.run(3.6e5, method="rk4", dt=1e4),
+        lambda: near.ensemble(parameters={0: {"frequency": [1.0, 1e10]}}).run(3.6e5, method="taylor"),
+    ):
+        with pytest.raises(vv.InvalidInput, match="DrivenForce is known for angles") as refused:
+            ask()
+        assert refused.value.argument == "frequency"
+    # A closed form knows larger ones.
+    assert near.run(3.6e5).plan.closed_form

@@ -15,7 +15,7 @@ const HALF_PI_REST: f64 = -1.497_384_904_859_169_8e-33;
 /// Added to a number below 2^51, leaves the nearest integer after it is taken away again.
 const INTEGER_SHIFT: f64 = 6_755_399_441_055_744.0; // 1.5 * 2^52
 /// The largest argument: its multiple of π/2 is below 2^51.
-const LARGEST: f64 = 3.5e15;
+pub const LARGEST: f64 = 3.5e15;
 
 /// −1/3!, 1/5!, … −1/19! and 1/4!, −1/6!, … 1/20!, last first.
 const SINE: [f64; 8] = [

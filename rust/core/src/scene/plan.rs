@@ -165,13 +165,18 @@ impl Plan {
         let closed_forms = automatic && request.events.is_empty() && !turning.steps();
         let solutions =
             if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
+        let end = request.times[request.times.len() - 1];
+        let integrated = solutions.integrates().then_some([scene.t0, end]);
+        if let (Some(times), None) = (integrated, &scene.own_forces) {
+            refusals::check_drives(&forces, times)?;
+        }
         let planar = planar(scene, &forces) && !turning.steps();
         let count = forces.len();
         // Points of bodies may be held in space, or tied to it.
         let moves = solutions.integrates() && !turning.steps();
         let (forces, frame) = about(forces, moves);
         let alike = count - forces.len();
-        let own = Own::of(scene, method, moves)?;
+        let own = Own::of(scene, method, integrated, moves)?;
         let relative = matches!(&forces[..], [force] if force.as_newtonian().is_some())
             && groups == Groups::All
             && !touching
@@ -191,7 +196,7 @@ impl Plan {
             Groups::Listed(_) => scene.copies > 1 || groups.largest(scene.particles) <= RING_MAX,
         };
         let layout = if batched { Layout::Batched } else { Layout::Packed };
-        let whole = (request.times[request.times.len() - 1] - scene.t0).abs();
+        let whole = (end - scene.t0).abs();
         // Equal steps go on from where they ended: their units must not depend on where that was.
         let span = dt.map_or(whole, f64::abs);
         let mut plan = Self {

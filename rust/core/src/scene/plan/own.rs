@@ -21,16 +21,24 @@ pub(super) struct Own {
 }
 
 impl Own {
-    /// The forces that copies have of their own, if they have.
+    /// The forces that copies have of their own, if they have; about origins that move, if they may.
     ///
     /// # Errors
-    /// When the method cannot take one of them.
-    pub(super) fn of(scene: &Scene, method: &Method, integrates: bool) -> Result<Option<Self>> {
+    /// When the method cannot take one of them, or a drive is not known at these times, at which it is integrated.
+    pub(super) fn of(
+        scene: &Scene,
+        method: &Method,
+        integrated: Option<[f64; 2]>,
+        moves: bool,
+    ) -> Result<Option<Self>> {
         let Some(own) = &scene.own_forces else { return Ok(None) };
         let set = |forces: &Vec<Arc<dyn ForceTerm>>| {
             let forces = acting(scene, forces);
             super::refusals::check_method(method, &forces)?;
-            Ok(about(forces, integrates))
+            if let Some(times) = integrated {
+                super::refusals::check_drives(&forces, times)?;
+            }
+            Ok(about(forces, moves))
         };
         let sets = own.sets.iter().map(set).collect::<Result<_>>()?;
         Ok(Some(Self { sets, of_copy: own.of_copy.clone() }))

@@ -4,10 +4,12 @@ use super::super::Scene;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::forces::term::Coupling;
+use crate::numerics::cosine::LARGEST;
 use crate::ode::Method;
 use crate::ode::system::{Form, Needs};
 use crate::ode::transformation::Transformation;
 use crate::registry::METHODS;
+use crate::words::number;
 use std::sync::Arc;
 
 /// Refuses a method that cannot take what a force looks at.
@@ -31,6 +33,32 @@ pub(super) fn check_method(method: &Method, forces: &[Arc<dyn ForceTerm>]) -> Re
             others.collect::<Vec<_>>().join(", ")
         ),
     ))
+}
+
+/// Refuses drives whose angle leaves what the cosine is known of, at the start or at the end of a run.
+///
+/// # Errors
+/// By name, with the angle.
+pub(super) fn check_drives(forces: &[Arc<dyn ForceTerm>], times: [f64; 2]) -> Result<()> {
+    for drive in forces.iter().filter_map(|force| force.as_driven()) {
+        for t in times {
+            let angle = (drive.frequency * t + drive.phase).abs();
+            // What is no number is beyond it, too.
+            if angle.is_nan() || angle > LARGEST {
+                return Err(Error::invalid(
+                    "frequency",
+                    format!(
+                        "DrivenForce is known for angles frequency·t + phase of up to {} radians, got {} at t = {}; expected \
+                         a lower frequency, or times nearer to 0",
+                        number(LARGEST),
+                        number(angle),
+                        number(t)
+                    ),
+                ));
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Refuses forces that leave nothing to watch, or whose potential energy nobody adds up on the way. `falls`: uniform fields
