@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from visviva.scene import Scene
     from visviva.trajectory import Trajectory
 
-__all__ = ["by_era", "eras", "hosts", "merged"]
+__all__ = ["by_era", "eras", "hosts", "merged", "parts_and_masses"]
 
 
 def hosts(bodies: Particles) -> NDArray[np.int64] | None:
@@ -72,6 +72,28 @@ def eras(run: Trajectory) -> Iterator[tuple[slice, Scene, list[int] | None]]:
             gone = first + second - survivor
             mass[survivor] += mass[gone]
             mass[gone], left[gone] = 0.0, False
+
+
+def parts_and_masses(run: Any) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Which bodies are parts of others in each row, and the masses there; (T, N), of an ensemble (B, T, N)."""
+    from visviva.trajectory import Trajectory
+
+    if isinstance(run, Trajectory):
+        return _of_rows(run, len(run.t))
+    members = [_of_rows(run[member], len(run.t)) for member in range(len(run))]
+    return np.stack([parts for parts, _ in members]), np.stack([mass for _, mass in members])
+
+
+def _of_rows(run: Trajectory, count: int) -> tuple[NDArray[np.bool_], NDArray[np.float64]]:
+    """Of so many rows; those that a failed copy does not have are as the scene."""
+    mass = np.tile(run.scene.particles.mass, (count, 1))
+    parts = np.zeros(mass.shape, dtype=bool)
+    for rows, scene, there in eras(run):
+        if there is not None:
+            parts[rows], mass[rows] = True, 0.0
+            for body, own in zip(there, scene.particles.mass, strict=True):
+                parts[rows, body], mass[rows, body] = False, own
+    return parts, mass
 
 
 def by_era(

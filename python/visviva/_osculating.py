@@ -47,8 +47,12 @@ def elements_of(
     bodies: str | int | Sequence[str | int] | None,
     about: str | int,
     G: float | None,
+    merged: tuple[NDArray[np.bool_], NDArray[np.float64]] | None = None,
 ) -> Elements:
-    """The elements of states (…, N, 3) that began with `start`: of an ensemble (B, T, N, 3)."""
+    """The elements of states (…, N, 3) that began with `start`: of an ensemble (B, T, N, 3).
+
+    Where bodies have `merged`: which are parts of others, and what the masses are, (…, N).
+    """
     from visviva.ensemble import EnsembleScene
     from visviva.scene import Scene
 
@@ -61,6 +65,9 @@ def elements_of(
     else:
         assert isinstance(start, Scene)
         mass, constant = mass[0], gravitational_constant(start.forces, G)
+    gone = np.zeros(mass.shape, dtype=bool)
+    if merged is not None:
+        gone, mass = merged
     parent = (
         about
         if isinstance(about, str) and about in (CENTER_OF_MASS, JACOBI)
@@ -72,17 +79,22 @@ def elements_of(
     else:
         chosen = body_indices("bodies", bodies, names, count)
         _check_chosen(chosen, parent, names)
+    if isinstance(parent, int) and gone[..., parent].any():
+        raise InvalidInput(
+            "about", f"expected a body by itself, but {body_label(parent, names)} has become a part of another"
+        )
     with np.errstate(over="ignore", invalid="ignore"):  # _check says it by name
         parts = _relative(position, velocity, mass, chosen, parent)
     axes = (*position.shape[:-2], len(chosen))
     r, v = np.empty((*axes, 3)), np.empty((*axes, 3))
     mu = np.empty(axes)
     for column, (body, (apart, rate, attracting)) in enumerate(zip(chosen, parts, strict=True)):
-        r[..., column, :], v[..., column, :] = apart, rate
+        part = gone[..., body, None]
+        r[..., column, :], v[..., column, :] = np.where(part, np.nan, apart), np.where(part, np.nan, rate)
         with np.errstate(over="ignore"):
             mu[..., column] = constant * (attracting + mass[..., body])
         lost = ~np.isfinite(apart) & np.isfinite(position[..., body, :])
-        _check(apart, lost, mu[..., column], attracting, body_label(body, names), parent, names)
+        _check(r[..., column, :], lost, mu[..., column], attracting, body_label(body, names), parent, names)
     found = _conics(mu, r, v)
     if isinstance(bodies, str | int | np.integer):
         # Of one body alone, without the axis over bodies.
@@ -176,7 +188,7 @@ def _others(
 
 
 def _conics(mu: NDArray[np.float64], r: NDArray[np.float64], v: NDArray[np.float64]) -> dict[str, NDArray[np.float64]]:
-    """The elements of every state; NaN where the state is, as a copy of an ensemble is after it failed."""
+    """The elements of every state; NaN where the state is: of a copy that has failed, of a part of another body."""
     known = np.isfinite(r).all(axis=-1) & np.isfinite(v).all(axis=-1)
     found = elements(mu[known], r[known], v[known])
     spread: dict[str, Any] = {}

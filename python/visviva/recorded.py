@@ -229,7 +229,8 @@ class Recorded(ABC):
             Arrays of shape (T, K) for K bodies, (T,) for one that was given alone, with a leading axis B of an
             ensemble; vectors with a last axis of 3. Angles are in radians, x the reference direction, z the pole. What
             they are for circular, planar, parabolic and radial orbits is said in `visviva.orbits.Elements`. Rows that a
-            failed copy of an ensemble does not have are NaN, as its states are.
+            failed copy of an ensemble does not have are NaN, as its states are; and those of a body after it has merged
+            into another, which then has the mass of both.
 
         Raises
         ------
@@ -244,12 +245,11 @@ class Recorded(ABC):
         >>> out.elements(["Jupiter", "Saturn"], about="Sun").semi_major_axis.round(2).tolist()
         [[5.2, 9.54], [5.2, 9.58]]
         """
-        from visviva._mergers import merged
+        from visviva._mergers import parts_and_masses
         from visviva._osculating import elements_of
 
-        if merged(self):
-            raise InvalidInput("elements", "bodies merged on the way, and their masses changed; use out.final.elements")
-        return elements_of(self._start, self.position, self.velocity, bodies, about, G)
+        merged = parts_and_masses(self) if self._result.get("collisions") else None
+        return elements_of(self._start, self.position, self.velocity, bodies, about, G, merged)
 
     @property
     def recorded(self) -> tuple[str, ...]:

@@ -85,7 +85,7 @@ class Runnable(ABC, Generic[_Result]):
             ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,
             momentum, centre of mass and volume are kept, the angular momentum of both about each other is not. The
             other has no mass and no radius from then on and goes with it: ``out.final.particles.mass`` tells, and a
-            run with ``"merge"`` goes on from there. ``"bounce"``: an impulse along the line of their centres; a
+            run with any ``collisions`` goes on from there. ``"bounce"``: an impulse along the line of their centres; a
             massless body bounces off a massive one, two massless ones as if they had equal masses. ``"stop"``: the run
             ends there, with `Status.STOPPED`. A row at the time of a collision has the state before it; steps begin
             anew after it. All bodies are on the same steps, no closed form is used while two may touch, and

@@ -384,10 +384,13 @@ class Scene(Runnable[Trajectory], Framed):
         >>> planets.elements(about="Sun").eccentricity.round(3).tolist()
         [0.048, 0.053, 0.046, 0.007, 0.255]
         """
+        from visviva._mergers import hosts
         from visviva._osculating import elements_of
 
         p = self.particles
-        return elements_of(self, p.position, p.velocity, bodies, about, G)
+        parts = hosts(p)
+        merged = None if parts is None else (parts != np.arange(len(p)), p.mass)
+        return elements_of(self, p.position, p.velocity, bodies, about, G, merged)
 
     def _like(
         self,

@@ -321,3 +321,15 @@ def test_an_interrupted_closed_form_keeps_its_rows(threads: int) -> None:
     assert np.array_equal(part.kinetic_energy, again.kinetic_energy)
     assert part.final.t0 == times[rows - 1]
     assert np.array_equal(part.final.particles.position, again.position[-1])
+
+
+def test_a_center_too_weak_for_a_number_still_pulls() -> None:
+    # k/m = 1e-350 is no number; in units of 2^-332 and 2^83 the orbit is one of size and period about 1.
+    center = vv.CentralField(vv.potentials.Coulomb(-1e-200))
+    scene = vv.Scene(vv.Particles([1e150], [[1e-100, 0.0, 0.0]], [[0.0, 1.2e-125, 0.0]]), center)
+    out = scene.run(2e25, rtol=1e-13)
+    assert not out.plan.closed_form
+    near_one = scene.rescaled(length=2.0**332, mass=2.0**-498, time=2.0**-83)
+    closed = near_one.run(2e25 * 2.0**-83)
+    assert closed.plan.closed_form
+    assert out.position[-1] * 2.0**332 == pytest.approx(closed.position[-1], rel=1e-11)

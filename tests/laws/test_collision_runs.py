@@ -32,8 +32,41 @@ def test_what_mergers_leave_goes_on() -> None:
     assert np.array_equal(on.position[:, ~gone], alone.position)
     assert np.array_equal(on.energy, alone.energy)
     assert on.conservation().momentum.max < 1e-13
-    with pytest.raises(vv.InvalidInput, match="distinct positions"):
+    # Whatever spheres do from here on, what was absorbed goes with its host.
+    for rule in ("stop", "bounce"):
+        on, alone = (start.run(times, collisions=rule, rtol=1e-12) for start in (left, few))
+        assert np.array_equal(on.position[:, ~gone], alone.position)
+        assert on.status == alone.status
+    with pytest.raises(vv.InvalidInput, match=r"is a part of body .* run on with collisions="):
         left.run(1.0)
+
+
+def test_elements_know_what_has_merged() -> None:
+    # A comet falls into the star, and two planets meet.
+    places = [[0.0, 0.0, 0.0], [1.0, 0.0, 0.0], [1.2, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, -0.5, 0.0]]
+    velocities = [[0.0, 0.0, 0.0], [0.0, 1.0, 0.0], [-2.0, 0.9, 0.0], [-0.57, 0.0, 0.0], [0.0, 0.0, 0.0]]
+    bodies = vv.Particles([1.0, 1e-3, 2e-3, 1e-3, 1e-6], places, velocities, radius=[0.1, 0.02, 0.02, 0.02, 0.0])
+    scene = vv.Scene(bodies, vv.Gravity(G=1.0))
+    out = scene.run([0.0, 0.01, 0.5, 1.0], collisions="merge", rtol=1e-12)
+    assert set(zip(out.collisions.first.tolist(), out.collisions.second.tolist(), strict=True)) == {(1, 2), (0, 4)}
+    found = out.elements()
+    assert np.isfinite(found.eccentricity[:2]).all()
+    # Bodies 1 and 4 are parts of others from the third row on; body 3 goes on about what the star has become.
+    assert np.isnan(found.eccentricity[2:]).tolist() == [[True, False, False, True]] * 2
+    assert found.mu[:, 2].tolist() == [1.001, 1.001, 1.0 + 1e-6 + 1e-3, 1.0 + 1e-6 + 1e-3]
+    there = [0, 2, 3]
+    left = vv.Scene(out.final.particles[there], *scene.forces, t0=1.0)
+    alone = left.elements()
+    for name in ("semi_major_axis", "eccentricity", "true_anomaly", "mu"):
+        assert getattr(found, name)[-1, [1, 2]].tolist() == getattr(alone, name).tolist(), name
+        assert np.array_equal(getattr(out.final.elements(), name), getattr(found, name)[-1], equal_nan=True)
+    for about in ("center_of_mass", "jacobi"):
+        own = out.elements([2, 3], about=about).eccentricity[-1]
+        assert own == pytest.approx(left.elements([1, 2], about=about).eccentricity, rel=1e-13)
+    with pytest.raises(vv.InvalidInput, match="expected a body by itself"):
+        out.elements(3, about=1)
+    copies = scene.ensemble(position=np.stack([bodies.position] * 2)).run(out.t, collisions="merge", rtol=1e-12)
+    assert np.array_equal(copies.elements().eccentricity[1], found.eccentricity, equal_nan=True)
 
 
 @pytest.mark.parametrize("rule", ["bounce", "merge"])

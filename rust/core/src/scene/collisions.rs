@@ -9,7 +9,7 @@ mod sweep;
 mod table;
 
 pub use impact::Impact;
-pub use run::{plan, run};
+pub use run::{absorbed, plan, run};
 pub use sweep::swept;
 pub use table::{Collision, Table};
 

@@ -192,12 +192,26 @@ impl Scene {
         let check = |forces: &[Arc<dyn ForceTerm>], bodies: &Bodies<'_>| {
             forces.iter().try_for_each(|force| {
                 check_masses(&**force, bodies)?;
-                force.validate(bodies)
+                force.validate(bodies).map_err(|error| self.of_a_merger(error))
             })
         };
         if self.own_forces.is_none() {
             return check(&self.forces, &self.bodies());
         }
         (0..self.copies).try_for_each(|copy| check(self.forces_of(copy), &self.bodies_of(copy)))
+    }
+
+    /// The refusal of places, with what to do about bodies that an earlier run has merged.
+    fn of_a_merger(&self, error: Error) -> Error {
+        match (error, collisions::absorbed(self)) {
+            (Error::InvalidInput { argument, message }, Some((body, host))) if argument == "position" => {
+                let advice = format!(
+                    "body {body} is a part of body {host} since they merged: run on with collisions=\"merge\", \"bounce\" \
+                     or \"stop\", or make a scene without it"
+                );
+                Error::InvalidInput { argument, message: format!("{message}; {advice}") }
+            }
+            (error, _) => error,
+        }
     }
 }

@@ -14,6 +14,7 @@ use crate::scene::plan::Plan;
 use crate::scene::request::Request;
 use crate::scene::run::{Collided, Events, Kept, Output, Reached, plan_through};
 use member::Member;
+pub use start::absorbed;
 use start::{check_overlaps, whole_of};
 
 /// The plan of a run with collisions.
@@ -25,11 +26,7 @@ pub fn plan(scene: &Scene, request: &Request, rule: Collisions, ticker: &mut Tic
         events.push(contact(scene.radii(0).to_vec(), Vec::new()));
         Request { events, collisions: Some(rule), ..request.clone() }
     };
-    let merged = if rule == Collisions::Merge {
-        (0..scene.copies).find_map(|copy| whole_of(scene, copy, rule))
-    } else {
-        None
-    };
+    let merged = (0..scene.copies).find_map(|copy| whole_of(scene, copy, rule));
     // Bodies that are parts of others differ from copy to copy: the plan is that of one.
     let plan = match merged {
         Some(first) => plan_through(&first, &looking(&first, Vec::new()), ticker)?,

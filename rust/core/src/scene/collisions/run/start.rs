@@ -13,19 +13,32 @@ pub(super) fn bodies_of(scene: &Scene, copy: usize, rule: Collisions, direction:
     let (mass, radius) = (scene.masses(copy), scene.radii(copy));
     let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
     let radius = if radius.is_empty() { vec![0.0; scene.particles] } else { radius.to_vec() };
-    let mut host: Vec<usize> = (0..scene.particles).collect();
-    if rule == Collisions::Merge {
-        // What an earlier run has merged: nothing by itself, in the place of another and moving with it.
-        let key = |body: usize| [position[body], velocity[body]].map(|x| x.map(|x| (x + 0.0).to_bits()));
-        let whole = |body: usize| mass[body] > 0.0 || radius[body] > 0.0;
-        let there: HashMap<_, usize> =
-            (0..scene.particles).filter(|&body| whole(body)).map(|body| (key(body), body)).collect();
-        for (body, host) in host.iter_mut().enumerate().filter(|(body, _)| !whole(*body)) {
-            *host = there.get(&key(body)).copied().unwrap_or(body);
-        }
-    }
+    // What names bodies cannot do without any; a merger refuses it.
+    let names =
+        rule != Collisions::Merge && scene.forces_of(copy).iter().any(|force| force.tells_bodies_apart());
+    let host = if names { (0..scene.particles).collect() } else { hosts(scene, copy) };
     let (mass, position, velocity) = (mass.to_vec(), position.to_vec(), velocity.to_vec());
     Impact { mass, radius, position, velocity, host, direction }
+}
+
+/// Of which body each of a copy is a part, or itself: what an earlier run has merged is nothing by itself, in the place of
+/// another and moving with it.
+fn hosts(scene: &Scene, copy: usize) -> Vec<usize> {
+    let (mass, radius) = (scene.masses(copy), scene.radii(copy));
+    let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
+    let key = |body: usize| [position[body], velocity[body]].map(|x| x.map(|x| (x + 0.0).to_bits()));
+    let whole = |body: usize| mass[body] > 0.0 || radius.get(body).is_some_and(|&radius| radius > 0.0);
+    let there: HashMap<_, usize> =
+        (0..scene.particles).filter(|&body| whole(body)).map(|body| (key(body), body)).collect();
+    let host = |body| if whole(body) { body } else { there.get(&key(body)).copied().unwrap_or(body) };
+    (0..scene.particles).map(host).collect()
+}
+
+/// A body that is a part of another, as a merger leaves it, and that one.
+pub fn absorbed(scene: &Scene) -> Option<(usize, usize)> {
+    let spheres = scene.radius.iter().any(|&radius| radius > 0.0);
+    let copies = if spheres { 0..scene.copies } else { 0..0 };
+    copies.flat_map(|copy| hosts(scene, copy).into_iter().enumerate()).find(|(body, host)| body != host)
 }
 
 /// A copy without those of its bodies that are parts of others, if some are.
