@@ -2,11 +2,14 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::Turns;
 use super::series::{LinearSeries, Series};
 use super::term::{ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
@@ -37,13 +40,22 @@ struct LinearDrag {
     tau: f64,
 }
 
+impl LinearDrag {
+    fn slowing(&self, context: &Context<'_>) -> Kernel {
+        let rate = |system: &System<'_>| -1.0 / context.units.take(context.own(self, system).tau, [0, 0, 1]);
+        Kernel { shape: context.shape, rate: context.per_system(rate) }
+    }
+}
+
 impl ForceTerm for LinearDrag {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let rate = |system: &System<'_>| -1.0 / context.units.take(context.own(self, system).tau, [0, 0, 1]);
-        Box::new(Kernel { shape: context.shape, rate: context.per_system(rate) })
+        Box::new(self.slowing(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        beside(other, None, context, || self.slowing(context))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
         LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
@@ -99,6 +111,21 @@ fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool)
                 *a = if first { term } else { *a + term };
             }
         }
+    }
+}
+
+impl Beside for Kernel {
+    const VELOCITY: bool = true;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        _: [V; 3],
+        velocity: [V; 3],
+        _: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        let rate = V::load(self.rate[0]);
+        [rate * velocity[0], rate * velocity[1], rate * velocity[2]]
     }
 }
 

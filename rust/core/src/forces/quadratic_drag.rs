@@ -2,10 +2,13 @@
 
 use super::bodies::PreciseBodies;
 use super::context::{Context, of_body};
+use super::gravity::beside::{Beside, beside};
+use super::gravity::ring::Turns;
 use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::element::Shape;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::scaled::Scaled;
 use crate::ode::system::Needs;
@@ -54,6 +57,17 @@ impl QuadraticDrag {
     }
 }
 
+impl QuadraticDrag {
+    fn slowing(&self, context: &Context<'_>) -> Kernel {
+        let ratio = context.per_body(|system, slot| {
+            let coefficient = context.own(self, system).coefficient(system.bodies[slot]);
+            let coefficient = context.units.take(coefficient, COEFFICIENT);
+            if coefficient == 0.0 { 0.0 } else { -coefficient / system.mass[slot] }
+        });
+        Kernel { shape: context.shape, ratio }
+    }
+}
+
 impl ForceTerm for QuadraticDrag {
     fn declaration(&self) -> &'static ForceDeclaration {
         &DECLARATION
@@ -63,12 +77,10 @@ impl ForceTerm for QuadraticDrag {
     }
 
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        let ratio = context.per_body(|system, slot| {
-            let coefficient = context.own(self, system).coefficient(system.bodies[slot]);
-            let coefficient = context.units.take(coefficient, COEFFICIENT);
-            if coefficient == 0.0 { 0.0 } else { -coefficient / system.mass[slot] }
-        });
-        Box::new(Kernel { shape: context.shape, ratio })
+        Box::new(self.slowing(context))
+    }
+    fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
+        beside(other, None, context, || self.slowing(context))
     }
     fn potential_and_virial(
         &self,
@@ -126,6 +138,23 @@ fn kernel<V: Vector8>(force: &Kernel, v: &[Lanes], a: &mut [Lanes], first: bool)
             let term = slowing * v[at];
             a[at] = if first { term } else { a[at] + term };
         }
+    }
+}
+
+impl Beside for Kernel {
+    const VELOCITY: bool = true;
+
+    #[inline(always)]
+    fn term<V: Vector8 + InverseCube, const PLANAR: bool, const TURNS: usize, const EVEN: bool>(
+        &self,
+        _: [V; 3],
+        v: [V; 3],
+        _: &Turns<V, TURNS>,
+    ) -> [V; 3] {
+        let plane = v[1].multiply_add(v[1], v[0] * v[0]);
+        let square = if PLANAR { plane } else { v[2].multiply_add(v[2], plane) };
+        let slowing = V::load(self.ratio[0]) * square.sqrt();
+        [slowing * v[0], slowing * v[1], slowing * v[2]]
     }
 }
 

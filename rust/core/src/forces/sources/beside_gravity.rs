@@ -67,9 +67,12 @@ impl<L: Law> Beside for OneSource<L> {
             }
         }
         let d = difference(place, own);
+        // Sums of one number and zeros.
         let mut inverse_cube = V::zero();
-        for (taken, weight) in self.turns[..TURNS].iter().zip(&found.weight) {
-            inverse_cube += V::select(taken.here, weight.permute(&taken.lane), V::zero());
+        for k in (0..TURNS).rev() {
+            let taken = &self.turns[k];
+            let part = V::select(taken.here, found.weight[k].permute(&taken.lane), V::zero());
+            inverse_cube = if k + 1 == TURNS { part } else { part + inverse_cube };
         }
         let velocity = difference(speed, own_speed);
         let relative = Relative { d, velocity, square: squared(d), inverse_cube };
@@ -77,10 +80,10 @@ impl<L: Law> Beside for OneSource<L> {
         let inverse_mass = V::load(source.alone);
         let itself = V::zero().less(inverse_mass);
         for c in 0..3 {
-            // As where both are added to zeros.
-            let other = V::zero() + V::select(source.others[0], pull[c], V::zero());
+            let other = V::select(source.others[0], pull[c], V::zero());
             let sum = sum_of_eight(V::load(self.mass), other);
-            pull[c] = V::select(itself, V::zero() - sum * inverse_mass, other);
+            // As where both are added to zeros.
+            pull[c] = V::select(itself, V::zero() - sum * inverse_mass, V::zero() + other);
         }
         pull
     }
