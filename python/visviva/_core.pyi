@@ -1,7 +1,7 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
 from collections.abc import Callable
-from typing import Any, TypeAlias, TypedDict
+from typing import Any, TypeAlias, TypedDict, final
 
 import numpy as np
 from numpy.typing import NDArray
@@ -99,6 +99,11 @@ def run(
     asked: _Request, *, threads: int | None, progress: Callable[[int, int], object] | None, ensemble: bool
 ) -> dict[str, Any]: ...
 def plan(asked: _Request) -> dict[str, Any]: ...
+
+@final
+class Planned:
+    def told(self) -> dict[str, Any]: ...
+
 def conserved(
     *,
     mass: NDArray[np.float64],

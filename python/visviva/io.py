@@ -29,6 +29,7 @@ from visviva.ensemble import EnsembleScene, EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
 from visviva.particles import Particles
+from visviva.plan import told
 from visviva.scene import Scene
 from visviva.trajectory import Trajectory
 
@@ -68,7 +69,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         "t0": start["t0"],
         "forces": start["forces"],
         "stats": result["stats"],
-        "plan": result["plan"],
+        "plan": told(result["plan"]),
     }
     if start["own_forces"] is not None:
         header["own_forces"] = start["own_forces"]

@@ -142,6 +142,11 @@ class Plan:
         return cls(**known, _asked=asked)
 
 
+def told(plan: dict[str, Any] | _core.Planned) -> dict[str, Any]:
+    """The plan of a run or of a file as a dictionary: that of a run is made when somebody asks."""
+    return plan if isinstance(plan, dict) else plan.told()
+
+
 def _size(size: float) -> str:
     for unit in ("bytes", "kB", "MB", "GB"):
         if size < 1000.0:

@@ -15,7 +15,7 @@ import numpy as np
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
 from visviva.errors import InvalidInput
-from visviva.plan import Plan
+from visviva.plan import Plan, told
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -86,7 +86,7 @@ class Recorded(ABC):
 
     def __reduce__(self) -> tuple[Any, ...]:
         # By way of the constructor, which makes the arrays read-only again.
-        return type(self), (self._start, self._result)
+        return type(self), (self._start, {**self._result, "plan": told(self._result["plan"])})
 
     if not TYPE_CHECKING:
 
@@ -298,7 +298,7 @@ class Recorded(ABC):
     @property
     def plan(self) -> Plan:
         """What ran, what was skipped, and why."""
-        return Plan._from_core(self._result["plan"])
+        return Plan._from_core(told(self._result["plan"]))
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to one ``.npz`` file that this and every later version loads.

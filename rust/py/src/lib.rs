@@ -65,7 +65,7 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
-    use crate::scene::{acceleration, columns, conserved, conserves, plan, run};
+    use crate::scene::{Planned, acceleration, columns, conserved, conserves, plan, run};
     #[pymodule_export]
     use crate::solve_ivp::{interpolate, solve_ivp};
     #[pymodule_export]

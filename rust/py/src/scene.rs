@@ -12,6 +12,7 @@ use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::{compute, is_ctrl_c};
 use input::{Array, Asked, forces as described, point, points, snapshot};
+pub(crate) use output::Planned;
 use output::{error_dict, output_dict, plan_dict};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyList};

@@ -14,6 +14,18 @@ use visviva_core::scene::plan::Plan;
 use visviva_core::scene::request::Request;
 use visviva_core::scene::run::{Kept, Outcome, Output};
 
+/// The plan that was carried out, for whoever asks: to tell it takes as long as a short run.
+#[pyclass(frozen, module = "visviva._core")]
+pub(crate) struct Planned(Plan);
+
+#[pymethods]
+impl Planned {
+    /// What was done.
+    fn told<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        plan_dict(py, &self.0)
+    }
+}
+
 /// What will be done.
 pub(super) fn plan_dict<'py>(py: Python<'py>, plan: &Plan) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
@@ -85,7 +97,6 @@ pub(super) fn output_dict<'py>(
     reached.truncate(times);
     dict.set_item("t", moved(py, reached, &[times])?)?;
     dict.set_item("columns", columns)?;
-    dict.set_item("plan", plan_dict(py, &output.plan)?)?;
     let statuses: Vec<i8> = outcomes.iter().map(|outcome| status(&outcome.ending)).collect();
     dict.set_item("status", moved(py, statuses, &[copies])?)?;
 
@@ -182,6 +193,7 @@ pub(super) fn output_dict<'py>(
     }
     let error = outcomes.first().filter(|_| !ensemble).and_then(failure);
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
+    dict.set_item("plan", Planned(output.plan))?;
     Ok(dict)
 }
 
