@@ -21,6 +21,7 @@ SCRIPTS = (
     "events",
     "figure_eight_ensemble",
     "rigid",
+    "rigid_scene",
     "rutherford",
     "same_bits",
     "solve_ivp",

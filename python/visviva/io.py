@@ -3,9 +3,9 @@
 A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, ``mass``, ``position`` and
 ``velocity`` of the start with a leading axis over copies, ``column/<name>``, ``final/<name>`` and
 ``per_trajectory/<name>``, ``rigid/<name>`` of rigid bodies, ``radius`` of spheres and ``collisions/<name>``, and
-``events/<name>`` of a run with events, whose definitions are in the header, as are the names of bodies. What a run left behind for another to go on with is in
-``final/held`` and ``final/node``; what the run itself went on with in ``final/start_<name>``. Every later version of
-visviva must load it: `tests/reference` keeps one.
+``events/<name>`` of a run with events, whose definitions are in the header, as are the names of bodies. What a run left
+behind for another to go on with is in ``final/held`` and ``final/node``; what the run itself went on with in
+``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 

@@ -145,7 +145,8 @@ def test_outputs_do_not_steer(name: str) -> None:
     )
     assert (few.orientation[-1] == many.orientation[-1]).all()
     assert (few.position[-1] == many.position[-1]).all()
-    assert many.energy[-1] == few.energy[-1]
+    # Computed afterwards it lacks the digits that the record leaves out.
+    assert abs(many.energy[-1] / few.energy[-1] - 1.0) <= 1e-15
     between = scene.run(t=[0.033], method="kahan_li8", dt=0.0033)
     apart = scene.run(t=[0.033], method="kahan_li8", dt=0.02)
     np.testing.assert_allclose(between.orientation, apart.orientation, rtol=0, atol=1e-12)

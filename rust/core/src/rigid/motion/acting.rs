@@ -382,7 +382,7 @@ impl Pass<Lanes> for Apply<'_, '_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let Arrangement { rows, bodies } = self.seen.arrangement;
+        let Arrangement { rows, bodies, .. } = self.seen.arrangement;
         let sight = Sight { rows: *rows, points: 3 * rows, q: V::view(self.seen.q), v: V::view(self.seen.v) };
         let (a, torque) = (V::view_mut(self.a), V::view_mut(self.torque));
         for acting in self.loads {

@@ -273,6 +273,8 @@ pub struct Arrangement {
     pub rows: usize,
     /// The bodies, those of the first eight systems first.
     pub bodies: Arc<[LaneBody]>,
+    /// Whether some point is none of a held body.
+    pub free_points: bool,
 }
 
 impl Arrangement {

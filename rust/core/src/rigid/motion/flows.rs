@@ -8,6 +8,7 @@ use super::vectors::{cross, times_plus, turned, turned_back};
 use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
+use crate::ode::passes::updates::add_compensated;
 use crate::ode::state::State;
 use crate::rigid::flow::moser_veselov::Order;
 
@@ -20,121 +21,192 @@ pub enum Free {
     Discrete(Order),
 }
 
-/// Room for series.
+/// Room for series, and for where bodies turn too far for them.
 #[derive(Debug)]
-pub struct Room(Vec<Lanes>);
+pub struct Room {
+    series: Vec<Lanes>,
+    far: Vec<Lanes>,
+}
 
 impl Default for Room {
     fn default() -> Self {
-        Self(vec![Lanes::zero(); turn::ROOM])
+        Self { series: vec![Lanes::zero(); turn::ROOM], far: Vec::new() }
     }
 }
 
-/// Turns all bodies, for a time of so much; centers of held bodies go with them.
-pub fn turn_bodies(arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, room: &mut Room) {
+/// A kick and the drift after it, of points and bodies, in one pass.
+pub struct Move<'a> {
+    /// Where bodies lie.
+    pub arrangement: &'a Arrangement,
+    /// The state.
+    pub state: &'a mut State<Lanes>,
+    /// Accelerations of points.
+    pub a: &'a [Lanes],
+    /// Torques about centers; empty for none.
+    pub torque: &'a [Lanes],
+    /// The kick's coefficient times the step, if there is one.
+    pub kick: Option<&'a Scaled<Lanes>>,
+    /// That of the drift.
+    pub drift: Option<&'a Scaled<Lanes>>,
+    /// Room for what it meets on the way.
+    pub room: &'a mut Room,
+}
+
+/// Takes it.
+pub fn take(step: Move<'_>) {
+    let Move { arrangement, state, a, torque, kick, drift, room } = step;
+    let Room { series, far } = room;
+    far.resize(arrangement.bodies.len(), Lanes::zero());
     let (q, v) = state.halves_mut();
-    for (body, of) in arrangement.bodies.iter().enumerate() {
-        let at = arrangement.at(body);
-        let momentum = &v.0[at..at + 3];
-        let (points, turning) = q.0.split_at_mut(arrangement.points());
-        let (points_rest, turning_rest) = q.1.split_at_mut(arrangement.points());
-        let own = 4 * body..4 * body + 4;
-        let orientation = (&mut turning[own.clone()], &mut turning_rest[own]);
-        let far = Lanes::pass(TurnBody { of, momentum, orientation, h, room: &mut room.0 });
-        if let Some(far) = far {
-            turn_far(of, momentum, (&mut turning[4 * body..], &mut turning_rest[4 * body..]), h, &far);
-        }
-        if of.pivoted {
-            let orientation = &turning[4 * body..4 * body + 4];
-            Lanes::pass(Hold { of, rows: arrangement.rows, orientation, q: (points, points_rest) });
-        }
+    let (q, v) = ((&mut *q.0, &mut *q.1), (&mut *v.0, &mut *v.1));
+    if Lanes::pass(KickDrift { arrangement, q, v, a, torque, kick, drift, series, far })
+        && let Some((h, _)) = drift
+    {
+        turn_far(arrangement, state, h, far);
     }
 }
 
-/// Puts the centers of all held bodies where their orientations have them.
-pub fn hold(arrangement: &Arrangement, state: &mut State<Lanes>) {
-    let (q, _) = state.halves_mut();
-    let (points, turning) = q.0.split_at_mut(arrangement.points());
-    let rest = &mut q.1[..arrangement.points()];
-    for (body, of) in arrangement.bodies.iter().enumerate().filter(|(_, of)| of.pivoted) {
-        let orientation = &turning[4 * body..4 * body + 4];
-        Lanes::pass(Hold { of, rows: arrangement.rows, orientation, q: (&mut *points, &mut *rest) });
-    }
+struct KickDrift<'a> {
+    arrangement: &'a Arrangement,
+    q: PairMut<'a, Lanes>,
+    v: PairMut<'a, Lanes>,
+    a: &'a [Lanes],
+    torque: &'a [Lanes],
+    kick: Option<&'a Scaled<Lanes>>,
+    drift: Option<&'a Scaled<Lanes>>,
+    series: &'a mut [Lanes],
+    far: &'a mut [Lanes],
 }
 
-struct TurnBody<'a> {
-    of: &'a LaneBody,
-    momentum: &'a [Lanes],
-    orientation: PairMut<'a, Lanes>,
-    h: &'a Lanes,
-    room: &'a mut [Lanes],
-}
-
-impl Pass<Lanes> for TurnBody<'_> {
-    /// 1 where the body turns too far for this, if it does in some lane.
-    type Output = Option<Lanes>;
+impl Pass<Lanes> for KickDrift<'_> {
+    /// Whether some body turns too far for this; `far` is then 1 in the lanes where it does.
+    type Output = bool;
     #[inline(always)]
-    fn run<V: View<Lanes>>(self) -> Self::Output {
-        let LaneBody { inverse, pair, symmetric, discrete, .. } = self.of;
-        let (q, rest) = V::pair_mut(self.orientation);
-        let momentum = V::view(self.momentum);
-        let (q, rest, momentum) = (&mut q[..4], &mut rest[..4], &momentum[..3]);
-        let (from, left) = ([q[0], q[1], q[2], q[3]], [rest[0], rest[1], rest[2], rest[3]]);
-        let inverse = [V::load(inverse[0]), V::load(inverse[1]), V::load(inverse[2])];
-        let momentum = turned_back(from, [momentum[0], momentum[1], momentum[2]]);
-        let h = V::load(*self.h);
-        let room = V::view_mut(self.room);
-        let (turn, far) = match (discrete, symmetric) {
-            (Some(discrete), _) => {
-                let (turn, found) = discrete.load::<V>().turn(&momentum, h);
-                (turn, found.not())
-            }
-            (None, Symmetric::All) => {
-                (turn::symmetric(inverse, V::load(*pair), momentum, h), V::zero().less(V::zero()))
-            }
-            (None, Symmetric::None) => turn::asymmetric(inverse, momentum, h, room),
-            (None, Symmetric::Some(lanes)) => {
-                let lanes = V::mask(*lanes);
-                let (mut turn, far) = turn::asymmetric(inverse, momentum, h, room);
-                let other = turn::symmetric(inverse, V::load(*pair), momentum, h);
-                for c in 0..4 {
-                    turn[c] = V::select(lanes, other[c], turn[c]);
+    fn run<V: View<Lanes>>(self) -> bool {
+        let Arrangement { rows, bodies, free_points } = self.arrangement;
+        let points = if *free_points { self.arrangement.points() } else { 0 };
+        let (q, rest) = V::pair_mut(self.q);
+        let (v, v_rest) = V::pair_mut(self.v);
+        let (a, torque) = (V::view(self.a), V::view(self.torque));
+        if let Some(kick) = self.kick {
+            let kick = V::scaled(kick);
+            for (body, of) in bodies.iter().enumerate() {
+                let at = self.arrangement.at(body);
+                let twist = twist::<V>(of, *rows, (q, a), torque, body);
+                for c in 0..3 {
+                    let change = kick.0.multiply_add(twist[c], kick.1 * twist[c]);
+                    (v[at + c], v_rest[at + c]) = add_compensated(v[at + c], v_rest[at + c], change);
                 }
-                (turn, far.and(lanes.not()))
             }
-        };
-        let (to, left_now) = turn::oriented(from, left, turn);
-        for c in 0..4 {
-            q[c] = V::select(far, q[c], to[c]);
-            rest[c] = V::select(far, rest[c], left_now[c]);
+            for at in 0..points {
+                let change = kick.0.multiply_add(a[at], kick.1 * a[at]);
+                (v[at], v_rest[at]) = add_compensated(v[at], v_rest[at], change);
+            }
         }
-        if far.any() { Some(V::select(far, V::one(), V::zero()).store()) } else { None }
+        let Some(drift) = self.drift else { return false };
+        let drift = V::scaled(drift);
+        for at in 0..points {
+            let change = drift.0.multiply_add(v[at], drift.1.multiply_add(v[at], drift.0 * v_rest[at]));
+            (q[at], rest[at]) = add_compensated(q[at], rest[at], change);
+        }
+        let (far, series) = (V::view_mut(self.far), V::view_mut(self.series));
+        let mut any_far = false;
+        for (body, of) in bodies.iter().enumerate() {
+            let at = self.arrangement.at(body);
+            let (from, left) =
+                ([q[at], q[at + 1], q[at + 2], q[at + 3]], [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]]);
+            let momentum = turned_back(from, [v[at], v[at + 1], v[at + 2]]);
+            let (turn, too_far) = turn_of::<V>(of, momentum, drift.0, series);
+            let (mut to, mut left_now) = turn::oriented(from, left, turn);
+            if too_far.any() {
+                any_far = true;
+                for c in 0..4 {
+                    to[c] = V::select(too_far, from[c], to[c]);
+                    left_now[c] = V::select(too_far, left[c], left_now[c]);
+                }
+            }
+            far[body] = V::select(too_far, V::one(), V::zero());
+            for c in 0..4 {
+                q[at + c] = to[c];
+                rest[at + c] = left_now[c];
+            }
+            if of.pivoted {
+                place_center(of, *rows, to, (&mut *q, &mut *rest));
+            }
+        }
+        any_far
     }
 }
 
-/// The lanes in which a body turns too far for a series, by elliptic functions.
-#[cold]
-#[inline(never)]
-fn turn_far(of: &LaneBody, momentum: &[Lanes], (q, rest): PairMut<'_, Lanes>, h: &Lanes, far: &Lanes) {
-    for lane in (0..WIDTH).filter(|&lane| far.0[lane] > 0.0) {
-        let pick = |of: &[Lanes; 3]| [0, 1, 2].map(|c| of[c].0[lane]);
-        let from: [f64; 4] = core::array::from_fn(|c| q[c].0[lane]);
-        let left: [f64; 4] = core::array::from_fn(|c| rest[c].0[lane]);
-        let own = turned_back(from, [0, 1, 2].map(|c| momentum[c].0[lane]));
-        let turn = turn::far(pick(&of.moments), pick(&of.inverse), own, h.0[lane]);
-        let (to, left) = turn::oriented(from, left, turn);
-        for c in 0..4 {
-            q[c].0[lane] = to[c];
-            rest[c].0[lane] = left[c];
+/// How far a body turns freely, less the identity, and where it is too far for this.
+#[inline(always)]
+fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [V]) -> ([V; 4], V::Mask) {
+    let LaneBody { inverse, pair, symmetric, discrete, .. } = of;
+    let inverse = [V::load(inverse[0]), V::load(inverse[1]), V::load(inverse[2])];
+    match (discrete, symmetric) {
+        (Some(discrete), _) => {
+            let (turn, found) = discrete.load::<V>().turn(&momentum, h);
+            (turn, found.not())
+        }
+        (None, Symmetric::All) => {
+            (turn::symmetric(inverse, V::load(*pair), momentum, h), V::zero().less(V::zero()))
+        }
+        (None, Symmetric::None) => turn::asymmetric(inverse, momentum, h, series),
+        (None, Symmetric::Some(lanes)) => {
+            let lanes = V::mask(*lanes);
+            let (mut turn, far) = turn::asymmetric(inverse, momentum, h, series);
+            let other = turn::symmetric(inverse, V::load(*pair), momentum, h);
+            for c in 0..4 {
+                turn[c] = V::select(lanes, other[c], turn[c]);
+            }
+            (turn, far.and(lanes.not()))
         }
     }
 }
 
 /// Puts the center of a held body where its orientation has it.
+#[inline(always)]
+fn place_center<V: View<Lanes>>(of: &LaneBody, rows: usize, orientation: [V; 4], (q, rest): (&mut [V], &mut [V])) {
+    let LaneBody { row, center, pivot, .. } = of;
+    let arm = turned(orientation, [V::load(center[0]), V::load(center[1]), V::load(center[2])]);
+    for c in 0..3 {
+        let at = c * rows + row;
+        q[at] = V::load(pivot[c]) + arm[c];
+        rest[at] = V::zero();
+    }
+}
+
+/// Turns bodies by elliptic functions in the lanes in which they turn too far for a series.
+#[cold]
+#[inline(never)]
+fn turn_far(arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, far: &[Lanes]) {
+    let ((q, rest), (v, _)) = state.halves_mut();
+    for (body, of) in arrangement.bodies.iter().enumerate() {
+        let at = arrangement.at(body);
+        for lane in (0..WIDTH).filter(|&lane| far[body].0[lane] > 0.0) {
+            let pick = |of: &[Lanes; 3]| [0, 1, 2].map(|c| of[c].0[lane]);
+            let from: [f64; 4] = core::array::from_fn(|c| q[at + c].0[lane]);
+            let left: [f64; 4] = core::array::from_fn(|c| rest[at + c].0[lane]);
+            let own = turned_back(from, [0, 1, 2].map(|c| v[at + c].0[lane]));
+            let turn = turn::far(pick(&of.moments), pick(&of.inverse), own, h.0[lane]);
+            let (to, left) = turn::oriented(from, left, turn);
+            for c in 0..4 {
+                q[at + c].0[lane] = to[c];
+                rest[at + c].0[lane] = left[c];
+            }
+        }
+    }
+    hold(arrangement, state);
+}
+
+/// Puts the centers of all held bodies where their orientations have them.
+pub fn hold(arrangement: &Arrangement, state: &mut State<Lanes>) {
+    let (q, _) = state.halves_mut();
+    Lanes::pass(Hold { arrangement, q: (&mut *q.0, &mut *q.1) });
+}
+
 struct Hold<'a> {
-    of: &'a LaneBody,
-    rows: usize,
-    orientation: &'a [Lanes],
+    arrangement: &'a Arrangement,
     q: PairMut<'a, Lanes>,
 }
 
@@ -142,51 +214,12 @@ impl Pass<Lanes> for Hold<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let LaneBody { row, center, pivot, .. } = self.of;
-        let orientation = V::view(self.orientation);
-        let orientation = [orientation[0], orientation[1], orientation[2], orientation[3]];
-        let arm = turned(orientation, [V::load(center[0]), V::load(center[1]), V::load(center[2])]);
         let (q, rest) = V::pair_mut(self.q);
-        for c in 0..3 {
-            let at = c * self.rows + row;
-            q[at] = V::load(pivot[c]) + arm[c];
-            rest[at] = V::zero();
-        }
-    }
-}
-
-/// What a kick does to momenta: torques about centers and, of held bodies, the pull on the center about the point that is held.
-pub struct Twist<'a> {
-    /// Where bodies lie.
-    pub arrangement: &'a Arrangement,
-    /// Coordinates.
-    pub q: &'a [Lanes],
-    /// Velocities and momenta.
-    pub v: PairMut<'a, Lanes>,
-    /// Accelerations of points.
-    pub a: &'a [Lanes],
-    /// Torques about centers; empty for none.
-    pub torque: &'a [Lanes],
-    /// The coefficient times the step.
-    pub kick: &'a Scaled<Lanes>,
-}
-
-impl Pass<Lanes> for Twist<'_> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<Lanes>>(self) {
-        let rows = self.arrangement.rows;
-        let kick = V::scaled(self.kick);
-        let (a, torque, q) = (V::view(self.a), V::view(self.torque), V::view(self.q));
-        let (v, rest) = V::pair_mut(self.v);
         for (body, of) in self.arrangement.bodies.iter().enumerate() {
-            let at = self.arrangement.at(body);
-            let twist = twist::<V>(of, rows, (q, a), torque, body);
-            for c in 0..3 {
-                let change = kick.0.multiply_add(twist[c], kick.1.multiply_add(twist[c], rest[at + c]));
-                let sum = v[at + c] + change;
-                rest[at + c] = change - (sum - v[at + c]);
-                v[at + c] = sum;
+            if of.pivoted {
+                let at = self.arrangement.at(body);
+                let orientation = [q[at], q[at + 1], q[at + 2], q[at + 3]];
+                place_center(of, self.arrangement.rows, orientation, (&mut *q, &mut *rest));
             }
         }
     }

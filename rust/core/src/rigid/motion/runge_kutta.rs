@@ -138,7 +138,7 @@ impl Pass<Lanes> for Rates<'_> {
     type Output = ();
     #[inline(always)]
     fn run<V: View<Lanes>>(self) {
-        let Arrangement { rows, bodies } = self.arrangement;
+        let Arrangement { rows, bodies, .. } = self.arrangement;
         let points = self.arrangement.points();
         let (q, v, a, torque) = (V::view(self.q), V::view(self.v), V::view(self.a), V::view(self.torque));
         let [of_q, of_v] = self.into;

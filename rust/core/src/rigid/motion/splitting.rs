@@ -7,14 +7,13 @@
 
 use super::acting::{Loads, Seen};
 use super::bodies::Arrangement;
-use super::flows::{Room, Twist, settle_held, turn_bodies};
+use super::flows::{self, Move, Room, settle_held};
 use crate::error::Result;
 use crate::numerics::double_double::DoubleDouble;
-use crate::numerics::element::{Element, Scaled};
+use crate::numerics::element::Scaled;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::Splitting;
-use crate::ode::passes::updates::Advance;
 use crate::ode::state::State;
 use crate::ode::stepper::{Nodes, Stepper};
 use crate::ode::system::System;
@@ -57,7 +56,7 @@ impl Pulls {
 
 /// A kick and the drift after it.
 #[derive(Clone, Copy, Debug)]
-struct Move {
+struct Stage {
     /// The time of the kick after the start of the step.
     time: Lanes,
     /// `None` where it is nothing.
@@ -69,7 +68,7 @@ struct Move {
 pub struct BodySplitting {
     table: &'static Splitting,
     h: f64,
-    moves: Vec<Move>,
+    moves: Vec<Stage>,
     nodes: Nodes,
     pulls: Pulls,
     /// Whether the pulls are those at the present place and time.
@@ -101,7 +100,7 @@ impl BodySplitting {
         for (index, kick) in self.table.kicks.iter().enumerate() {
             let drift = self.table.drifts.get(index).copied().unwrap_or(DoubleDouble::zero());
             let time = step * Lanes::from_double_double(drifted);
-            self.moves.push(Move { time, kick: scaled(kick), drift: scaled(&drift) });
+            self.moves.push(Stage { time, kick: scaled(kick), drift: scaled(&drift) });
             drifted += drift;
         }
     }
@@ -114,27 +113,15 @@ impl BodySplitting {
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let Self { moves, nodes, pulls, fresh, room, .. } = self;
-        for Move { time, kick, drift } in moves.iter() {
-            if let Some(kick) = kick {
-                if !*fresh {
-                    pulls.evaluate(&nodes.after(node, time), state, system, ticker)?;
-                    *fresh = true;
-                }
-                let Pulls { arrangement, a, torque, .. } = &*pulls;
-                let points = arrangement.points();
-                let ((q, _), (v, rest)) = state.halves_mut();
-                Lanes::pass(Twist { arrangement, q, v: (&mut *v, &mut *rest), a, torque, kick });
-                let y = (&mut v[..points], &mut rest[..points]);
-                Lanes::pass(Advance { y, k: a, step: kick });
+        for Stage { time, kick, drift } in moves.iter() {
+            if kick.is_some() && !*fresh {
+                pulls.evaluate(&nodes.after(node, time), state, system, ticker)?;
             }
-            if let Some(drift) = drift {
-                let points = pulls.arrangement.points();
-                let ((q, rest), (v, _)) = state.halves_mut();
-                let y = (&mut q[..points], &mut rest[..points]);
-                Lanes::pass(Advance { y, k: &v[..points], step: drift });
-                turn_bodies(&pulls.arrangement, state, &drift.0, room);
-                *fresh = false;
-            }
+            let Pulls { arrangement, a, torque, .. } = &*pulls;
+            let (kick, drift) = (kick.as_ref(), drift.as_ref());
+            flows::take(Move { arrangement, state, a, torque, kick, drift, room });
+            // The pulls of a kick at the end are those of the next step's first.
+            *fresh = drift.is_none() && (*fresh || kick.is_some());
         }
         Ok(())
     }

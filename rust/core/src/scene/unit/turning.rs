@@ -158,5 +158,6 @@ pub(in crate::scene) fn assembled(
         lanes.extend(of_block);
     }
     let rows = units.len().div_ceil(WIDTH) * first.shape.rows;
-    Some((Arrangement { rows, bodies: lanes.into() }, loads))
+    let held = lanes.iter().filter(|body| body.pivoted).count();
+    Some((Arrangement { rows, free_points: held < rows, bodies: lanes.into() }, loads))
 }
