@@ -113,8 +113,10 @@ impl Pass<Lanes> for KickDrift<'_> {
         let mut any_far = false;
         for (body, of) in bodies.iter().enumerate() {
             let at = self.arrangement.at(body);
-            let (from, left) =
-                ([q[at], q[at + 1], q[at + 2], q[at + 3]], [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]]);
+            let (from, left) = (
+                [q[at], q[at + 1], q[at + 2], q[at + 3]],
+                [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]],
+            );
             let momentum = turned_back(from, [v[at], v[at + 1], v[at + 2]]);
             let (turn, too_far) = turn_of::<V>(of, momentum, drift.0, series);
             let (mut to, mut left_now) = turn::oriented(from, left, turn);
@@ -126,10 +128,8 @@ impl Pass<Lanes> for KickDrift<'_> {
                 }
             }
             far[body] = V::select(too_far, V::one(), V::zero());
-            for c in 0..4 {
-                q[at + c] = to[c];
-                rest[at + c] = left_now[c];
-            }
+            [q[at], q[at + 1], q[at + 2], q[at + 3]] = to;
+            [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]] = left_now;
             if of.pivoted {
                 place_center(of, *rows, to, (&mut *q, &mut *rest));
             }
@@ -166,7 +166,12 @@ fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [
 
 /// Puts the center of a held body where its orientation has it.
 #[inline(always)]
-fn place_center<V: View<Lanes>>(of: &LaneBody, rows: usize, orientation: [V; 4], (q, rest): (&mut [V], &mut [V])) {
+fn place_center<V: View<Lanes>>(
+    of: &LaneBody,
+    rows: usize,
+    orientation: [V; 4],
+    (q, rest): (&mut [V], &mut [V]),
+) {
     let LaneBody { row, center, pivot, .. } = of;
     let arm = turned(orientation, [V::load(center[0]), V::load(center[1]), V::load(center[2])]);
     for c in 0..3 {

@@ -161,10 +161,8 @@ impl Pass<Lanes> for Rates<'_> {
                 omega = inverse_differential(times([sums[at], sums[at + 1], sums[at + 2]], h), omega);
             }
             let twist = twist::<V>(of, *rows, (q, a), torque, body);
-            for c in 0..3 {
-                of_q[at + c] = omega[c];
-                of_v[at + c] = twist[c];
-            }
+            [of_q[at], of_q[at + 1], of_q[at + 2]] = omega;
+            [of_v[at], of_v[at + 1], of_v[at + 2]] = twist;
         }
     }
 }
@@ -200,10 +198,8 @@ impl Pass<Lanes> for Apply<'_> {
             // Seen from the body, as all turns that are added to an orientation.
             let own = turned_back(from, [turn[0], turn[1], turn[2]]);
             let (to, left) = oriented(from, left, [own[0], own[1], own[2], turn[3]]);
-            for c in 0..4 {
-                q[at + c] = to[c];
-                rest[at + c] = left[c];
-            }
+            [q[at], q[at + 1], q[at + 2], q[at + 3]] = to;
+            [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]] = left;
         }
     }
 }
