@@ -312,6 +312,14 @@ def test_what_looks_at_velocities_is_refused_to_kicks() -> None:
         assert scene.run(t=1.0, method="rk4", dt=0.1).status == vv.Status.OK
 
 
+def test_a_step_alone_chooses_the_method() -> None:
+    out = top().run(t=1.0, dt=0.02)
+    assert out.stats.method == "kahan_li8"
+    assert (out.orientation == top().run(t=1.0, method="kahan_li8", dt=0.02).orientation).all()
+    drag = vv.Scene(vv.RigidBody(1.0, MOMENTS), vv.RotationalDrag(0.1))
+    assert drag.run(t=1.0, dt=0.1).stats.method == "rk4"
+
+
 def test_softening_beside_shapes_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match="softening"):
         vv.Scene(*pair(), vv.Gravity(G=1.0, softening=0.1)).run(t=1.0, method="leapfrog", dt=0.1)

@@ -134,6 +134,8 @@ impl Plan {
     pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
         ticker.tick()?;
+        let with_step = turning::with_method(scene, request);
+        let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
         let forces = acting(scene, &scene.forces);

@@ -6,7 +6,7 @@ use super::Plan;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::{Method, Scheme};
-use crate::registry::{BODY_METHODS, METHODS};
+use crate::registry::{self, BODY_METHODS, METHODS};
 use crate::rigid::motion::bodies::RigidBodies;
 use crate::rigid::motion::flows::Free;
 use crate::rigid::motion::loads::Load;
@@ -58,6 +58,29 @@ pub const fn steps_bodies(method: &Method) -> bool {
     serves(method, false)
 }
 
+/// What looks at velocities in a scene of rigid bodies, by name.
+fn looking(bodies: &RigidBodies, forces: &[Arc<dyn ForceTerm>]) -> Option<&'static str> {
+    let load = bodies.loads.iter().find(|load| load.needs_velocity()).map(Load::name);
+    load.or_else(|| {
+        forces.iter().find(|force| force.needs().velocities()).map(|force| force.declaration().class_name)
+    })
+}
+
+/// The method that steps bodies well under what looks at velocities, or under nothing that does.
+const fn best(velocities: bool) -> &'static str {
+    if velocities { "rk4" } else { "kahan_li8" }
+}
+
+/// The request with the method that bodies that turn are stepped with, where it names a step and leaves the method open.
+pub(super) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
+    let bodies = scene.rigid.as_ref()?;
+    let _ = request.dt.filter(|_| request.method == "auto")?;
+    let forces = super::own::acting(scene, &scene.forces);
+    let method = best(looking(bodies, &forces).is_some());
+    let stepped = Turning::of(scene, registry::method(method)?, &forces).steps();
+    stepped.then(|| Request { method: method.to_owned(), ..request.clone() })
+}
+
 /// Refuses what bodies that turn cannot be run with.
 ///
 /// # Errors
@@ -70,14 +93,11 @@ pub(super) fn check(
     forces: &[Arc<dyn ForceTerm>],
 ) -> Result<()> {
     let Some(bodies) = &scene.rigid else { return Ok(()) };
-    let looking = bodies.loads.iter().find(|load| load.needs_velocity()).map(Load::name);
-    let looking = looking.or_else(|| {
-        forces.iter().find(|force| force.needs().velocities()).map(|f| f.declaration().class_name)
-    });
+    let looking = looking(bodies, forces);
     if automatic || !serves(method, looking.is_some()) {
         let all = METHODS.iter().copied().chain(BODY_METHODS.iter().map(|(method, _)| *method));
         let names = all.filter(|method| serves(method, looking.is_some())).map(|method| method.name);
-        let best = if looking.is_some() { "rk4" } else { "kahan_li8" };
+        let best = best(looking.is_some());
         let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
         let message = format!(
             "bodies that torques turn are moved in equal steps: {why}expected one of {}, with dt (such as {best} with \
