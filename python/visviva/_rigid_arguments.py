@@ -11,18 +11,24 @@ from visviva._arrays import float_array
 from visviva._names import body_label
 from visviva.errors import InvalidInput
 from visviva.rigid._mass import parallel_axis, principal_axes
-from visviva.rigid._orientation import quaternion_from_matrix
+from visviva.rigid._orientation import quaternion_from_matrix, rotate
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import NDArray
 
     from visviva._arrays import Sizes
+    from visviva._body_force import BodyForce
+    from visviva.rigid_bodies import RigidBodies
 
-__all__ = ["IDENTITY", "pivots", "principal", "unit", "which"]
+__all__ = ["IDENTITY", "pivots", "principal", "refuse_on_rods", "unit", "which"]
 
 IDENTITY = np.array([0.0, 0.0, 0.0, 1.0])
 # Principal moments of a tensor that rounding alone keeps from 0, relative to the largest.
 _OF_A_ROD = 16.0 * np.finfo(float).eps
+# How near to the axis of a rod is on it, relative to the distance along it.
+_ON_AXIS = 1e-12
 
 
 def principal(
@@ -85,3 +91,29 @@ def pivots(given: Any, sizes: Sizes) -> NDArray[np.float64] | None:
     if free.all() and len(free) == len(checked):
         return None
     return np.where(free[:, None], np.nan, checked) if free.any() else checked.copy()
+
+
+def refuse_on_rods(bodies: RigidBodies, loads: Sequence[BodyForce]) -> None:
+    """Refuse what would turn a rod about its own axis, about which it has no moment and does not turn.
+
+    Raises
+    ------
+    InvalidInput
+        For a torque along the body's axes, or a point of a spring, that is not across or on the axis of a rod.
+    """
+    for body, moments in enumerate(bodies.principal_moments):
+        if moments.all():
+            continue
+        axis = rotate(bodies.axes[body], np.where(moments == 0.0, 1.0, 0.0))
+        of = f"the axis of {body_label(body, bodies.names)}, a rod, which does not turn about it"
+        for load in loads:
+            known = load._values()
+            if known["body"] in (None, body) and known.get("frame") == "body":
+                along = abs(float(axis @ known["torque"]))
+                if along > _ON_AXIS * np.abs(known["torque"]).max():
+                    raise InvalidInput("torque", f"expected a torque across {of}, got {known['torque']}")
+            for end, point in (("body", "point"), ("to", "to_point")):
+                if point in known and known[end] == body:
+                    off = np.abs(known[point] - (axis @ known[point]) * axis).max()
+                    if off > _ON_AXIS * np.abs(known[point]).max():
+                        raise InvalidInput(point, f"expected a point on {of}, got {known[point]}")

@@ -14,7 +14,7 @@ import numpy as np
 from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
-from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
+from visviva._rigid_arguments import IDENTITY, pivots, principal, refuse_on_rods, unit, which
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import read_only
@@ -47,7 +47,7 @@ class RigidBodies:
         Masses, positive.
     moments : array_like, shape (K, 3), optional
         Principal moments of inertia about the center of mass, in any order; the body's axes are then its principal
-        ones. One may be 0 (a rod), about whose axis the body must not spin.
+        ones. One may be 0 (a rod), about whose axis the body must not spin, and does not turn whatever acts on it.
     inertia : array_like, shape (K, 3, 3), optional
         Inertia tensors about the center of mass, along the body's axes, in place of `moments`: as of the solids and
         meshes of `visviva.rigid`.
@@ -308,6 +308,7 @@ class RigidBodies:
 
     def _described(self, loads: Sequence[BodyForce]) -> _core._Rigid:
         """What the core is told of one copy, an axis over copies leading."""
+        refuse_on_rods(self, loads)
         return {
             "moments": self.principal_moments[None],
             "axes": self.axes[None],

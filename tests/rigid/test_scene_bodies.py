@@ -8,11 +8,12 @@ from typing import Any
 import numpy as np
 import pytest
 import reference_dynamics as reference
+from drawn_bodies import drawn_case
 from high_order import angle_between
 
 import visviva as vv
 
-KEPT = json.loads((Path(__file__).parent / "dynamics_reference.json").read_text(encoding="utf-8"))
+KEPT: dict[str, Any] = json.loads((Path(__file__).parent / "dynamics_reference.json").read_text(encoding="utf-8"))
 EPSILON = np.finfo(float).eps
 NUMBERS = ctypes.POINTER(ctypes.c_double)
 
@@ -25,8 +26,11 @@ def motor(t, orientation, angular_velocity, torque):
 
 
 def scene_of(name: str) -> vv.Scene:
+    return made(KEPT[name]["case"])
+
+
+def made(case: dict[str, Any]) -> vv.Scene:
     """The scene of a case."""
-    case = KEPT[name]["case"]
     bodies = dict(case["bodies"])
     if "pivot" in bodies:
         bodies["pivot"] = [[np.nan] * 3 if point is None else point for point in bodies["pivot"]]
@@ -41,9 +45,8 @@ def states(name: str) -> dict[str, np.ndarray]:
     return {column: np.array(values) for column, values in KEPT[name]["states"].items()}
 
 
-def errors(out: vv.Trajectory, name: str) -> dict[str, float]:
+def errors(out: vv.Trajectory, known: dict[str, np.ndarray]) -> dict[str, float]:
     """The largest error of each column, of angular velocities and velocities relative to the largest."""
-    known = states(name)
     found = {"orientation": float(angle_between(out.orientation, known["orientation"]).max())}
     for column in ("position", "velocity", "angular_velocity"):
         size = max(1.0, np.abs(known[column]).max())
@@ -80,7 +83,7 @@ def test_every_case_is_run() -> None:
 def test_motions_found_elsewhere(name: str) -> None:
     method, dt, bound = STEPS[name]
     out = scene_of(name).run(t=KEPT[name]["case"]["times"], method=method, dt=dt)
-    assert max(errors(out, name).values()) <= bound, errors(out, name)
+    assert max(errors(out, states(name)).values()) <= bound, errors(out, states(name))
     # To two roundings of the division by the length.
     np.testing.assert_allclose(np.linalg.norm(out.orientation, axis=-1), 1.0, rtol=0, atol=4 * EPSILON)
 
@@ -143,7 +146,8 @@ def test_runs_lead_back(name: str) -> None:
 def test_orders_on_attitude(name: str, method: str, order: int, steps: int) -> None:
     scene, times = scene_of(name), KEPT[name]["case"]["times"]
     found = [
-        errors(scene.run(t=times, method=method, dt=times[0] / n), name)["orientation"] for n in (steps, 2 * steps)
+        errors(scene.run(t=times, method=method, dt=times[0] / n), states(name))["orientation"]
+        for n in (steps, 2 * steps)
     ]
     assert found[0] < 0.1
     assert np.log2(found[0] / found[1]) == pytest.approx(order, abs=0.15), found
@@ -193,3 +197,109 @@ def test_what_bodies_do_to_each_other_adds_up_to_nothing(name: str) -> None:
     assert np.abs(out.momentum - out.momentum[0]).max() <= 4e-15
     bound = 4e-15 if method != "rk4" else 1e-6
     assert np.abs(out.angular_momentum - out.angular_momentum[0]).max() <= bound
+
+
+@pytest.mark.parametrize("seed", range(16))
+def test_drawn_scenes_move_as_the_reference(seed: int) -> None:
+    """Whatever acts on whatever: against DOP853, which is good to 1e-11 or so here."""
+    case, looking = drawn_case(seed)
+    world, found = reference.by_dop853(case)
+    known = {column: np.array(values) for column, values in reference.by_columns(world, found).items()}
+    method, dt = ("rk4", 2e-4) if looking else ("kahan_li8", 2.5e-3)
+    out = made(case).run(
+        t=case["times"],
+        method=method,
+        dt=dt,
+        record=("position", "velocity", "orientation", "angular_velocity", "energy", "angular_momentum"),
+    )
+    # Steps of rk4 have errors of 1e-11 where a spring is short.
+    assert max(errors(out, known).values()) <= 1e-10, errors(out, known)
+    for at, y in enumerate(found):
+        assert out.energy[at] == pytest.approx(world.energy(y), rel=1e-10, abs=1e-9)
+        np.testing.assert_allclose(out.angular_momentum[at], world.angular_momentum(y), rtol=1e-10, atol=1e-9)
+
+
+MIRROR = np.diag([1.0, -1.0, 1.0])
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_drawn_scenes_in_a_mirror_and_in_other_units(seed: int) -> None:
+    case, looking = drawn_case(100 + seed)
+    case["forces"] = [each for each in case["forces"] if each[0] != "CompiledTorque"]
+    scene, method = made(case), "rk4" if looking else "kahan_li6"
+    here = scene.run(t=0.5, method=method, dt=0.01)
+    there = scene.rotated(MIRROR).run(t=0.5, method=method, dt=0.01)
+    # The mirror changes the order of roundings: some ε of each of 50 steps, amplified.
+    np.testing.assert_allclose(there.position, here.position @ MIRROR, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(there.velocity, here.velocity @ MIRROR, rtol=0, atol=1e-11)
+    # A spin is axial, and the mirrored body has its axes turned round: along them it is the same.
+    np.testing.assert_allclose(there.angular_velocity, here.angular_velocity, rtol=0, atol=1e-11)
+    seen = [vv.rigid.matrix(out.orientation) for out in (here, there)]
+    np.testing.assert_allclose(seen[1], -MIRROR @ seen[0], rtol=0, atol=1e-12)
+    other = scene.rescaled(length=1e3, mass=0.1, time=60.0).run(t=30.0, method=method, dt=0.6)
+    np.testing.assert_allclose(other.position / 1e3, here.position, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(other.angular_velocity * 60.0, here.angular_velocity, rtol=0, atol=1e-11)
+    if not looking:
+        back = scene.with_state(
+            here.position[-1],
+            here.velocity[-1],
+            orientation=here.orientation[-1],
+            angular_velocity=here.angular_velocity[-1],
+        ).reversed()
+        again = back.run(t=0.5, method=method, dt=0.01)
+        np.testing.assert_allclose(again.position[-1], here.position[0], rtol=0, atol=1e-12)
+        np.testing.assert_allclose(again.angular_velocity[-1], -here.angular_velocity[0], rtol=0, atol=1e-11)
+
+
+ROD_TURN = np.array([0.3, -0.2, 0.5, 0.8]) / np.linalg.norm([0.3, -0.2, 0.5, 0.8])
+
+
+def rod(moment: float = 0.0, axes: np.ndarray | None = None, point: float = 0.5) -> vv.Trajectory:
+    """A rod on a spring at its end, along these axes of the body."""
+    to = np.array([0.0, 0.0, 0.0, 1.0]) if axes is None else axes
+    body = vv.RigidBody(
+        1.0,
+        inertia=vv.rigid.rotate_tensor(np.diag([moment, 1 / 12, 1 / 12]), to),
+        orientation=to * [-1, -1, -1, 1],
+        angular_velocity=vv.rigid.rotate(to, [0.0, 1.0, 0.3]),
+    )
+    spring = vv.AttachedSpring(0, vv.rigid.rotate(to, [point, 0.0, 0.0]), 3.0, anchor=[1.0, 0.2, 0.4])
+    return vv.Scene(body, spring).run(t=2.0, method="kahan_li8", dt=0.01)
+
+
+def test_a_rod_is_the_limit_of_thin_bodies() -> None:
+    straight = rod()
+    for moment in (1e-6, 1e-9, 1e-12):
+        # A thin body moves as the rod does, and its ends with it.
+        np.testing.assert_allclose(rod(moment).position, straight.position, rtol=0, atol=1e-15)
+    leaning = rod(axes=ROD_TURN)
+    np.testing.assert_allclose(leaning.position, straight.position, rtol=0, atol=1e-15)
+    ends = [
+        vv.rigid.rotate(out.orientation[-1, 0], along)
+        for out, along in ((straight, [1.0, 0, 0]), (leaning, vv.rigid.rotate(ROD_TURN, [1.0, 0, 0])))
+    ]
+    np.testing.assert_allclose(*ends, rtol=0, atol=4e-15)
+
+
+def test_what_would_turn_a_rod_about_its_axis_is_refused() -> None:
+    ball = vv.RigidBody(1.0, [1.0, 1.0, 1.0], position=[3.0, 0.0, 0.0], name="ball")
+    tensor = vv.rigid.rotate_tensor(np.diag([0.0, 1.0, 1.0]), ROD_TURN)
+    for straight, to in (({"moments": [0.0, 1.0, 1.0]}, [0, 0, 0, 1]), ({"inertia": tensor}, ROD_TURN)):
+        body = vv.RigidBody(1.0, **straight, name="rod")
+        across, along = vv.rigid.rotate(to, [0.0, 1.0, -2.0]), vv.rigid.rotate(to, [0.1, 1.0, -2.0])
+        for good in (
+            vv.AppliedTorque(across, frame="body"),
+            vv.AppliedTorque(along),
+            vv.AppliedTorque(along, body="ball", frame="body"),
+            vv.AttachedSpring("ball", [0, 0, 1], 1.0, to="rod", to_point=vv.rigid.rotate(to, [0.7, 0, 0])),
+        ):
+            vv.Scene(ball, body, good)
+        for bad, argument in (
+            (vv.AppliedTorque(along, frame="body"), "torque"),
+            (vv.AppliedTorque(along, body="rod", frame="body"), "torque"),
+            (vv.AttachedSpring("rod", along, 1.0, to="ball"), "point"),
+            (vv.AttachedSpring("ball", [0, 0, 1], 1.0, to="rod", to_point=along), "to_point"),
+        ):
+            with pytest.raises(vv.InvalidInput, match="the axis of rod, a rod") as caught:
+                vv.Scene(ball, body, bad)
+            assert caught.value.argument == argument
