@@ -1,6 +1,5 @@
 """Mass properties: against integrals by quadrature, against each other, far from the origin, and what is refused."""
 
-import itertools
 import sys
 from types import SimpleNamespace
 
@@ -9,6 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from meshes import box_mesh
 from scipy.integrate import quad
 
 import visviva as vv
@@ -56,6 +56,10 @@ SOLIDS = {
     "hemisphere": (
         vv.rigid.hemisphere(1.0, RADIUS),
         stacked(lambda z: np.sqrt(RADIUS**2 - z * z), 0.0, RADIUS, center=0.375 * RADIUS),
+    ),
+    "hemisphere shell": (
+        vv.rigid.hemisphere(1.0, RADIUS, shell=True),
+        revolved(lambda s: 1.0, lambda s: RADIUS**2 * (1 - s * s) / 2, lambda s: RADIUS * s, center=RADIUS / 2),
     ),
     "ellipsoid": (
         vv.rigid.ellipsoid(1.0, RADIUS, RADIUS, HEIGHT),
@@ -180,72 +184,6 @@ def test_the_surface_of_an_ellipsoid_at_its_limits():
         assert moments[2] <= (moments[0] + moments[1]) * (1 + 1e-15)
 
 
-def box_mesh(a, b, c):
-    corners = np.array(list(itertools.product((0.0, a), (0.0, b), (0.0, c))))
-    quads = [(0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3)]
-    return corners, np.array([triangle for p, q, r, s in quads for triangle in ((p, q, r), (p, r, s))])
-
-
-def sphere_mesh(divisions):
-    corners, faces = np.array([[1.0, 0, 0], [-1, 0, 0], [0, 1, 0], [0, -1, 0], [0, 0, 1], [0, 0, -1]]), []
-    for x, y, z in itertools.product((0, 1), (2, 3), (4, 5)):
-        faces.append((x, y, z) if (x + y + z) % 2 == 0 else (x, z, y))
-    faces = np.array(faces)
-    for _ in range(divisions):
-        edges = np.sort(faces[:, [0, 1, 1, 2, 2, 0]].reshape(-1, 2), axis=1)
-        unique, inverse = np.unique(edges, axis=0, return_inverse=True)
-        middles = corners[unique].mean(axis=1)
-        middles /= np.linalg.norm(middles, axis=1)[:, None]
-        m = len(corners) + inverse.reshape(-1, 3)
-        corners = np.vstack([corners, middles])
-        a, b, c = faces.T
-        ab, bc, ca = m.T
-        faces = np.vstack([np.array(t).T for t in ((a, ab, ca), (ab, b, bc), (ca, bc, c), (ab, bc, ca))])
-    return corners, faces
-
-
-@pytest.mark.parametrize("offset", [0.0, 2.0**10, 2.0**20, 1e6])
-@pytest.mark.parametrize("inside_out", [False, True])
-def test_a_box_anywhere(offset, inside_out):
-    """Sides that are exact so far away: the error is that of the sums alone, 1e-15."""
-    corners, faces = box_mesh(0.5, 0.75, 1.25)
-    if inside_out:
-        faces = faces[:, ::-1]
-    move = offset * np.array([1.0, -2.0, 3.0])
-    body = vv.rigid.mesh(corners + move, faces, density=2.0)
-    exact = vv.rigid.box(2 * 0.5 * 0.75 * 1.25, 0.5, 0.75, 1.25)
-    assert body.mass == pytest.approx(exact.mass, rel=1e-14)
-    assert body.tensor == pytest.approx(exact.tensor, rel=1e-14, abs=1e-15)
-    assert body.center - move == pytest.approx([0.25, 0.375, 0.625], rel=1e-9 if offset else 1e-15)
-
-
-def test_a_sphere_mesh_far_away_is_the_one_here():
-    """Corners on a grid of 2⁻³⁰, so that moving them rounds nothing: to 1e-12 (sums of 30 000 triangles)."""
-    corners, faces = sphere_mesh(6)
-    corners = np.round(corners * 2**30) / 2**30
-    here = vv.rigid.mesh(corners, faces)
-    there = vv.rigid.mesh(corners + 2.0**20 * np.array([1.0, -2.0, 1.0]), faces)
-    assert there.mass == pytest.approx(here.mass, rel=1e-13)
-    assert there.tensor == pytest.approx(here.tensor, rel=1e-12, abs=1e-13)
-    # The polyhedron is inside the sphere: 4³ more triangles, 4³ nearer.
-    assert here.tensor == pytest.approx(vv.rigid.sphere(here.mass, 1.0).tensor, rel=1e-3, abs=1e-12)
-    by_mass = vv.rigid.mesh(corners, faces, mass=3.0)
-    assert by_mass.mass == 3.0
-    assert by_mass.tensor == pytest.approx(here.tensor * 3.0 / here.mass, rel=1e-15)
-    # Each triangle with corners of its own, as an STL file has them.
-    soup = vv.rigid.mesh(corners[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3))
-    assert np.array_equal(soup.tensor, here.tensor)
-
-
-def test_a_cavity():
-    outer, faces = box_mesh(2.0, 2.0, 2.0)
-    inner = outer / 2 + 0.5
-    body = vv.rigid.mesh(np.vstack([outer, inner]), np.vstack([faces, faces[:, ::-1] + 8]))
-    whole, hole = vv.rigid.box(8.0, 2.0, 2.0, 2.0), vv.rigid.box(1.0, 1.0, 1.0, 1.0)
-    assert body.mass == pytest.approx(7.0, rel=1e-14)
-    assert body.tensor == pytest.approx(whole.tensor - hole.tensor, rel=1e-14, abs=1e-14)
-
-
 def test_a_part_taken_out():
     """Hollows, wherever they are: against the mesh with a cavity, the hollow sphere, and the way back."""
     whole, hole = vv.rigid.box(8.0, 2.0, 2.0, 2.0), vv.rigid.box(1.0, 1.0, 1.0, 1.0).moved([0.25, -0.5, 0.125])
@@ -269,6 +207,30 @@ def test_tetrahedra():
         meshed = vv.rigid.mesh(corners, [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]], mass=2.0)
         assert solid.center == pytest.approx(meshed.center, rel=1e-12, abs=1e-13)
         assert solid.tensor == pytest.approx(meshed.tensor, rel=1e-11, abs=1e-12)
+
+
+def thinned(corners, inside, t):
+    """What a tetrahedron is beyond another, by t smaller towards a point: of mass 2, and its center."""
+    volume = abs(np.linalg.det(corners[1:] - corners[0])) / 6
+    inner = vv.rigid.tetrahedron(volume * (1 - t) ** 3, inside + (1 - t) * (corners - inside))
+    left = vv.rigid.tetrahedron(volume, corners) - inner
+    return 2.0 / left.mass * left.tensor, left.center
+
+
+def test_the_faces_of_a_tetrahedron():
+    """Against thin walls of one thickness, two of which tell the limit to the square of the thickness."""
+    rng = np.random.default_rng(6)
+    for _ in range(10):
+        corners = rng.normal(size=(4, 3))
+        faces = [np.delete(corners, at, axis=0) for at in range(4)]
+        areas = np.array([np.linalg.norm(np.cross(face[1] - face[0], face[2] - face[0])) for face in faces])
+        # The center of the sphere inside, as far from each face, is the mean of the corners by the areas across.
+        inside = areas @ corners / areas.sum()
+        (one, place), (two, other) = (thinned(corners, inside, t) for t in (1e-4, 2e-4))
+        shell = vv.rigid.tetrahedron(2.0, corners, shell=True)
+        assert shell.tensor == pytest.approx(2 * one - two, rel=1e-6, abs=1e-7)
+        assert shell.center == pytest.approx(2 * place - other, rel=1e-6, abs=1e-7)
+        assert shell.mass == pytest.approx(2.0, rel=1e-15)
 
 
 positions = st.lists(st.tuples(*[st.floats(-2, 2)] * 3), min_size=2, max_size=8)
@@ -346,6 +308,9 @@ ONE = vv.rigid.sphere(1.0, 1.0)
         (lambda: vv.rigid.sphere(0.0, 1.0), "mass", "positive mass"),
         (lambda: vv.rigid.sphere(1.0, 1.0, inner_radius=1.1), "inner_radius", "at most radius = 1.0"),
         (lambda: vv.rigid.torus(1.0, 1.0, 1.1), "minor_radius", "meets itself"),
+        (lambda: vv.rigid.tetrahedron(1.0, np.zeros((4, 3)), shell=True), "vertices", "areas in the range"),
+        (lambda: vv.rigid.tetrahedron(1.0, np.eye(4, 3), shell=1), "shell", "True or False"),
+        (lambda: vv.rigid.cylinder(1.0, 1.0, 1.0, shell=0), "shell", "True or False"),
         (lambda: vv.rigid.box(1.0, 1.0, 1.0, 1.0, shell="no"), "shell", "True or False"),
         (lambda: vv.rigid.cylinder(1, 1, 1, inner_radius=0.5, shell=True), "inner_radius", "expected 0 of a shell"),
         (lambda: ONE - ONE, "mass", "expected some mass"),
@@ -382,3 +347,6 @@ def test_files_are_read_by_trimesh(monkeypatch):
     reader = SimpleNamespace(load_mesh=lambda path, process: found)
     monkeypatch.setitem(sys.modules, "trimesh", reader)
     assert vv.rigid.mesh(*vv.rigid.load_mesh("box.stl")).mass == pytest.approx(1.0, rel=1e-15)
+    monkeypatch.setitem(sys.modules, "trimesh", None)
+    with pytest.raises(ImportError, match="pip install trimesh"):
+        vv.rigid.load_mesh("box.stl")

@@ -1,4 +1,4 @@
-"""Meshes: what is closed is told by a sum of random areas, and must be what counting edges tells."""
+"""Meshes: boxes and spheres anywhere, and what is closed, which a sum of random areas tells as counting edges does."""
 
 from collections import Counter
 
@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_mass import box_mesh, sphere_mesh
+from meshes import box_mesh, sphere_mesh
 
 import visviva as vv
 
@@ -84,6 +84,48 @@ def test_places_with_few_digits():
     assert body.tensor == pytest.approx(vv.rigid.box(216.0, 6.0, 6.0, 6.0).tensor, rel=1e-12, abs=1e-9)
     for at in range(0, len(faces), 37):
         assert not is_closed(corners, np.delete(faces, at, axis=0))
+
+
+@pytest.mark.parametrize("offset", [0.0, 2.0**10, 2.0**20, 1e6])
+@pytest.mark.parametrize("inside_out", [False, True])
+def test_a_box_anywhere(offset, inside_out):
+    """Sides that are exact so far away: the error is that of the sums alone, 1e-15."""
+    corners, faces = box_mesh(0.5, 0.75, 1.25)
+    if inside_out:
+        faces = faces[:, ::-1]
+    move = offset * np.array([1.0, -2.0, 3.0])
+    body = vv.rigid.mesh(corners + move, faces, density=2.0)
+    exact = vv.rigid.box(2 * 0.5 * 0.75 * 1.25, 0.5, 0.75, 1.25)
+    assert body.mass == pytest.approx(exact.mass, rel=1e-14)
+    assert body.tensor == pytest.approx(exact.tensor, rel=1e-14, abs=1e-15)
+    assert body.center - move == pytest.approx([0.25, 0.375, 0.625], rel=1e-9 if offset else 1e-15)
+
+
+def test_a_sphere_mesh_far_away_is_the_one_here():
+    """Corners on a grid of 2⁻³⁰, so that moving them rounds nothing: to 1e-12 (sums of 30 000 triangles)."""
+    corners, faces = sphere_mesh(6)
+    corners = np.round(corners * 2**30) / 2**30
+    here = vv.rigid.mesh(corners, faces)
+    there = vv.rigid.mesh(corners + 2.0**20 * np.array([1.0, -2.0, 1.0]), faces)
+    assert there.mass == pytest.approx(here.mass, rel=1e-13)
+    assert there.tensor == pytest.approx(here.tensor, rel=1e-12, abs=1e-13)
+    # The polyhedron is inside the sphere: 4³ more triangles, 4³ nearer.
+    assert here.tensor == pytest.approx(vv.rigid.sphere(here.mass, 1.0).tensor, rel=1e-3, abs=1e-12)
+    by_mass = vv.rigid.mesh(corners, faces, mass=3.0)
+    assert by_mass.mass == 3.0
+    assert by_mass.tensor == pytest.approx(here.tensor * 3.0 / here.mass, rel=1e-15)
+    # Each triangle with corners of its own, as an STL file has them.
+    soup = vv.rigid.mesh(corners[faces].reshape(-1, 3), np.arange(3 * len(faces)).reshape(-1, 3))
+    assert np.array_equal(soup.tensor, here.tensor)
+
+
+def test_a_cavity():
+    outer, faces = box_mesh(2.0, 2.0, 2.0)
+    inner = outer / 2 + 0.5
+    body = vv.rigid.mesh(np.vstack([outer, inner]), np.vstack([faces, faces[:, ::-1] + 8]))
+    whole, hole = vv.rigid.box(8.0, 2.0, 2.0, 2.0), vv.rigid.box(1.0, 1.0, 1.0, 1.0)
+    assert body.mass == pytest.approx(7.0, rel=1e-14)
+    assert body.tensor == pytest.approx(whole.tensor - hole.tensor, rel=1e-14, abs=1e-14)
 
 
 def test_minus_zero_is_zero():

@@ -95,8 +95,10 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     >>> import visviva as vv
     >>> vertices, faces = vv.rigid.load_mesh("part.stl")  # doctest: +SKIP
     """
-    import trimesh
-
+    try:
+        import trimesh
+    except ImportError as error:
+        raise ImportError("load_mesh reads files with trimesh: pip install trimesh") from error
     found: Any = trimesh.load_mesh(path, process=False)
     return np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)
 

@@ -10,20 +10,26 @@ from visviva import _core
 from visviva._arrays import float_array, number, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._mass import MassProperties
+from visviva.rigid._mass import MassProperties, composite, particles
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 
 def of_kind(kind: str, mass: object, *, shell: object = False, **lengths: object) -> MassProperties:
     """Check the arguments of a body that the core knows by name, and give it."""
-    if not isinstance(shell, bool | np.bool_):
-        raise InvalidInput("shell", f"expected True or False, got {shell!r}")
+    hollow = is_shell(shell)
     weight = positive("mass", mass, "mass")
     checked = [number(name, value) for name, value in lengths.items()]
-    tensor = _core.solid_tensor(kind + "_shell" if shell else kind, weight, checked)
+    tensor = _core.solid_tensor(kind + "_shell" if hollow else kind, weight, checked)
     return MassProperties(weight, np.zeros(3), tensor)
+
+
+def is_shell(shell: object) -> bool:
+    """Check the argument."""
+    if not isinstance(shell, bool | np.bool_):
+        raise InvalidInput("shell", f"expected True or False, got {shell!r}")
+    return bool(shell)
 
 
 @known_keywords
@@ -87,13 +93,15 @@ def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProp
 
 
 @known_keywords
-def hemisphere(mass: float, radius: float) -> MassProperties:
-    """Give a solid half of a sphere; its center of mass is 3/8 of the radius from the disc.
+def hemisphere(mass: float, radius: float, *, shell: bool = False) -> MassProperties:
+    """Give half of a sphere; its center of mass is 3/8 of the radius (of a shell 1/2) from the disc.
 
     Parameters
     ----------
     mass, radius : float
         Positive.
+    shell : bool
+        Whether the mass is on the half sphere, evenly, without the disc.
 
     Returns
     -------
@@ -111,7 +119,7 @@ def hemisphere(mass: float, radius: float) -> MassProperties:
     >>> vv.rigid.hemisphere(5.0, 1.0).tensor.diagonal()
     array([1.296875, 1.296875, 2.      ])
     """
-    return of_kind("hemisphere", mass, radius=radius)
+    return of_kind("hemisphere", mass, shell=shell, radius=radius)
 
 
 @known_keywords
@@ -184,7 +192,7 @@ def cylinder(
     array([7., 7., 6.])
     """
     inner = {"inner_radius": number("inner_radius", inner_radius)}
-    if shell and inner["inner_radius"] != 0.0:
+    if is_shell(shell) and inner["inner_radius"] != 0.0:
         raise InvalidInput("inner_radius", f"expected 0 of a shell, got {inner_radius!r}")
     return of_kind("cylinder", mass, shell=shell, radius=radius, height=height, **({} if shell else inner))
 
@@ -281,8 +289,8 @@ def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool 
 
 
 @known_keywords
-def tetrahedron(mass: float, vertices: ArrayLike) -> MassProperties:
-    """Give a solid tetrahedron.
+def tetrahedron(mass: float, vertices: ArrayLike, *, shell: bool = False) -> MassProperties:
+    """Give a tetrahedron; as a shell, its four faces.
 
     Parameters
     ----------
@@ -290,6 +298,8 @@ def tetrahedron(mass: float, vertices: ArrayLike) -> MassProperties:
         Positive.
     vertices : array_like, shape (4, 3)
         Its corners, in any order; flat ones are taken as the limit they are.
+    shell : bool
+        Whether the mass is on the surface, evenly.
 
     Returns
     -------
@@ -299,11 +309,12 @@ def tetrahedron(mass: float, vertices: ArrayLike) -> MassProperties:
     Raises
     ------
     InvalidInput
-        For a mass that is not positive, or another shape.
+        For a mass that is not positive, another shape, or a shell whose faces have no area.
 
     Notes
     -----
-    Second moments of a tetrahedron are those of m/20 at each corner and 4m/5 at the center (Tonon 2005).
+    Second moments of a tetrahedron are those of m/20 at each corner and 4m/5 at the center, of a triangle those of m/12
+    and 3m/4 (Tonon 2005).
 
     Examples
     --------
@@ -314,7 +325,20 @@ def tetrahedron(mass: float, vertices: ArrayLike) -> MassProperties:
            [1., 1., 6.]])
     """
     weight, corners = positive("mass", mass, "mass"), float_array("vertices", vertices, (4, 3))
-    five = np.vstack([corners, corners[0] + (corners - corners[0]).mean(axis=0)])
-    masses = weight * np.array([0.05, 0.05, 0.05, 0.05, 0.8])
-    _, center, tensor = _core.bodies_together(masses, five, np.zeros((5, 9)))
-    return MassProperties(weight, center, tensor)
+    if not is_shell(shell):
+        return _simplex(weight, corners)
+    faces = [np.delete(corners, at, axis=0) for at in range(4)]
+    edges = [face[1:] - face[0] for face in faces]
+    areas = np.array([np.linalg.norm(np.cross(*edge)) for edge in edges])
+    if not 0.0 < areas.max() < np.inf:
+        raise InvalidInput("vertices", "expected faces with areas in the range of float64")
+    shares = weight * (areas / areas.sum())
+    bodies = [_simplex(share, face) for share, face in zip(shares.tolist(), faces, strict=True) if share > 0.0]
+    return composite(bodies)
+
+
+def _simplex(mass: float, corners: NDArray[np.float64]) -> MassProperties:
+    """Give a rod, triangle or tetrahedron: of n corners each has 1/(n (n + 1)) of the mass, the center the rest."""
+    n = len(corners)
+    points = np.vstack([corners, corners[0] + (corners - corners[0]).mean(axis=0)])
+    return particles(mass * np.array([1.0 / (n * (n + 1))] * n + [n / (n + 1)]), points)

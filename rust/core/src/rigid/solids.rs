@@ -76,6 +76,12 @@ const SOLIDS: &[Solid] = &[
         moments: |l| [squared(l[0]) / 5.0, squared(l[0]) / 5.0, squared(l[0]) * (19.0 / 320.0)],
     },
     Solid {
+        name: "hemisphere_shell",
+        lengths: &["radius"],
+        // The center is half of the radius above the rim.
+        moments: |l| [squared(l[0]) / 3.0, squared(l[0]) / 3.0, squared(l[0]) / 12.0],
+    },
+    Solid {
         name: "ellipsoid",
         lengths: &["a", "b", "c"],
         moments: |l| [l[0], l[1], l[2]].map(|half| squared(half) / 5.0),
