@@ -141,9 +141,11 @@ def screw_axis(velocity: ArrayLike, angular_velocity: ArrayLike, about: ArrayLik
 
     >>> import visviva as vv
     >>> axis = vv.rigid.screw_axis([3.0, 0.0, 0.0], [0.0, 3.0, 0.0])
-    >>> axis.point, axis.direction, float(axis.pitch)
-    (array([ 0.,  0., -1.]), array([0., 1., 0.]), 0.0)
+    >>> axis.point, axis.direction, axis.pitch
+    (array([ 0.,  0., -1.]), array([0., 1., 0.]), np.float64(0.0))
     """
     motion = (("velocity", velocity, (3,)), ("angular_velocity", angular_velocity, (3,)), ("about", about, (3,)))
     found = mapped(_of_joined(_core.rigid_screw), (9,), *motion)
-    return ScrewAxis(found[..., :3], found[..., 3:6], found[..., 6], found[..., 7], found[..., 8])
+    # Of a single body numbers, and no arrays without axes.
+    rate, speed, pitch = (found[..., at][()] for at in (6, 7, 8))
+    return ScrewAxis(found[..., :3], found[..., 3:6], rate, speed, pitch)
