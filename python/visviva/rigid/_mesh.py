@@ -50,7 +50,7 @@ def mesh(
     -----
     Integrals over tetrahedra (Zhang & Chen 2001; Tonon 2005) from the middle of the mesh, on every core
     (``VISVIVA_THREADS``), with the same bits on any number of them. That the mesh is closed is told by the areas that
-    it has where its corners are scattered at random, which miss an open edge once in 2¹¹⁷ meshes; edges are counted
+    it has where its corners are scattered at random, which miss an open edge once in 2¹²¹ meshes; edges are counted
     only to say what is wrong.
 
     Examples

@@ -30,8 +30,6 @@ const BLOCKS: usize = 32;
 
 /// Ten sums: volume, first moments, second moments.
 type Sums = [f64; 10];
-/// Twice the areas in two planes, modulo 2⁶⁴.
-type Areas = [u64; 2];
 
 /// What a mesh of these corners and triangles encloses; the same bits for any number of threads.
 ///
@@ -49,13 +47,12 @@ pub fn enclosed(
     let parts = for_chunks(threads, faces.len().div_ceil(taken), ticker, |chunk, ticker| {
         ticker.tick()?;
         let start = chunk * taken;
-        let mut areas = [0; 2];
+        let mut area = 0;
         let blocks = faces[start..faces.len().min(start + taken)].chunks(BLOCK).enumerate();
-        let sums = blocks.map(|(at, block)| summed(vertices, block, start + at * BLOCK, middle, &mut areas));
-        Ok((sums.collect::<Result<Vec<Sums>>>()?, areas))
+        let sums = blocks.map(|(at, block)| summed(vertices, block, start + at * BLOCK, middle, &mut area));
+        Ok((sums.collect::<Result<Vec<Sums>>>()?, area))
     })?;
-    let areas = parts.iter().fold([0_u64; 2], |[a, b], (_, [c, d])| [a.wrapping_add(*c), b.wrapping_add(*d)]);
-    if areas != [0; 2] {
+    if parts.iter().fold(0_u128, |sum, (_, area)| sum.wrapping_add(*area)) != 0 {
         return Err(open(vertices, faces));
     }
     let mut whole = [0.0; 10];
@@ -97,56 +94,67 @@ fn added(mut sums: Sums, [a, b, c]: [[f64; 3]; 3]) -> Sums {
     sums
 }
 
-/// The sums of some triangles, of which the first has that number; their areas are added to others.
+/// The sums of some triangles, of which the first has that number; their area in the random plane is added to others.
 fn summed(
     vertices: &[[f64; 3]],
     faces: &[[i64; 3]],
     first: usize,
     middle: [f64; 3],
-    areas: &mut Areas,
+    area: &mut u128,
 ) -> Result<Sums> {
     let mut sums = [0.0; 10];
     for (at, face) in faces.iter().enumerate() {
-        let [Some(a), Some(b), Some(c)] = face.map(|at| vertices.get(usize::try_from(at).ok()?)) else {
+        let [Some(a), Some(b), Some(c)] =
+            [corner(vertices, face[0]), corner(vertices, face[1]), corner(vertices, face[2])]
+        else {
             let (count, at) = (vertices.len(), first + at);
             let message = format!("expected numbers of the {count} vertices, but faces[{at}] has another");
             return Err(Error::invalid("faces", message));
         };
-        let [p, q, r] = [a, b, c].map(|corner| scattered(*corner));
-        for plane in 0..2 {
-            let (u, v) = (2 * plane, 2 * plane + 1);
-            let ([x, y], [z, w]) =
-                ([q, r].map(|it| it[u].wrapping_sub(p[u])), [q, r].map(|it| it[v].wrapping_sub(p[v])));
-            let area = x.wrapping_mul(w).wrapping_sub(y.wrapping_mul(z));
-            areas[plane] = areas[plane].wrapping_add(area);
-        }
-        let seen = [a, b, c].map(|corner| core::array::from_fn(|axis| corner[axis] - middle[axis]));
-        sums = added(sums, seen);
+        let ((u, v), (u1, v1), (u2, v2)) = (scattered(a), scattered(b), scattered(c));
+        let (u1, v1, u2, v2) =
+            (u1.wrapping_sub(u), v1.wrapping_sub(v), u2.wrapping_sub(u), v2.wrapping_sub(v));
+        *area = area.wrapping_add(u1.wrapping_mul(v2).wrapping_sub(v1.wrapping_mul(u2)));
+        let seen = |[x, y, z]: [f64; 3]| [x - middle[0], y - middle[1], z - middle[2]];
+        sums = added(sums, [seen(a), seen(b), seen(c)]);
     }
     Ok(sums)
 }
 
-/// Where a corner is in two planes of 2⁶⁴ by 2⁶⁴ points, as if drawn at random.
+/// The vertex of that number.
+#[inline(always)]
+fn corner(vertices: &[[f64; 3]], number: i64) -> Option<[f64; 3]> {
+    vertices.get(usize::try_from(number).ok()?).copied()
+}
+
+/// Where a corner is in a plane of 2¹²⁸ by 2¹²⁸ points, as if drawn at random.
 ///
 /// Twice the signed area of a triangle is a sum over its edges, u v' − v u' of the ends of each, so that what is left of
 /// a whole mesh are the edges that are not run through as often one way as the other. If one is left over an odd number
-/// of times, the sum is a polynomial of the second degree that vanishes in one plane for 33 of 2⁶⁴ draws at most, and in
-/// both for one of 2¹¹⁷; a factor 2ᵗ of all such numbers makes that 2²ᵗ times as many.
+/// of times, the sum is a polynomial of the second degree in some of the numbers drawn that vanishes for 65 of 2¹²⁸ draws
+/// at most; a factor 2ᵗ of all such numbers makes that 2ᵗ times as many.
 #[inline(always)]
-fn scattered(corner: [f64; 3]) -> [u64; 4] {
+fn scattered([x, y, z]: [f64; 3]) -> (u128, u128) {
     // −0 is 0.
-    let [x, y, z] = corner.map(|part| (part + 0.0).to_bits());
-    let (a, b) = (
-        folded(x ^ 0x2d35_8dcc_aa6c_78a5, y ^ 0x8bb8_4b93_962e_acc9),
-        folded(y ^ 0x4b33_a62e_d433_d4a3, z ^ 0x4d5a_2da5_1de1_aa47),
-    );
+    let (x, y, z) = ((x + 0.0).to_bits(), (y + 0.0).to_bits(), (z + 0.0).to_bits());
+    let a = folded(x ^ 0x2d35_8dcc_aa6c_78a5, y ^ 0x8bb8_4b93_962e_acc9);
+    let b = folded(y ^ 0x4b33_a62e_d433_d4a3, z ^ 0x4d5a_2da5_1de1_aa47);
     let c = folded(z ^ 0xa076_1d64_78bd_642f, x ^ 0xe703_7ed1_a0b4_28db);
-    [
+    let u = wide(
         folded(a ^ 0x8ebc_6af0_9c88_c6e3, b ^ 0x5899_65cc_7537_4cc3),
         folded(b ^ 0x1d8e_4e27_c47d_124f, c ^ 0xeb44_acca_b455_d165),
+    );
+    let v = wide(
         folded(c ^ 0x9c6e_6877_736c_46e3, a ^ 0x9ea6_98a3_b3bd_52c1),
         folded(a.wrapping_add(b) ^ 0x8fe1_b5d4_9c7f_5b21, c ^ 0xd6e8_feb8_6659_fd93),
-    ]
+    );
+    (u, v)
+}
+
+/// A number of two halves.
+#[inline(always)]
+fn wide(high: u64, low: u64) -> u128 {
+    u128::from(high) << 64 | u128::from(low)
 }
 
 /// The two halves of a product, one over the other.
