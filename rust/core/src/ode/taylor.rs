@@ -188,7 +188,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         clock.h = h;
         self.h = S::next_step(clock, running);
         let sound = size2.less(S::one());
-        self.too_long = S::select(sound, self.too_long, self.unit);
+        self.too_long = S::select(sound.or(running.not()), self.too_long, self.unit);
         let far = S::splat(FAR) * self.unit;
         let again = far.less(longest.min(self.too_long)).and(sound);
         let size2 = S::select(again, S::splat(HUGE), size2);

@@ -112,14 +112,28 @@ impl Job<'_> {
         }
     }
 
-    /// The report of a unit that was interrupted before it began: where it was at the start.
+    /// How many output times are that of the start.
+    fn rows_at_start(&self) -> usize {
+        self.times.iter().take_while(|&&t| t == self.scene.t0).count()
+    }
+
+    /// Whether what is recorded of the start is the scene as it is.
+    pub(super) fn begins_plainly(&self) -> bool {
+        let plain = !self.writer.derives() && !self.writer.keeps_rest();
+        self.from.is_none() && (plain || self.rows_at_start() == 0)
+    }
+
+    /// The report of a unit that was interrupted before it began: where it was at the start, which is recorded if that
+    /// is the scene as it is.
     pub(super) fn not_begun(&self, unit: &Unit) -> Report {
+        let rows = if self.begins_plainly() { self.rows_at_start() } else { 0 };
+        unit.record_start(self.writer, self.scene, rows);
         let (positions, velocities) = (self.scene.positions(unit.copy), self.scene.velocities(unit.copy));
         let recorded = unit.bodies.get(unit.recorded.clone()).unwrap_or_default();
         Report {
             unit: unit.clone(),
             ending: Ending::Interrupted,
-            rows: 0,
+            rows,
             counts: Counts::default(),
             time: self.scene.t0,
             states: recorded.iter().map(|&body| [positions[body], velocities[body]]).collect(),

@@ -6,7 +6,7 @@
 use super::super::columns::{Consecutive, Output, Writer};
 use super::super::frame::{Moved, Units, restored};
 use super::rows::{derive_rows, record_rows};
-use super::{Layout, Origin, Prepared, Unit};
+use super::{Layout, Origin, Prepared, Scene, Unit};
 use crate::error::Result;
 use crate::forces::bodies::{Of, PreciseBodies};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
@@ -69,6 +69,20 @@ fn rows(unit: &Unit) -> Option<Way> {
         (last - first + 1 == bodies.len()).then(|| Consecutive::new(first, bodies.len()))
     });
     Some(Way::Rows { start, runs: runs.collect::<Option<_>>()? })
+}
+
+impl Unit {
+    /// Records its bodies where the scene has them, in so many rows.
+    pub fn record_start(&self, writer: &Writer<'_>, scene: &Scene, rows: usize) {
+        let (positions, velocities) = (scene.positions(self.copy), scene.velocities(self.copy));
+        for time in 0..rows {
+            // SAFETY: as of a unit that has begun.
+            let output = unsafe { writer.output(self.copy, time) };
+            for &body in &self.bodies[self.recorded.clone()] {
+                output.write_rounded(body, positions[body], velocities[body]);
+            }
+        }
+    }
 }
 
 impl Prepared {
