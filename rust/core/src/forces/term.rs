@@ -139,7 +139,8 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     /// The kernel for lanes laid out and scaled as the context says.
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>>;
 
-    /// One kernel of another force and then this one, where the work of the other serves both.
+    /// One kernel of this force and another, with the bits of their sum, where that is faster: see
+    /// [`gravity::beside`](super::gravity).
     fn kernel_after(&self, _other: &dyn ForceTerm, _: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         None
     }
