@@ -67,6 +67,10 @@ class BodyForce:
 
     def _resolved(self, bodies: tuple[tuple[str, ...], int], particles: tuple[tuple[str, ...], int]) -> Self:
         """The force with indices in place of names, as a scene keeps it; known are names and numbers of both."""
+        if not bodies[1]:
+            raise InvalidInput(
+                "forces", f"expected rigid bodies in the scene for {type(self).__name__} to act on, got none"
+            )
         known = {"bodies": bodies, "particles": particles}
         given = {name: (getattr(self, name), *known[of]) for name, of in self._bodies.items()}
         return self._with(**{name: _found(name, *each) for name, each in given.items() if each[0] is not None})

@@ -69,6 +69,11 @@ def test_names_of_bodies_are_looked_up_in_the_scene() -> None:
             force._resolved(BODIES, PARTICLES)
     with pytest.raises(vv.InvalidInput, match="particle: expected particles in the scene, which has none"):
         FORCES[5]._resolved(BODIES, ((), 0))
+    for force in FORCES:
+        with pytest.raises(
+            vv.InvalidInput, match=f"forces: expected rigid bodies in the scene for {type(force).__name__}"
+        ):
+            vv.Scene(vv.Particles([1.0], [[0, 0, 0]]), force)
     with pytest.raises(vv.InvalidInput, match="body: expected the index of a body outside a scene, got 'top'"):
         FORCES[1].core_arguments()
 
