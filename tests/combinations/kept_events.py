@@ -125,6 +125,24 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             backward=True,
         ),
     ),
+    # Bodies that fail, and for the events fail together, a little earlier: the law took their last states for the same.
+    (
+        "events_change_no_bit_of_the_run",
+        Recipe(
+            method="verner98",
+            bodies=5,
+            forces=(("DrivenForce", 70), ("LinearDrag", 4), ("Drag", 34)),
+            seed=46458,
+            tame=False,
+            planar=True,
+            units=(-258, 153, -210),
+            steps=22,
+            decades=7,
+            outputs=4,
+            columns=("energy",),
+            backward=True,
+        ),
+    ),
     # The law took a body at rest for exact, which is integrated about an origin that moves.
     (
         "a_located_event_is_a_zero_at_its_state",

@@ -13,32 +13,40 @@ pub(super) fn bodies_of(scene: &Scene, copy: usize, rule: Collisions, direction:
     let (mass, radius) = (scene.masses(copy), scene.radii(copy));
     let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
     let radius = if radius.is_empty() { vec![0.0; scene.particles] } else { radius.to_vec() };
+    let mut host: Vec<usize> = (0..scene.particles).collect();
     // What names bodies cannot do without any; a merger refuses it.
-    let names =
-        rule != Collisions::Merge && scene.forces_of(copy).iter().any(|force| force.tells_bodies_apart());
-    let host = if names { (0..scene.particles).collect() } else { hosts(scene, copy) };
+    let merges = rule == Collisions::Merge;
+    if merges || !scene.forces_of(copy).iter().any(|force| force.tells_bodies_apart()) {
+        for (body, other) in parts(scene, copy) {
+            // Points that nobody has merged may be together, too.
+            host[body] = if merges || radius[other] > 0.0 { other } else { body };
+        }
+    }
     let (mass, position, velocity) = (mass.to_vec(), position.to_vec(), velocity.to_vec());
     Impact { mass, radius, position, velocity, host, direction }
 }
 
-/// Of which body each of a copy is a part, or itself: what an earlier run has merged is nothing by itself, in the place of
-/// another and moving with it.
-fn hosts(scene: &Scene, copy: usize) -> Vec<usize> {
+/// The bodies of a copy that are parts of others, each with that one: what an earlier run has merged is nothing by itself, in
+/// the place of another and moving with it.
+fn parts(scene: &Scene, copy: usize) -> Vec<(usize, usize)> {
     let (mass, radius) = (scene.masses(copy), scene.radii(copy));
     let (position, velocity) = (scene.positions(copy), scene.velocities(copy));
     let key = |body: usize| [position[body], velocity[body]].map(|x| x.map(|x| (x + 0.0).to_bits()));
-    let whole = |body: usize| mass[body] > 0.0 || radius.get(body).is_some_and(|&radius| radius > 0.0);
-    let there: HashMap<_, usize> =
-        (0..scene.particles).filter(|&body| whole(body)).map(|body| (key(body), body)).collect();
-    let host = |body| if whole(body) { body } else { there.get(&key(body)).copied().unwrap_or(body) };
-    (0..scene.particles).map(host).collect()
+    let whole = |&body: &usize| mass[body] > 0.0 || radius.get(body).is_some_and(|&radius| radius > 0.0);
+    let (wholes, nothing): (Vec<usize>, Vec<usize>) = (0..scene.particles).partition(whole);
+    if nothing.is_empty() {
+        return Vec::new();
+    }
+    let there: HashMap<_, usize> = wholes.into_iter().map(|body| (key(body), body)).collect();
+    nothing.into_iter().filter_map(|body| Some((body, *there.get(&key(body))?))).collect()
 }
 
-/// A body that is a part of another, as a merger leaves it, and that one.
+/// A body that is a part of a sphere, as a merger leaves it, and that sphere.
 pub fn absorbed(scene: &Scene) -> Option<(usize, usize)> {
-    let spheres = scene.radius.iter().any(|&radius| radius > 0.0);
-    let copies = if spheres { 0..scene.copies } else { 0..0 };
-    copies.flat_map(|copy| hosts(scene, copy).into_iter().enumerate()).find(|(body, host)| body != host)
+    let of = |copy| parts(scene, copy).into_iter().map(move |pair| (copy, pair));
+    let is_sphere = |copy, other| scene.radii(copy).get(other).is_some_and(|&radius: &f64| radius > 0.0);
+    let mut all = (0..scene.copies).flat_map(of);
+    all.find(|&(copy, (_, other))| is_sphere(copy, other)).map(|(_, pair)| pair)
 }
 
 /// A copy without those of its bodies that are parts of others, if some are.
