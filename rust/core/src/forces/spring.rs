@@ -6,6 +6,7 @@
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Context, System};
 use super::links::{Linked, Links, OfLinks, check_counts, of_link};
+use super::series::{LinearSeries, Series};
 use super::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::{Error, Result};
@@ -99,6 +100,14 @@ impl ForceTerm for Springs {
             long: linked.links.iter().map(|&(at, _)| self.springs[at].length != 0.0).collect(),
             linked,
         })
+    }
+    /// Without lengths springs are linear. With one, a spring that is pressed together to nothing on a line has a series
+    /// that goes on, and the force turns about.
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        LinearSeries::boxed(self.kernel(context), Some(self.kernel(context)))
+    }
+    fn has_series(&self) -> bool {
+        self.springs.iter().all(|spring| spring.length == 0.0)
     }
     fn potential_and_virial(
         &self,

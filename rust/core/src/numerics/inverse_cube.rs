@@ -15,6 +15,7 @@ use super::lanes::Lanes;
 #[cfg(target_arch = "x86_64")]
 use super::lanes::{Avx2, Avx512};
 use super::real::{Real, each};
+use super::rough_power::rough_power;
 
 /// Cutting off the bits of `y` makes it smaller by up to 2^-16: half of that beforehand centres the error.
 const CENTRE: f64 = 1.0 + 1.0 / 131_072.0;
@@ -69,6 +70,9 @@ pub trait InverseCube: Real {
     }
     /// `1/√self` to 17 bits, for positive `self`, and something finite for 0: for deciding, not for results.
     fn rough_inverse_root(self) -> Self;
+    /// `self^exponent` to four digits, for positive normal `self` and an exponent of at most 1/2 in size, and 0 of 0: for
+    /// deciding.
+    fn rough_power(self, exponent: f64) -> Self;
 }
 
 macro_rules! binary {
@@ -83,6 +87,10 @@ macro_rules! binary {
                 let [root] = inverse_roots([self]);
                 root
             }
+            #[inline(always)]
+            fn rough_power(self, exponent: f64) -> Self {
+                rough_power(self, exponent)
+            }
         }
     )+};
 }
@@ -96,6 +104,9 @@ impl InverseCube for DoubleDouble {
     }
     fn rough_inverse_root(self) -> Self {
         Self::from(self.to_f64().rough_inverse_root())
+    }
+    fn rough_power(self, exponent: f64) -> Self {
+        Self::from(self.to_f64().rough_power(exponent))
     }
 }
 

@@ -19,6 +19,7 @@ pub mod power;
 pub mod power_of_two;
 pub mod real;
 pub mod rotation;
+mod rough_power;
 pub mod rows;
 pub mod scaled;
 pub mod simd;

@@ -10,11 +10,12 @@ use super::passes::errors::{HUGE, PairTerm};
 use super::passes::series::{Choice, LargestRoot, Sum, nest};
 use super::series::Jet;
 use super::state::State;
-use super::step_control::{Clock, Controlled, Rule, Settled, root};
+use super::step_control::{Clock, Controlled, Rule, Settled};
 use super::system::{Form, System};
 use super::trial::{Cost, Trial};
 use crate::error::{Error, Result};
 use crate::numerics::element::Element;
+use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
 use crate::parallel::Ticker;
 
@@ -149,7 +150,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let rtol = norm.rtol.first_lane();
         self.jet.order = self.order(rtol);
         let share = MARGIN * Real::min(1.0, LOOSEST / rtol);
-        self.margin = root(share * share, &Rule::new(self.jet.order as u32, 0.0));
+        self.margin = share.rough_power(1.0 / self.jet.order as f64);
         let mut a = vec![S::zero(); self.jet.len];
         system.acceleration(&clock.elapsed, state.q(), state.v(), &mut a, ticker)?;
         let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];

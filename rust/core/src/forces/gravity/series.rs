@@ -18,6 +18,7 @@ use crate::numerics::real::Real;
 use crate::ode::series::{Jet, raise};
 
 mod each;
+mod pair;
 pub mod passive;
 mod ring;
 mod rows;

@@ -7,7 +7,6 @@ use super::errors::HUGE;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
 use crate::numerics::real::Real;
-use crate::ode::step_control::{Rule, root};
 
 /// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
 #[derive(Debug)]
@@ -25,7 +24,7 @@ impl<S: Element> Pass<S> for LargestRoot<S> {
         let mut largest = V::zero();
         for which in 0..2 {
             let square = V::load(self.squares[which]);
-            let root = root(square, &Rule::new(self.orders[which] as u32, V::zero()));
+            let root = square.rough_power(0.5 / self.orders[which] as f64);
             let sound = square.less(V::splat(HUGE));
             largest = largest.max(V::select(sound, root, V::splat(f64::INFINITY)));
         }

@@ -1,5 +1,6 @@
 //! A pair in each register: of one trajectory, or of eight in lanes.
 
+use super::pair::{Beside, Between};
 use super::{Kept, Orders, Pairs, Whole};
 use crate::error::Result;
 use crate::forces::series::Series;
@@ -12,6 +13,8 @@ use crate::parallel::Ticker;
 pub struct EachPair<S> {
     bodies: Ring<S>,
     kept: Kept<S>,
+    /// Two bodies, with nothing beside them.
+    pair: Option<Box<Between>>,
 }
 
 /// Bodies on a ring.
@@ -33,7 +36,9 @@ impl<S: Element> EachPair<S> {
         });
         let pairs: Vec<_> = pairs.collect();
         let kept = Kept::new(shape, pairs.len());
-        Self { bodies: Ring { pairs, strength, softening2: softening * softening, rows: shape.rows }, kept }
+        let softening2 = softening * softening;
+        let pair = (n == 2 && shape.rows == 2).then(|| Box::new(Between::new(softening2)));
+        Self { bodies: Ring { pairs, strength, softening2, rows: shape.rows }, kept, pair }
     }
 }
 
@@ -129,6 +134,10 @@ impl<S: Element> Series<S> for EachPair<S> {
         Ok(())
     }
     fn expand(&mut self, jet: &mut Jet<S>, a: &mut [S], _: &mut Ticker<'_>) -> Result<()> {
+        if let Some(between) = &self.pair {
+            S::pass(Beside { between, strength: &self.bodies.strength, jet });
+            return Ok(());
+        }
         S::pass(AllOrders(&self.bodies, Whole { kept: &mut self.kept, jet, a }));
         Ok(())
     }

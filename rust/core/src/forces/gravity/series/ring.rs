@@ -1,6 +1,7 @@
 //! Up to eight bodies of one trajectory, the lanes over the bodies: all pairs at one distance around the ring in a register.
 
-use super::{EachPair, Kept, ORDERS, Orders, Pairs, Whole};
+use super::pair::Along;
+use super::{Kept, Orders, Pairs, Whole};
 use crate::error::Result;
 use crate::forces::series::Series;
 use crate::numerics::element::Shape;
@@ -30,47 +31,8 @@ struct Turns {
 pub struct RingPairs {
     bodies: Turns,
     kept: Kept<Lanes>,
-    pair: Option<Box<OnePair>>,
-}
-
-/// Two bodies, whose only pair would leave seven lanes idle: a number at a time, a processor does several.
-struct OnePair {
-    series: EachPair<f64>,
-    jet: Jet<f64>,
-    a: Vec<f64>,
-}
-
-impl OnePair {
-    /// As [`Series::expand`], of a jet in lanes.
-    fn expand(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
-        let Self { series, jet: own, a } = self;
-        (own.order, own.unit) = (jet.order, jet.unit.0[0]);
-        let components = own.len / 2;
-        let rows = jet.len / components;
-        // The first two blocks are those of the state.
-        for n in 0..2 {
-            for number in 0..own.len {
-                let (row, lane) = (number / 2 * rows, number % 2);
-                own.q[n * own.len + number] = jet.q[n * jet.len + row].0[lane];
-            }
-        }
-        for number in 0..own.len {
-            own.v[number] = own.q[own.len + number];
-            own.rests[0][number] = jet.rests[0][number / 2 * rows].0[number % 2];
-        }
-        series.expand(own, a, ticker)?;
-        let last = own.order + 2;
-        for (from, into, first, blocks) in [(&own.q, &mut jet.q, 2, last), (&own.v, &mut jet.v, 1, last - 1)]
-        {
-            for n in first..blocks {
-                for c in 0..components {
-                    let pair = &from[n * own.len + 2 * c..][..2];
-                    into[n * jet.len + c * rows] = Lanes([pair[0], pair[1], 0.0, 0.0, 0.0, 0.0, 0.0, 0.0]);
-                }
-            }
-        }
-        Ok(())
-    }
+    /// Two bodies.
+    pair: Option<Box<Along>>,
 }
 
 impl RingPairs {
@@ -91,14 +53,12 @@ impl RingPairs {
         let softening2 =
             Lanes(core::array::from_fn(|lane| if lane < n { softening * softening } else { 1.0 }));
         let kept = Kept::new(shape, turns.len());
-        let pair = (n == 2 && shape.rows == 1).then(|| {
-            let shape = Shape { rows: 2, ..shape };
-            Box::new(OnePair {
-                series: EachPair::new(shape, strength.to_vec(), softening),
-                jet: Jet::new(shape.len(), ORDERS - 2),
-                a: vec![0.0; shape.len()],
-            })
-        });
+        let pair = match strength {
+            &[first, second] if shape.rows == 1 => {
+                Some(Box::new(Along::new([first, second], softening * softening)))
+            }
+            _ => None,
+        };
         Self { bodies: Turns { turns, softening2, rows: shape.rows }, kept, pair }
     }
 }
@@ -166,9 +126,10 @@ impl Series<Lanes> for RingPairs {
         one_order_tier(&self.bodies, Orders { kept: &mut self.kept, jet, n, a, first });
         Ok(())
     }
-    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], ticker: &mut Ticker<'_>) -> Result<()> {
+    fn expand(&mut self, jet: &mut Jet<Lanes>, a: &mut [Lanes], _: &mut Ticker<'_>) -> Result<()> {
         if let Some(pair) = &mut self.pair {
-            return pair.expand(jet, ticker);
+            pair.expand(jet);
+            return Ok(());
         }
         all_orders_tier(&self.bodies, Whole { kept: &mut self.kept, jet, a });
         Ok(())
