@@ -58,7 +58,7 @@ def rigid_of_copies(
     turning: dict[str, NDArray[np.float64]],
     full: dict[str, NDArray[np.float64]],
     *,
-    moved: bool,
+    given: frozenset[str],
 ) -> _core._Rigid | None:
     """What the core is told of the rigid bodies of all copies. Held points stay, unless bodies are moved."""
     described = scene._keywords["rigid"]
@@ -73,7 +73,7 @@ def rigid_of_copies(
     for name in ("moments", "axes", "center", "orientation", "angular_velocity"):
         each = turning.get(name, arrays[name])
         arrays[name] = np.ascontiguousarray(np.broadcast_to(each, (count, *each.shape[1:])))
-    if rigid.pivoted.any() and "orientation" in turning and not moved:
+    if rigid.pivoted.any() and "orientation" in turning and "position" not in given:
         pivot = np.nan_to_num(rigid.pivot) if rigid.pivot is not None else np.zeros((len(rigid), 3))
         arms = rotate(told["orientation"], np.broadcast_to(pivot, (count, len(rigid), 3)))
         centers = full["position"][:, -len(rigid) :]
@@ -82,9 +82,16 @@ def rigid_of_copies(
         placed[:, -len(rigid) :] = np.where(held, rigid.fixed_point - arms, centers)
         placed.setflags(write=False)
         full["position"] = placed
-    if rigid.pivot is not None and turning:
+    if rigid.pivot is not None and (turning or "velocity" in given):
         arms = np.where(rigid.pivoted[:, None], -rigid.pivot, 0.0)
         follows = rotate(told["orientation"], np.cross(told["angular_velocity"], arms))
+        size = 1e-9 * np.abs(follows).max(axis=-1)
+        apart = np.abs(full["velocity"][:, -len(rigid) :] - follows).max(axis=-1)
+        if (
+            "velocity" in given
+            and (rigid.pivoted & (apart > size) & full["velocity"][:, -len(rigid) :].any(axis=-1)).any()
+        ):
+            raise InvalidInput("velocity", "expected 0 for bodies with fixed points, or what follows from their spins")
         moving = full["velocity"].copy()
         centers = moving[:, -len(rigid) :]
         centers[...] = np.where(rigid.pivoted[None, :, None], follows, centers)

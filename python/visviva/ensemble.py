@@ -116,7 +116,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
             name: given[name] if name in given else read_only(np.broadcast_to(array, (count, *array.shape)).copy())
             for name, array in own.items()
         }
-        rigid = rigid_of_copies(scene, count, turning, full, moved="position" in given)
+        rigid = rigid_of_copies(scene, count, turning, full, given=frozenset(given))
         prepared: _core._Scene = {
             "mass": full["mass"],
             "position": full["position"],

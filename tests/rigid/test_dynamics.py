@@ -15,8 +15,7 @@ import visviva as vv
 
 TOP = {"inertia": np.diag([0.234375, 0.46875, 0.234375]), "angular_velocity": [0.0, 150.0, -4.61538]}
 TOP_CENTER = np.array([-0.1504168227456418, -0.7241655916368957, -0.6730222695604441])  # at t = 2
-# The first component as the energy has it: the research file's 0.1222332219473942 has a misprint in its eighth digit.
-TOP_SPIN = np.array([0.122233219497382, 150.0, -5.855624589205458])
+TOP_SPIN = np.array([0.1222332194973942, 150.0, -5.855624589205458])
 MOMENTS = np.array([0.6, 0.8, 1.0])
 SPIN = np.array([1.8, 0.4, -0.9]) / MOMENTS
 FREE_10 = np.array([-0.570786951240350733, -0.299388571830790094, -0.206839086104673192, -0.736061364160793936])
@@ -323,6 +322,24 @@ def test_a_step_alone_chooses_the_method() -> None:
 def test_softening_beside_shapes_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match="softening"):
         vv.Scene(*pair(), vv.Gravity(G=1.0, softening=0.1)).run(t=1.0, method="leapfrog", dt=0.1)
+
+
+def test_ends_of_springs_at_one_place_are_refused() -> None:
+    body = vv.RigidBody(1.0, MOMENTS, position=[1.0, 0, 0])
+    for force in (
+        vv.AttachedSpring(0, [0.5, 0, 0], 1.0, length=1.0, anchor=[1.5, 0, 0]),
+        vv.AttachedSpring(0, [0.5, 0, 0], 1.0, damping=0.1, anchor=[1.5, 0, 0]),
+    ):
+        with pytest.raises(vv.InvalidInput, match="ends of AttachedSpring are at one place"):
+            vv.Scene(body, force).run(t=1.0, method="rk4", dt=0.1)
+    slack = vv.AttachedSpring(0, [0.5, 0, 0], 1.0, anchor=[1.5, 0, 0])
+    assert vv.Scene(body, slack).run(t=1.0, method="rk4", dt=0.1).status == vv.Status.OK
+
+
+def test_velocities_of_held_bodies_are_not_given_to_members() -> None:
+    scene = top()
+    with pytest.raises(vv.InvalidInput, match="velocity"):
+        scene.ensemble(velocity=np.ones((2, 1, 3)))
 
 
 def test_a_massless_end_of_a_spring_is_refused() -> None:

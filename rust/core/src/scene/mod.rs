@@ -23,6 +23,8 @@ use crate::forces::ForceTerm;
 use crate::forces::term::{Bodies, check_masses};
 pub(crate) use crate::numerics::points::distance;
 use crate::rigid::motion::bodies::RigidBodies;
+use crate::rigid::motion::loads::Load;
+use crate::rigid::quaternion::rotated;
 use crate::words::{number, numbers};
 use continuation::Continuation;
 use std::sync::Arc;
@@ -124,6 +126,31 @@ impl Scene {
         }
     }
 
+    /// Refuses springs whose direction is not known: of a length, or damped, between ends at one place.
+    fn validate_springs(&self, bodies: &RigidBodies) -> Result<()> {
+        let first = self.particles - bodies.count;
+        for copy in 0..self.copies {
+            let places = self.positions(copy);
+            let coincide = |load: &&Load| {
+                load.coincides(
+                    |body, point| {
+                        let arm = rotated(bodies.orientation[copy * bodies.count + body], point);
+                        [0, 1, 2].map(|c| places[first + body][c] + arm[c])
+                    },
+                    places,
+                )
+            };
+            if let Some(load) = bodies.loads.iter().find(coincide) {
+                let message = format!(
+                    "ends of {} are at one place, from where it has no direction: move one",
+                    load.name()
+                );
+                return Err(Error::invalid("position", message));
+            }
+        }
+        Ok(())
+    }
+
     /// Refuses rigid bodies and ends of springs without mass.
     fn validate_rigid_masses(&self, bodies: &RigidBodies) -> Result<()> {
         let first = self.particles - bodies.count;
@@ -185,6 +212,7 @@ impl Scene {
         if let Some(bodies) = &self.rigid {
             bodies.validate(self.copies, self.particles)?;
             self.validate_rigid_masses(bodies)?;
+            self.validate_springs(bodies)?;
         }
         if !self.t0.is_finite() {
             return Err(Error::invalid("t0", format!("expected a finite time, got {}", number(self.t0))));

@@ -96,6 +96,17 @@ impl Load {
         Some((index(one)?, index(other)?))
     }
 
+    /// Whether it is a spring that needs a direction between ends at one place, the points of bodies being where `at` says.
+    pub fn coincides(&self, at: impl Fn(usize, [f64; 3]) -> [f64; 3], places: &[[f64; 3]]) -> bool {
+        let Self::Spring { ends, length, damping, .. } = self else { return false };
+        let [one, other] = ends.map(|end| match end {
+            End::Body(body, point) => at(body, point),
+            End::Particle(index) => places[index],
+            End::Anchor(point) => point,
+        });
+        (*length > 0.0 || *damping > 0.0) && one == other
+    }
+
     /// Whether it pulls a body of the scene that is no rigid one.
     pub fn pulls(&self, particle: usize) -> bool {
         let at = |end: &End| matches!(end, End::Particle(index) if *index == particle);
