@@ -33,9 +33,12 @@ class Peer:
 
     # A peer is given so many times our time before it is taken no further.
     patience = 3.0
+    # And at least so many seconds.
+    least = 0.0
 
     def __init__(self, problem: vv.problems.Problem, ours: vv.WorkPrecision, seconds: float, repeats: int) -> None:
-        self.problem, self.ours, self.seconds, self.repeats = problem, ours, self.patience * seconds, repeats
+        self.problem, self.ours, self.repeats = problem, ours, repeats
+        self.seconds = max(self.least, self.patience * seconds)
         self.scene, self.end = problem.scene, problem.t_end
         self.size = float(np.abs(problem.references[-1].position).max())
         self.energy = self.scene.invariants().energy
@@ -58,7 +61,7 @@ class Peer:
             try:
                 position, velocity = once()
             except Exception as error:  # a peer says in its own way that it cannot
-                print(f"  {series} at {setting:g}: {error}")
+                print(f"  {series} at {setting:g}: {error!s:.60}")
                 if isinstance(error, TimeoutError):
                     self.out_of_patience.add(series)
                 return None, perf_counter() - begun
@@ -205,7 +208,8 @@ class Heyoka(Peer):
 class Scipy(Peer):
     """`solve_ivp` with DOP853 and LSODA, of the accelerations that visviva's forces are, in NumPy."""
 
-    patience = 20.0
+    patience = 12.0
+    least = 0.5
 
     def points(self) -> Iterator[vv.Point]:
         if find_spec("scipy") is None:
