@@ -6,9 +6,7 @@
 use super::Tableau;
 use super::nystrom::Row;
 use super::passes::rates::{FEW, RateErrors, RateStep, fresh};
-use super::passes::stages::{
-    CompensatedPositions, CompensatedRates, Positions, PositionsAndRates, Rates, Weighted,
-};
+use super::passes::stages::{CompensatedPositions, CompensatedRates, Positions, Rates, Weighted};
 use super::passes::updates::replace;
 use super::state::State;
 use super::stepper::{Nodes, Stepper, per_call};
@@ -116,14 +114,16 @@ impl<S: Element> Stages<S> {
             return system.rate(t, &self.position, &mut self.k[stage * len..][..len], ticker);
         }
         let slope = (state.v(), &row.fraction);
-        let positions =
-            Positions { out: &mut self.position, q: state.position(), slope, stages: stages(&row.position) };
+        S::pass(Positions {
+            out: &mut self.position,
+            q: state.position(),
+            slope,
+            stages: stages(&row.position),
+        });
         let velocity = if self.needs.velocities() {
-            let rates = Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) };
-            S::pass(PositionsAndRates(positions, rates));
+            S::pass(Rates { out: &mut self.velocity, y: state.velocity(), stages: stages(&row.velocity) });
             &self.velocity
         } else {
-            S::pass(positions);
             state.v()
         };
         system.acceleration(t, &self.position, velocity, &mut self.k[stage * len..][..len], ticker)

@@ -166,19 +166,6 @@ impl<S: Element> Pass<S> for Rates<'_, S> {
     }
 }
 
-/// Coordinates and velocities within a step, in one call.
-#[derive(Debug)]
-pub struct PositionsAndRates<'a, S>(pub Positions<'a, S>, pub Rates<'a, S>);
-
-impl<S: Element> Pass<S> for PositionsAndRates<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<S>>(self) {
-        self.0.run::<V>();
-        self.1.run::<V>();
-    }
-}
-
 /// As [`Rates`], compensated, into `(out, out_e)`.
 #[derive(Debug)]
 pub struct CompensatedRates<'a, S> {

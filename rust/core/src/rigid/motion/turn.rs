@@ -154,34 +154,34 @@ pub fn asymmetric<S: Real>(inverse: [S; 3], momentum: [S; 3], h: S, room: &mut [
 /// The turn in a part of the time that is short, and the momentum after it.
 #[inline(always)]
 fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) -> [S; 4] {
-    const LENGTH: usize = ORDER + 1;
     let half = h * S::splat(0.5);
-    let (m, rest) = room.split_at_mut(3 * LENGTH);
-    let (rate, q) = rest.split_at_mut(3 * LENGTH);
-    let q = &mut q[..4 * LENGTH];
+    let rows = room.as_chunks_mut::<{ ORDER + 1 }>().0;
+    let [m0, m1, m2, r0, r1, r2, q0, q1, q2, q3] = rows else { return [S::splat(f64::NAN); 4] };
     let differences =
         [h * (inverse[2] - inverse[1]), h * (inverse[0] - inverse[2]), h * (inverse[1] - inverse[0])];
-    for c in 0..3 {
-        m[c * LENGTH] = momentum[c];
-        rate[c * LENGTH] = half * (inverse[c] * momentum[c]);
-        q[c * LENGTH] = S::zero();
-    }
-    q[3 * LENGTH] = S::one();
-    let least = largest([rate[0], rate[LENGTH], rate[2 * LENGTH]]) * S::splat(NOTHING);
+    [m0[0], m1[0], m2[0]] = *momentum;
+    let first = [
+        half * (inverse[0] * momentum[0]),
+        half * (inverse[1] * momentum[1]),
+        half * (inverse[2] * momentum[2]),
+    ];
+    [r0[0], r1[0], r2[0]] = first;
+    [q0[0], q1[0], q2[0], q3[0]] = [S::zero(), S::zero(), S::zero(), S::one()];
+    let least = largest(first) * S::splat(NOTHING);
     let mut ended = S::zero().less(S::zero());
     let mut small = ended;
     let mut order = 0;
     while order < ORDER {
         let mut products = [S::zero(); 3];
         let mut turning = [S::zero(); 4];
-        for i in 0..=order {
+        for i in 0..order + 1 {
             let j = order - i;
-            let [x, y, z] = [m[i], m[LENGTH + i], m[2 * LENGTH + i]];
-            products[0] = y.multiply_add(m[2 * LENGTH + j], products[0]);
-            products[1] = z.multiply_add(m[j], products[1]);
-            products[2] = x.multiply_add(m[LENGTH + j], products[2]);
-            let [a, b, c] = [rate[j], rate[LENGTH + j], rate[2 * LENGTH + j]];
-            let [x, y, z, w] = [q[i], q[LENGTH + i], q[2 * LENGTH + i], q[3 * LENGTH + i]];
+            let [x, y, z] = [m0[i], m1[i], m2[i]];
+            products[0] = y.multiply_add(m2[j], products[0]);
+            products[1] = z.multiply_add(m0[j], products[1]);
+            products[2] = x.multiply_add(m1[j], products[2]);
+            let [a, b, c] = [r0[j], r1[j], r2[j]];
+            let [x, y, z, w] = [q0[i], q1[i], q2[i], q3[i]];
             turning[0] = w.multiply_add(a, y.multiply_add(c, z.multiply_subtract_from(b, turning[0])));
             turning[1] = w.multiply_add(b, z.multiply_add(a, x.multiply_subtract_from(c, turning[1])));
             turning[2] = w.multiply_add(c, x.multiply_add(b, y.multiply_subtract_from(a, turning[2])));
@@ -194,17 +194,21 @@ fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) 
         let per = S::splat(1.0 / order as f64);
         let mut size = S::zero();
         for c in 0..3 {
-            let next = S::select(ended, S::zero(), products[c] * differences[c] * per);
-            m[c * LENGTH + order] = next;
-            let next = half * (inverse[c] * next);
-            rate[c * LENGTH + order] = next;
-            size = size.max(next.abs());
+            products[c] = S::select(ended, S::zero(), products[c] * differences[c] * per);
         }
         for c in 0..4 {
-            let next = S::select(ended, S::zero(), turning[c] * per);
-            q[c * LENGTH + order] = next;
-            size = size.max(next.abs());
+            turning[c] = S::select(ended, S::zero(), turning[c] * per);
+            size = size.max(turning[c].abs());
         }
+        let rates = [
+            half * (inverse[0] * products[0]),
+            half * (inverse[1] * products[1]),
+            half * (inverse[2] * products[2]),
+        ];
+        size = size.max(largest(rates));
+        [m0[order], m1[order], m2[order]] = products;
+        [r0[order], r1[order], r2[order]] = rates;
+        [q0[order], q1[order], q2[order], q3[order]] = turning;
         // Two in a row: every other term may be nothing by symmetry.
         let now = size.less_equal(least);
         ended = ended.or(now.and(small));
@@ -217,12 +221,8 @@ fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) 
     let mut turn = [S::zero(); 4];
     let mut after = [S::zero(); 3];
     while order > 0 {
-        for c in 0..4 {
-            turn[c] += q[c * LENGTH + order];
-        }
-        for c in 0..3 {
-            after[c] += m[c * LENGTH + order];
-        }
+        turn = [turn[0] + q0[order], turn[1] + q1[order], turn[2] + q2[order], turn[3] + q3[order]];
+        after = [after[0] + m0[order], after[1] + m1[order], after[2] + m2[order]];
         order -= 1;
     }
     for c in 0..3 {
@@ -243,27 +243,21 @@ pub fn far(moments: [f64; 3], inverse: [f64; 3], momentum: [f64; 3], h: f64) -> 
     }
 }
 
-/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1: the momentum is in space, and does
-/// not depend on that.
+/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1 by what it lacked of that before:
+/// turns change no length but by rounding. The momentum is in space, and does not depend on it.
 #[inline(always)]
 pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 4]) {
+    let square = q[0].multiply_add(q[0], q[1].multiply_add(q[1], q[2].multiply_add(q[2], q[3] * q[3])));
+    let twice =
+        q[0].multiply_add(rest[0], q[1].multiply_add(rest[1], q[2].multiply_add(rest[2], q[3] * rest[3])));
+    let missing = S::splat(0.5) * ((S::one() - square) - (twice + twice));
     let (change, small) = (product(q, turn), product(rest, turn));
     let (mut to, mut left) = (q, rest);
     for c in 0..4 {
-        let increment = (change[c] + small[c]) + rest[c];
+        let before = q[c].multiply_add(missing, rest[c]);
+        let increment = change[c] + (small[c] + before);
         to[c] = q[c] + increment;
         left[c] = increment - (to[c] - q[c]);
-    }
-    let square =
-        to[0].multiply_add(to[0], to[1].multiply_add(to[1], to[2].multiply_add(to[2], to[3] * to[3])));
-    let twice = to[0]
-        .multiply_add(left[0], to[1].multiply_add(left[1], to[2].multiply_add(left[2], to[3] * left[3])));
-    let missing = S::splat(0.5) * ((S::one() - square) - (twice + twice));
-    for c in 0..4 {
-        let increment = to[c].multiply_add(missing, left[c]);
-        let sum = to[c] + increment;
-        left[c] = increment - (sum - to[c]);
-        to[c] = sum;
     }
     (to, left)
 }
