@@ -171,7 +171,7 @@ def test_steps_of_bodies_that_are_hard(given: list[float], spin: list[float], sc
     off = np.abs(out.orientation[-1, 0] - exact.orientation).max()
     # 600 steps, each right to some 1e-17; near the separatrix they part as e^t does, by e^21 at most.
     unstable = given == [1.0, 2.0, 3.0]
-    # The spin of a rod about itself is what the momentum has along it, to a unit in the last place of the whole.
-    thin = np.finfo(float).eps * max(given) / min(given) if min(given) > 0.0 else 0.0
+    # The spin of a rod about itself is what the momentum has along it, to some units in the last place of the whole.
+    thin = 4 * np.finfo(float).eps * max(given) / min(given) if min(given) > 0.0 else 0.0
     assert off <= (1e-9 if unstable else 2e-13 + thin), off
     assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-14)

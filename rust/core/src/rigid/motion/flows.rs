@@ -195,6 +195,8 @@ fn turn_far(arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, far:
             let own = turned_back(from, [0, 1, 2].map(|c| v[at + c].0[lane]));
             let turn = turn::far(pick(&of.moments), pick(&of.inverse), own, h.0[lane]);
             let (to, left) = turn::oriented(from, left, turn);
+            // A far turn is of length 1 to some roundings only.
+            let (to, left) = turn::oriented(to, left, [0.0; 4]);
             for c in 0..4 {
                 q[at + c].0[lane] = to[c];
                 rest[at + c].0[lane] = left[c];

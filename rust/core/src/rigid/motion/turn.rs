@@ -254,8 +254,9 @@ pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 
     let (change, small) = (product(q, turn), product(rest, turn));
     let (mut to, mut left) = (q, rest);
     for c in 0..4 {
-        let before = q[c].multiply_add(missing, rest[c]);
-        let increment = change[c] + (small[c] + before);
+        // Along the new orientation: along the old one it would lengthen what has turned by more than half.
+        let drawn = (q[c] + change[c]).multiply_add(missing, small[c] + rest[c]);
+        let increment = change[c] + drawn;
         to[c] = q[c] + increment;
         left[c] = increment - (to[c] - q[c]);
     }
@@ -350,6 +351,17 @@ mod tests {
             let energy = |m: [f64; 3]| (0..3).map(|i| m[i] * m[i] / moments[i]).sum::<f64>();
             let before = energy(momentum);
             prop_assert!((energy(after) - before).abs() <= 2e-15 * before.max(1e-3));
+        }
+
+        /// However far turns are, and however many: the length stays 1.
+        #[test]
+        fn lengths_do_not_grow(half in prop::array::uniform3(-3.0..3.0f64)) {
+            let (mut q, mut rest) = (IDENTITY, [0.0; 4]);
+            for _ in 0..200 {
+                (q, rest) = oriented(q, rest, rotation(half));
+            }
+            let square = q.iter().map(|part| part * part).sum::<f64>();
+            prop_assert!((square - 1.0).abs() <= 8.0 * f64::EPSILON, "{square}");
         }
 
         /// Back is the inverse.
