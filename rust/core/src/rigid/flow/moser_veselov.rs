@@ -20,7 +20,9 @@ use coefficients::{OFFSETS, SLOPES, Term};
 const POWERS: usize = 4;
 /// Products of powers of two variables, of degrees from 1 to `POWERS`.
 const PRODUCTS: usize = SLOPES.len();
-/// A turn that Newton's method does not find in as many steps is beyond the step's reach.
+/// The square of the largest |ω| h: beyond, the turn found may be that of another root.
+const REACH: f64 = 1.25 * 1.25;
+/// From within, Newton's method takes four steps at most, but where the turn of order two nears a quarter.
 const ITERATIONS: usize = 12;
 
 /// The power of the step with which the error of a motion shrinks.
@@ -189,8 +191,9 @@ impl<S: Real> MoserVeselov<S> {
     }
 
     /// The turn in the time `h` from the angular momentum `momentum`, both in the body's principal frame: (x, y, z, w − 1),
-    /// so that q + q∘turn is the new orientation with nothing lost, and whether there is one. Where there is not (the turn
-    /// would be of a quarter or more, or numbers overflow), what is returned means nothing.
+    /// so that q + q∘turn is the new orientation with nothing lost, and whether there is one. Where there is not (|ω| h is
+    /// above 1.25, the turn would be of more than a quarter, which those of order two soon are, or numbers overflow), what
+    /// is returned means nothing.
     #[inline(always)]
     pub fn turn(&self, momentum: &[S; 3], h: S) -> ([S; 4], S::Mask) {
         let (one, half) = (S::one(), S::splat(0.5));
@@ -207,13 +210,13 @@ impl<S: Real> MoserVeselov<S> {
         let mut inverse = [S::zero(); 3];
         let mut across = [S::zero(); 3];
         let mut v = [S::zero(); 3];
-        let mut found = S::Mask::splat(true);
+        let mut angle = [S::zero(); 3];
         for at in 0..3 {
             change[at] = slope.multiply_add(self.excesses[at], offset + self.ratios_low[at]);
             inverse[at] = self.ratios[at] + change[at];
             across[at] = slope.multiply_add(self.differences[at], self.differences[at]);
             v[at] = u[at] * half;
-            found = found.and(S::zero().less(inverse[at]));
+            angle[at] = self.ratios[at] * u[at];
         }
 
         let mut p = guess(&inverse, &across, &v);
@@ -274,7 +277,8 @@ impl<S: Real> MoserVeselov<S> {
         let size = dot(&e, &e);
         let w = (one - size).sqrt();
         let less = size / (one + w);
-        ([e[0], e[1], e[2], -less], found.and(done).and(size.less_equal(half)))
+        let near = dot(&angle, &angle).less_equal(S::splat(REACH));
+        ([e[0], e[1], e[2], -less], done.and(near).and(size.less_equal(half)))
     }
 }
 
