@@ -2,8 +2,8 @@
 
 use super::*;
 use crate::numerics::lanes::{Lanes, WIDTH};
-use crate::rigid::flow::orientation::turned;
 use crate::rigid::free::{FreeRotation, Kind};
+use crate::rigid::motion::turn::oriented;
 use crate::rigid::quaternion::{IDENTITY, conjugate, product};
 use proptest::prelude::*;
 
@@ -37,7 +37,7 @@ impl<S: Real> Body<S> {
     }
     fn step(&mut self, h: S) -> S::Mask {
         let (turn, found) = self.steps.turn(&self.momentum(), h);
-        turned(&mut self.q, &mut self.q_low, &turn);
+        (self.q, self.q_low) = oriented(self.q, self.q_low, turn);
         found
     }
 }
