@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array
-from visviva._rigid_arguments import unit
+from visviva._rigid_arguments import refuse_on_rods, unit
 from visviva.errors import InvalidInput
+from visviva.particles import Particles
 from visviva.rigid._arguments import rows
 from visviva.rigid._orientation import rotate, rotate_back
 from visviva.rigid_bodies import RigidBodies
@@ -16,14 +17,17 @@ from visviva.rigid_forces import AppliedTorque, RotationalDrag
 from visviva.rigid_springs import AttachedSpring
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
     from visviva._body_force import BodyForce
-    from visviva.particles import Particles
     from visviva.scene import Scene
 
 __all__ = [
+    "described",
+    "joined",
     "kept_by_bodies",
     "of_copies_turning",
     "restored",
@@ -31,7 +35,59 @@ __all__ = [
     "saved",
     "spin_scale",
     "turning_of",
+    "with_centers",
 ]
+
+
+def joined(parts: Sequence[RigidBodies]) -> RigidBodies:
+    """The rigid bodies of several parts of a scene, in their order."""
+    if len(parts) == 1:
+        return parts[0]
+
+    def all_of(name: str, missing: Any) -> Any:
+        arrays = [getattr(part, name) for part in parts]
+        if all(array is None for array in arrays):
+            return None
+        return np.concatenate([missing(part) if a is None else a for part, a in zip(parts, arrays, strict=True)])
+
+    by_moments = all(part.inertia is None for part in parts)
+    names: list[str] = []
+    for part in parts:
+        names.extend(part.names or (f"body {len(names) + place}" for place in range(len(part))))
+    return RigidBodies(
+        all_of("mass", None),
+        moments=all_of("moments", None) if by_moments else None,
+        inertia=None if by_moments else all_of("inertia", lambda part: np.apply_along_axis(np.diag, -1, part.moments)),
+        pivot=all_of("pivot", lambda part: np.full((len(part), 3), np.nan)),
+        names=names if any(part.names for part in parts) else None,
+        **{name: all_of(name, None) for name in ("position", "velocity", "orientation", "angular_velocity")},
+    )
+
+
+def described(rigid: RigidBodies, loads: Sequence[BodyForce]) -> _core._Rigid:
+    """What the core is told of one copy, an axis over copies leading."""
+    refuse_on_rods(rigid, loads)
+    return {
+        "moments": rigid.principal_moments[None],
+        "axes": rigid.axes[None],
+        "center": rigid.center[None],
+        "pivoted": rigid.pivoted.tolist(),
+        "orientation": rigid.orientation[None],
+        "angular_velocity": rigid.angular_velocity[None],
+        "loads": [load.core_arguments() for load in loads],
+    }
+
+
+def with_centers(found: Sequence[Particles], bodies: RigidBodies, names: Sequence[str] | None = None) -> Particles:
+    """The particles, if there are some, and after them the centers of mass of rigid bodies."""
+    count = len(found[0]) if found else 0
+    if not names and (bodies.names or (found and found[0].names)):
+        first = found[0].names if found and found[0].names else [f"particle {place}" for place in range(count)]
+        names = (*first, *(bodies.names or [f"body {place}" for place in range(len(bodies))]))
+    own = {name: getattr(bodies, name) for name in ("mass", "position", "velocity")}
+    arrays = {name: np.concatenate([*(getattr(part, name) for part in found), array]) for name, array in own.items()}
+    radius = np.concatenate([*(part.radius for part in found), np.zeros(len(bodies))])
+    return Particles(**arrays, names=names or None, radius=radius)
 
 
 def of_copies_turning(

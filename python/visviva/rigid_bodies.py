@@ -14,7 +14,7 @@ import numpy as np
 from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
-from visviva._rigid_arguments import IDENTITY, pivots, principal, refuse_on_rods, unit, which
+from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import read_only
@@ -26,9 +26,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva import _core
     from visviva._arrays import Sizes
-    from visviva._body_force import BodyForce
 
 __all__ = ["RigidBodies"]
 
@@ -278,46 +276,6 @@ class RigidBodies:
         0
         """
         return body_index("name", name, self.names, len(self))
-
-    @classmethod
-    def _joined(cls, parts: Sequence[RigidBodies]) -> RigidBodies:
-        """The bodies of several, in their order."""
-        if len(parts) == 1:
-            return parts[0]
-
-        def all_of(name: str, missing: Any) -> Any:
-            arrays = [getattr(part, name) for part in parts]
-            if all(array is None for array in arrays):
-                return None
-            return np.concatenate([missing(part) if a is None else a for part, a in zip(parts, arrays, strict=True)])
-
-        by_moments = all(part.inertia is None for part in parts)
-        names: list[str] = []
-        for part in parts:
-            names.extend(part.names or (f"body {len(names) + place}" for place in range(len(part))))
-        return cls(
-            all_of("mass", None),
-            moments=all_of("moments", None) if by_moments else None,
-            inertia=None
-            if by_moments
-            else all_of("inertia", lambda part: np.apply_along_axis(np.diag, -1, part.moments)),
-            pivot=all_of("pivot", lambda part: np.full((len(part), 3), np.nan)),
-            names=names if any(part.names for part in parts) else None,
-            **{name: all_of(name, None) for name in ("position", "velocity", "orientation", "angular_velocity")},
-        )
-
-    def _described(self, loads: Sequence[BodyForce]) -> _core._Rigid:
-        """What the core is told of one copy, an axis over copies leading."""
-        refuse_on_rods(self, loads)
-        return {
-            "moments": self.principal_moments[None],
-            "axes": self.axes[None],
-            "center": self.center[None],
-            "pivoted": self.pivoted.tolist(),
-            "orientation": self.orientation[None],
-            "angular_velocity": self.angular_velocity[None],
-            "loads": [load.core_arguments() for load in loads],
-        }
 
     def core_arguments(self) -> dict[str, NDArray[Any]]:
         """What the core takes: C-contiguous arrays, float64 but for `pivoted`.

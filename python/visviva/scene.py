@@ -20,6 +20,7 @@ from visviva._continuation import attached
 from visviva._frames import Framed
 from visviva._keywords import known_keywords
 from visviva._text import article
+from visviva._turning import described, joined, with_centers
 from visviva.errors import InvalidInput
 from visviva.forces import Force
 from visviva.particles import Particles
@@ -113,7 +114,7 @@ class Scene(Runnable[Trajectory], Framed):
         if len(found) > 1 or not (found or rigid):
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
-        bodies = RigidBodies._joined(rigid) if rigid else None
+        bodies = joined(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]
         acting = (part._resolved(points.names, len(points)) for part in all_parts if isinstance(part, Force))
         counts = (len(found[0]) if found else 0, len(bodies) if bodies else 0)
@@ -139,7 +140,7 @@ class Scene(Runnable[Trajectory], Framed):
             "position": particles.position[None],
             "velocity": particles.velocity[None],
             "radius": particles.radius[None] if particles.radius.any() else None,
-            "rigid": None if rigid_bodies is None else rigid_bodies._described(body_forces),
+            "rigid": None if rigid_bodies is None else described(rigid_bodies, body_forces),
             "forces": [force._to_core() for force in forces],
             "own_forces": None,
             "t0": t0,
@@ -413,18 +414,6 @@ class Scene(Runnable[Trajectory], Framed):
         points = with_centers([particles[: len(particles) - len(rigid)]], rigid, particles.names)
         scene._set(points, tuple(forces), number("t0", t0), rigid, loads)
         return scene
-
-
-def with_centers(found: Sequence[Particles], bodies: RigidBodies, names: Sequence[str] | None = None) -> Particles:
-    """The particles, if there are some, and after them the centers of mass of rigid bodies."""
-    count = len(found[0]) if found else 0
-    if not names and (bodies.names or (found and found[0].names)):
-        first = found[0].names if found and found[0].names else [f"particle {place}" for place in range(count)]
-        names = (*first, *(bodies.names or [f"body {place}" for place in range(len(bodies))]))
-    own = {name: getattr(bodies, name) for name in ("mass", "position", "velocity")}
-    arrays = {name: np.concatenate([*(getattr(part, name) for part in found), array]) for name, array in own.items()}
-    radius = np.concatenate([*(part.radius for part in found), np.zeros(len(bodies))])
-    return Particles(**arrays, names=names or None, radius=radius)
 
 
 def _flat(part: object) -> Iterable[object]:

@@ -55,6 +55,7 @@ pub fn cluster(particles: usize, solar: bool) -> Bodies {
         own_forces: None,
         radius: Vec::new(),
         t0: 0.0,
+        rigid: None,
         continuation: None,
     }
 }
@@ -108,6 +109,7 @@ pub fn figure_eights(copies: usize) -> Bodies {
         own_forces: None,
         radius: Vec::new(),
         t0: 0.0,
+        rigid: None,
         continuation: None,
     }
 }

@@ -102,7 +102,7 @@ pub(crate) fn conserved<'py>(
             let mut state = Snapshot::new(&specs, &bodies, about, threads, ticker);
             for (column, values) in columns.iter().zip(&mut values) {
                 let own = state.value(column)?;
-                let places = &position[time * particles..(time + 1) * particles];
+                let places = position.get(time * particles..(time + 1) * particles).unwrap_or_default();
                 let share =
                     turning.as_ref().map_or([0.0; 3], |of| of.share(column.name, time, &mass, places));
                 values.extend(own.iter().zip(share).map(|(own, share)| own + share).take(column.width));

@@ -224,7 +224,7 @@ impl Plan {
             spheres: scene.radius.iter().any(|&radius| radius > 0.0),
             touching,
             threads: (1, 1),
-            outputs_between: outputs_between(scene, request),
+            outputs_between: request.outputs_between(scene.t0),
             events: request.events.clone().into(),
             record: request.record.clone(),
             quiet: None,
@@ -392,11 +392,6 @@ fn guides(force: &Arc<dyn ForceTerm>) -> bool {
         Coupling::None | Coupling::Listed(_) => true,
         Coupling::AllPairs => force.as_newtonian().is_some(),
     }
-}
-
-fn outputs_between(scene: &Scene, request: &Request) -> usize {
-    let end = request.times[request.times.len() - 1];
-    request.times.iter().filter(|&&t| (t != scene.t0) & (t != end)).count()
 }
 
 fn planar(scene: &Scene, forces: &[Arc<dyn ForceTerm>]) -> bool {

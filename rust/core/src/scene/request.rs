@@ -114,6 +114,12 @@ pub struct Checked {
 }
 
 impl Request {
+    /// Output times between the start and the end.
+    pub fn outputs_between(&self, t0: f64) -> usize {
+        let end = self.times.last().copied().unwrap_or(t0);
+        self.times.iter().filter(|&&t| (t != t0) & (t != end)).count()
+    }
+
     /// Whether a column is asked for.
     pub fn records(&self, column: &str) -> bool {
         self.record.iter().any(|name| name == column)

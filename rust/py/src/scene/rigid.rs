@@ -88,8 +88,8 @@ impl Turning {
             copy: 0,
             mass,
             place,
-            orientation: &self.orientation[own.clone()],
-            angular_velocity: &self.angular_velocity[own],
+            orientation: self.orientation.get(own.clone()).unwrap_or_default(),
+            angular_velocity: self.angular_velocity.get(own).unwrap_or_default(),
             constant: self.constant,
         }
         .share(column)

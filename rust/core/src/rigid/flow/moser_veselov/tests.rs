@@ -60,10 +60,7 @@ fn over(momentum: [f64; 3], moments: [f64; 3]) -> [f64; 3] {
 }
 
 fn exact(moments: [f64; 3], momentum: [f64; 3]) -> FreeRotation {
-    match FreeRotation::new(moments, over(momentum, moments), IDENTITY) {
-        Ok(motion) => motion,
-        Err(error) => unreachable!("{error:?}"),
-    }
+    FreeRotation::new(moments, over(momentum, moments), IDENTITY).unwrap()
 }
 
 /// The angle by which `steps` steps in the time `time` are off; none where a step was not found.

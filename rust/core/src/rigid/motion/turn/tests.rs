@@ -1,0 +1,129 @@
+//! Turns against elliptic functions, against each other, and back.
+
+use super::*;
+use crate::rigid::motion::vectors::turned_back;
+use crate::rigid::quaternion::{IDENTITY, Quaternion};
+use proptest::prelude::*;
+
+fn free(moments: [f64; 3], rate: [f64; 3], h: f64) -> Quaternion {
+    FreeRotation::new(moments, rate, IDENTITY).unwrap().state(h).orientation
+}
+
+/// Of the series, whatever the moments.
+fn by_series(moments: [f64; 3], rate: [f64; 3], h: f64) -> ([f64; 4], bool) {
+    let momentum = [0, 1, 2].map(|c| moments[c] * rate[c]);
+    asymmetric(moments.map(|moment| 1.0 / moment), momentum, h, &mut [0.0; ROOM])
+}
+
+/// Quaternions of the same rotation differ by a sign.
+fn apart(turn: [f64; 4], q: Quaternion) -> f64 {
+    let own = [turn[0], turn[1], turn[2], turn[3] + 1.0];
+    let off = |sign: f64| (0..4).map(|c| (own[c] - sign * q[c]).abs()).fold(0.0, f64::max);
+    off(1.0).min(off(-1.0))
+}
+
+#[test]
+fn a_body_turns_as_the_elliptic_functions_have_it() {
+    // Hairer & Vilmart's body, a book that flips, moments 1e-15 apart, a rod of 1e6 : 1 and one near its separatrix.
+    let bodies = [
+        ([0.6, 0.8, 1.0], [3.0, 0.5, -0.9]),
+        ([3.0, 5.0, 7.0], [1e-9, 0.4, 1e-9]),
+        ([1.0, 1.0 + 1e-15, 1.5], [0.3, 0.2, 0.9]),
+        ([1.0, 1.0 + 1e-6, 1e-6], [0.3, 0.2, 0.9]),
+        ([1.0, 2.0, 3.0], [1e-8, 1.0, 1e-8]),
+    ];
+    for (moments, rate) in bodies {
+        for h in [1e-6, 1e-3, 0.02, 0.1, 0.5, 1.0, -0.3, 4.0] {
+            let (turn, far) = by_series(moments, rate, h);
+            let largest = rate.iter().fold(0.0_f64, |most, part| most.max(part.abs()));
+            assert!(!far);
+            // A unit in the last place for each radian, and that of the reference.
+            let bound = 4e-16 * (1.0 + largest * h.abs()) + 4e-15;
+            let off = apart(turn, free(moments, rate, h));
+            assert!(off <= bound, "{moments:?} {h}: {off:e}");
+        }
+    }
+}
+
+proptest! {
+    /// Whether two moments agree is no matter: both ways are one turn.
+    #[test]
+    fn a_symmetric_body_turns_as_any_other(
+        a in 0.6..2.0f64, c in 0.01..1.1f64, rate in prop::array::uniform3(-2.0..2.0f64), h in -1.0..1.0f64
+    ) {
+        let moments = [a, a, c];
+        let momentum = [0, 1, 2].map(|i| moments[i] * rate[i]);
+        let inverse = moments.map(|moment| 1.0 / moment);
+        let one = symmetric(inverse, inverse[0], momentum, h);
+        let (other, _) = by_series(moments, rate, h);
+        for i in 0..4 {
+            prop_assert!((one[i] - other[i]).abs() <= 2e-15, "{one:?} {other:?}");
+        }
+    }
+
+    /// The momentum in space stays, whatever the turn: |m| in the body is its, and so is the energy.
+    #[test]
+    fn turns_keep_the_energy(
+        b in 0.5..1.5f64, c in 0.6..1.4f64, rate in prop::array::uniform3(-3.0..3.0f64), h in -1.0..1.0f64
+    ) {
+        let moments = [1.0, b, c.min(0.99 * (1.0 + b)).max((1.0 - b).abs() + 0.01)];
+        let momentum = [0, 1, 2].map(|i| moments[i] * rate[i]);
+        let (turn, _) = by_series(moments, rate, h);
+        let (q, _) = oriented(IDENTITY, [0.0; 4], turn);
+        let after = turned_back(q, momentum);
+        let energy = |m: [f64; 3]| (0..3).map(|i| m[i] * m[i] / moments[i]).sum::<f64>();
+        let before = energy(momentum);
+        prop_assert!((energy(after) - before).abs() <= 2e-15 * before.max(1e-3));
+    }
+
+    /// However far turns are, and however many: the length stays 1.
+    #[test]
+    fn lengths_do_not_grow(half in prop::array::uniform3(-3.0..3.0f64)) {
+        let (mut q, mut rest) = (IDENTITY, [0.0; 4]);
+        for _ in 0..200 {
+            (q, rest) = oriented(q, rest, rotation(half));
+        }
+        let square = q.iter().map(|part| part * part).sum::<f64>();
+        prop_assert!((square - 1.0).abs() <= 8.0 * f64::EPSILON, "{square}");
+    }
+
+    /// Back is the inverse.
+    #[test]
+    fn a_turn_back_undoes_a_turn(rate in prop::array::uniform3(-3.0..3.0f64), h in 0.0..1.0f64) {
+        let moments = [0.6, 0.8, 1.0];
+        let (turn, _) = by_series(moments, rate, h);
+        let (q, _) = oriented(IDENTITY, [0.0; 4], turn);
+        let momentum = turned_back(q, [0, 1, 2].map(|c| moments[c] * rate[c]));
+        let (back, _) = by_series(moments, [0, 1, 2].map(|c| momentum[c] / moments[c]), -h);
+        let whole = joined(turn, back);
+        prop_assert!(whole.iter().all(|part| part.abs() <= 3e-15), "{whole:?}");
+    }
+
+    /// exp of a rotation vector of any size, against sine and cosine: six units in the last place for each radian.
+    #[test]
+    fn rotations_are_those_of_their_vectors(direction in prop::array::uniform3(-1.0..1.0f64), size in -20.0..9.0f64) {
+        let norm = dot(direction, direction).sqrt();
+        prop_assume!(norm > 0.1);
+        let angle = size.exp2();
+        let half = direction.map(|part| part / norm * angle);
+        let found = rotation(half);
+        let angle = dot(half, half).sqrt();
+        let expected = [0, 1, 2].map(|c| half[c] / angle * crate::numerics::angles::sin(angle));
+        for c in 0..3 {
+            prop_assert!((found[c] - expected[c]).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle) * angle.min(1.0));
+        }
+        let cosine = crate::numerics::angles::cos(angle) - 1.0;
+        prop_assert!((found[3] - cosine).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle));
+    }
+}
+
+#[test]
+fn what_turns_far_is_told_and_found() {
+    let moments = [0.6, 0.8, 1.0];
+    let rate = [3e4, 0.5e4, -0.9e4];
+    let (_, is_far) = by_series(moments, rate, 1.0);
+    assert!(is_far);
+    let momentum = [0, 1, 2].map(|c| moments[c] * rate[c]);
+    let turn = far(moments, moments.map(|moment| 1.0 / moment), momentum, 1.0);
+    assert!(apart(turn, free(moments, rate, 1.0)) <= 1e-11);
+}
