@@ -55,7 +55,9 @@ def pyfunctions() -> dict[str, str]:
 
 
 def test_the_binding_is_read_whole() -> None:
-    assert set(pyfunctions()) == {name for name in dir(_core) if callable(getattr(_core, name)) and name[:2] != "__"}
+    made = {name: getattr(_core, name) for name in dir(_core) if name[:2] != "__"}
+    # A class holds what the core has made, and has no function that computes.
+    assert set(pyfunctions()) == {name for name, one in made.items() if callable(one) and not isinstance(one, type)}
 
 
 @pytest.mark.parametrize("name", sorted(set(pyfunctions()) - PLAIN))
