@@ -14,6 +14,7 @@ mod coefficients;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::View;
 use crate::numerics::real::{Mask, Real};
+use crate::rigid::motion::vectors::{cross, dot};
 use coefficients::{OFFSETS, SLOPES, Term};
 
 /// Powers of h² in the series of order 10.
@@ -122,20 +123,6 @@ fn sum<S: Real>(coefficients: &[S; PRODUCTS], square: S, excess: S) -> S {
     sum
 }
 
-#[inline(always)]
-fn dot<S: Real>(a: &[S; 3], b: &[S; 3]) -> S {
-    a[0].multiply_add(b[0], a[1].multiply_add(b[1], a[2] * b[2]))
-}
-
-#[inline(always)]
-fn cross<S: Real>(a: &[S; 3], b: &[S; 3]) -> [S; 3] {
-    [
-        a[2].multiply_subtract_from(b[1], a[1] * b[2]),
-        a[0].multiply_subtract_from(b[2], a[2] * b[0]),
-        a[1].multiply_subtract_from(b[0], a[0] * b[1]),
-    ]
-}
-
 /// The square of the relative change after which Newton's next one would be below rounding.
 #[inline(always)]
 fn square_of_tolerance<S: Real>() -> S {
@@ -163,7 +150,7 @@ impl<S: Real> MoserVeselov<S> {
             differences[at] = ratios[next] * ((moments[last] - moments[next]) / moments[last]);
         }
         let total = (excesses[0] + excesses[1]) + excesses[2];
-        let product = dot(&excesses, &[excesses[1], excesses[2], excesses[0]]);
+        let product = dot(excesses, [excesses[1], excesses[2], excesses[0]]);
         let count = order.powers() * (order.powers() + 3) / 2;
         Self {
             inverse: [inverse, inverse.multiply_subtract_from(largest, one) * inverse],
@@ -201,8 +188,8 @@ impl<S: Real> MoserVeselov<S> {
         for at in 0..3 {
             u[at] = momentum[at].multiply_add(self.inverse[0], momentum[at] * self.inverse[1]) * h;
         }
-        let square = dot(&u, &u);
-        let excess = dot(&self.excesses, &[u[0] * u[0], u[1] * u[1], u[2] * u[2]]);
+        let square = dot(u, u);
+        let excess = dot(self.excesses, [u[0] * u[0], u[1] * u[1], u[2] * u[2]]);
         let slope = sum(&self.slopes, square, excess);
         let offset = sum(&self.offsets, square, excess);
         // 1/J as the body's and a change, which is small: the body's are not rounded to a modified number.
@@ -226,7 +213,7 @@ impl<S: Real> MoserVeselov<S> {
             for at in 0..3 {
                 e[at] = inverse[at] * p[at];
             }
-            let size = dot(&e, &e);
+            let size = dot(e, e);
             let w = (one - size).sqrt();
             let less = size / (one + w);
             let per_w = one / w;
@@ -256,16 +243,16 @@ impl<S: Real> MoserVeselov<S> {
                 y.multiply_subtract_from(back[2], b * x),
                 z.multiply_subtract_from(back[2], w),
             ];
-            let normal = cross(&second, &third);
-            let per = one / dot(&first, &normal);
-            let aside = cross(&rest, &first);
-            let step = [dot(&rest, &normal) * per, -(dot(&third, &aside) * per), dot(&second, &aside) * per];
+            let normal = cross(second, third);
+            let per = one / dot(first, normal);
+            let aside = cross(rest, first);
+            let step = [dot(rest, normal) * per, -(dot(third, aside) * per), dot(second, aside) * per];
             let mut moved = [S::zero(); 3];
             for at in 0..3 {
                 p[at] = S::select(done, p[at], p[at] + step[at]);
                 moved[at] = inverse[at] * step[at];
             }
-            done = done.or(dot(&moved, &moved).less_equal(square_of_tolerance::<S>() * size));
+            done = done.or(dot(moved, moved).less_equal(square_of_tolerance::<S>() * size));
             if done.all() {
                 break;
             }
@@ -274,10 +261,10 @@ impl<S: Real> MoserVeselov<S> {
         for at in 0..3 {
             e[at] = self.ratios[at].multiply_add(p[at], change[at] * p[at]);
         }
-        let size = dot(&e, &e);
+        let size = dot(e, e);
         let w = (one - size).sqrt();
         let less = size / (one + w);
-        let near = dot(&angle, &angle).less_equal(S::splat(REACH));
+        let near = dot(angle, angle).less_equal(S::splat(REACH));
         ([e[0], e[1], e[2], -less], done.and(near).and(size.less_equal(half)))
     }
 }
@@ -291,7 +278,7 @@ fn guess<S: Real>(inverse: &[S; 3], across: &[S; 3], v: &[S; 3]) -> [S; 3] {
         first[at] = across[at].multiply_subtract_from(v[(at + 1) % 3] * v[(at + 2) % 3], v[at]);
         e[at] = inverse[at] * v[at];
     }
-    let half_square = dot(&e, &e) * S::splat(0.5);
+    let half_square = dot(e, e) * S::splat(0.5);
     let mut p = [S::zero(); 3];
     for at in 0..3 {
         let longer = half_square.multiply_add(v[at], v[at]);
