@@ -8,6 +8,7 @@ use super::super::moments::check;
 use super::super::quaternion::{IDENTITY, Quaternion, conjugate, product, rotated, unit};
 use super::flows::Free;
 use super::loads::Load;
+use super::turn::differences;
 use super::vectors::turned;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -142,6 +143,8 @@ pub struct LaneBody {
     pub moments: [Lanes; 3],
     /// Their inverses, 0 about the axis of a rod.
     pub inverse: [Lanes; 3],
+    /// Differences of the inverses ([`differences`]).
+    pub differences: [Lanes; 3],
     /// Of two moments that agree, the inverse.
     pub pair: Lanes,
     /// Whether two moments agree, in all lanes or in some.
@@ -243,6 +246,7 @@ impl LaneBody {
             row,
             moments: vector(|start| start.moments),
             inverse: [0, 1, 2].map(|c| of(&|start| inverse(start.moments[c]))),
+            differences: vector(|start| differences(start.moments)),
             pair: of(&|start| inverse(pair(start).unwrap_or(0.0))),
             symmetric: match bits {
                 0xff => Symmetric::All,

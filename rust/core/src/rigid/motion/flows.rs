@@ -141,7 +141,8 @@ impl Pass<Lanes> for KickDrift<'_> {
 /// How far a body turns freely, less the identity, and where it is too far for this.
 #[inline(always)]
 fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [V]) -> ([V; 4], V::Mask) {
-    let LaneBody { inverse, pair, symmetric, discrete, .. } = of;
+    let LaneBody { inverse, differences, pair, symmetric, discrete, .. } = of;
+    let differences = [V::load(differences[0]), V::load(differences[1]), V::load(differences[2])];
     let inverse = [V::load(inverse[0]), V::load(inverse[1]), V::load(inverse[2])];
     match (discrete, symmetric) {
         (Some(discrete), _) => {
@@ -151,10 +152,10 @@ fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [
         (None, Symmetric::All) => {
             (turn::symmetric(inverse, V::load(*pair), momentum, h), V::zero().less(V::zero()))
         }
-        (None, Symmetric::None) => turn::asymmetric(inverse, momentum, h, series),
+        (None, Symmetric::None) => turn::asymmetric((inverse, differences), momentum, h, series),
         (None, Symmetric::Some(lanes)) => {
             let lanes = V::mask(*lanes);
-            let (mut turn, far) = turn::asymmetric(inverse, momentum, h, series);
+            let (mut turn, far) = turn::asymmetric((inverse, differences), momentum, h, series);
             let other = turn::symmetric(inverse, V::load(*pair), momentum, h);
             for c in 0..4 {
                 turn[c] = V::select(lanes, other[c], turn[c]);

@@ -116,9 +116,29 @@ pub fn symmetric<S: Real>(inverse: [S; 3], pair: S, momentum: [S; 3], h: S) -> [
     joined(about_momentum, rotation(spin))
 }
 
+/// What Euler's equations multiply, (1/I₃ − 1/I₂, 1/I₁ − 1/I₃, 1/I₂ − 1/I₁), from the moments: a difference of rounded inverses
+/// would lose what turns a needle about itself.
+pub fn differences(moments: [f64; 3]) -> [f64; 3] {
+    [[2, 1], [0, 2], [1, 0]].map(|[one, other]| {
+        let [a, b] = [moments[one], moments[other]];
+        match (a == 0.0, b == 0.0) {
+            (false, false) => (b - a) / a / b,
+            // Nothing spins about the axis of a rod.
+            (true, false) => -1.0 / b,
+            (false, true) => 1.0 / a,
+            (true, true) => 0.0,
+        }
+    })
+}
+
 /// The turn of any body, and where it is too far for series; `room` holds [`ROOM`] numbers.
 #[inline(always)]
-pub fn asymmetric<S: Real>(inverse: [S; 3], momentum: [S; 3], h: S, room: &mut [S]) -> ([S; 4], S::Mask) {
+pub fn asymmetric<S: Real>(
+    (inverse, differences): ([S; 3], [S; 3]),
+    momentum: [S; 3],
+    h: S,
+    room: &mut [S],
+) -> ([S; 4], S::Mask) {
     let mut momentum = momentum;
     let mut rates = momentum;
     for c in 0..3 {
@@ -136,11 +156,11 @@ pub fn asymmetric<S: Real>(inverse: [S; 3], momentum: [S; 3], h: S, room: &mut [
         large = S::splat(PART).less(angle);
         count *= 2;
     }
-    let mut turn = short(inverse, &mut momentum, part, room);
+    let mut turn = short((inverse, differences), &mut momentum, part, room);
     let mut done = S::one();
     let mut on = done.less(parts);
     while on.any() && !on.not().or(far).all() {
-        let next = short(inverse, &mut momentum, part, room);
+        let next = short((inverse, differences), &mut momentum, part, room);
         let both = joined(turn, next);
         for c in 0..4 {
             turn[c] = S::select(on, both[c], turn[c]);
@@ -153,12 +173,16 @@ pub fn asymmetric<S: Real>(inverse: [S; 3], momentum: [S; 3], h: S, room: &mut [
 
 /// The turn in a part of the time that is short, and the momentum after it.
 #[inline(always)]
-fn short<S: Real>(inverse: [S; 3], momentum: &mut [S; 3], h: S, room: &mut [S]) -> [S; 4] {
+fn short<S: Real>(
+    (inverse, differences): ([S; 3], [S; 3]),
+    momentum: &mut [S; 3],
+    h: S,
+    room: &mut [S],
+) -> [S; 4] {
     let half = h * S::splat(0.5);
     let rows = room.as_chunks_mut::<{ ORDER + 1 }>().0;
     let [m0, m1, m2, r0, r1, r2, q0, q1, q2, q3] = rows else { return [S::splat(f64::NAN); 4] };
-    let differences =
-        [h * (inverse[2] - inverse[1]), h * (inverse[0] - inverse[2]), h * (inverse[1] - inverse[0])];
+    let differences = times(differences, h);
     [m0[0], m1[0], m2[0]] = *momentum;
     let first = [
         half * (inverse[0] * momentum[0]),
