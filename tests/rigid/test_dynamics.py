@@ -311,6 +311,21 @@ def test_what_looks_at_velocities_is_refused_to_kicks() -> None:
         assert scene.run(t=1.0, method="rk4", dt=0.1).status == vv.Status.OK
 
 
+def test_where_an_event_ends_a_run_bodies_are_turned_as_then() -> None:
+    """Inside a step, in every member: the center of a held body is where its orientation has it, and goes as it spins."""
+    spins = np.array(TOP["angular_velocity"]) * np.linspace(1.0, 1.2, 11)[:, None, None]
+    copies = top().ensemble(angular_velocity=spins)
+    how = {"t": [0.0, 1.0, 2.0], "method": "kahan_li8", "dt": 0.02}
+    events = [vv.events.plane([0.0, 0.0, 0.0], [1.0, 0.0, 0.0], terminal=2)]
+    out = copies.run(**how, events=events)
+    assert (out.status == vv.Status.STOPPED).any()
+    for member in range(11):
+        assert np.array_equal(out[member].events.t, copies[member].run(**how, events=events).events.t)
+        last = out[member].final
+        arm = vv.rigid.rotate(last.rigid_bodies.orientation[0], [0.0, 1.0, 0.0])
+        np.testing.assert_allclose(last.particles.position[0], arm, rtol=0, atol=1e-14)
+
+
 def test_a_step_alone_chooses_the_method() -> None:
     out = top().run(t=1.0, dt=0.02)
     assert out.stats.method == "kahan_li8"

@@ -15,7 +15,7 @@ mod search;
 
 use super::super::events::{Event, Moving, Sight, Surroundings, View, What};
 use super::super::frame::Moved;
-use super::super::unit::Prepared;
+use super::super::unit::{Prepared, Turned};
 use super::{Ending, Job, Report};
 use crate::error::Result;
 use crate::numerics::lanes::Lanes;
@@ -38,6 +38,8 @@ pub struct Found {
     pub t: f64,
     /// Positions and velocities of the bodies of the unit.
     pub states: Vec<[[f64; 3]; 2]>,
+    /// How its rigid bodies are turned and turn, if torques turn them.
+    pub turned: Vec<Turned>,
     /// The spheres that touch, if it is that.
     pub spheres: Option<(usize, usize)>,
 }
@@ -341,17 +343,18 @@ impl<'a> Watch<'a> {
             if states.iter().flatten().flatten().any(|x| !x.is_finite()) {
                 break;
             }
+            let turned = unit.turned(self.job.scene, state, lane);
             let Some(&(which, _)) = self.events.get(event) else {
                 let spheres = match self.event(event).0.what {
                     What::Distance { bodies, .. } => Some(bodies),
                     _ => None,
                 };
                 let which = self.contacts.as_ref().map_or(usize::MAX, |contacts| contacts.which);
-                self.found.push(Found { which, t, states, spheres });
+                self.found.push(Found { which, t, states, turned, spheres });
                 self.stopped = true;
                 break;
             };
-            self.found.push(Found { which, t, states, spheres: None });
+            self.found.push(Found { which, t, states, turned, spheres: None });
             self.counts[event] += 1;
             if self.event(event).0.last.is_some_and(|last| self.counts[event] >= last) {
                 self.stopped = true;
@@ -374,6 +377,7 @@ impl<'a> Watch<'a> {
             report.ending = Ending::Stopped;
             report.time = last.t;
             report.states = last.states[report.unit.recorded.clone()].to_vec();
+            report.turned.clone_from(&last.turned);
             let direction = self.job.plan.direction;
             let passed = self.job.times.partition_point(|t| (t - last.t) * direction <= 0.0);
             report.rows = report.rows.min(passed);
