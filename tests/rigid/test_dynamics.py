@@ -312,7 +312,7 @@ def test_what_looks_at_velocities_is_refused_to_kicks() -> None:
 
 
 def test_where_an_event_ends_a_run_bodies_are_turned_as_then() -> None:
-    """Inside a step, in every member: the center of a held body is where its orientation has it, and goes as it spins."""
+    """Inside a step, in every member: the center of a held body is where its orientation has it, going as it spins."""
     spins = np.array(TOP["angular_velocity"]) * np.linspace(1.0, 1.2, 11)[:, None, None]
     copies = top().ensemble(angular_velocity=spins)
     how = {"t": [0.0, 1.0, 2.0], "method": "kahan_li8", "dt": 0.02}
