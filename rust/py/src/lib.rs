@@ -63,7 +63,9 @@ mod _core {
         rotation_product, rotation_rates,
     };
     #[pymodule_export]
-    use crate::scattering::{monte_carlo, rutherford_half_distance, scattering_function, solid_angles};
+    use crate::scattering::closed_forms::{rutherford_half_distance, scattering_function, solid_angles};
+    #[pymodule_export]
+    use crate::scattering::monte_carlo::monte_carlo;
     #[pymodule_export]
     use crate::scene::{Planned, acceleration, columns, conserved, conserves, plan, run};
     #[pymodule_export]

@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva._progress import callback
-from visviva._tally import Beam, MonteCarlo, Tally
+from visviva.scattering._tally import Beam, MonteCarlo, Tally
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Coulomb
 

@@ -1,0 +1,4 @@
+//! Scattering: closed forms over arrays, and the Monte Carlo.
+
+pub(crate) mod closed_forms;
+pub(crate) mod monte_carlo;
