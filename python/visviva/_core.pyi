@@ -167,6 +167,14 @@ def monte_carlo(
     float,
     list[tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int, NDArray[np.float64], tuple[float, float]]],
 ]: ...
+def deflections(
+    description: dict[str, Any],
+    energy: NDArray[np.float64],
+    impact_parameter: NDArray[np.float64],
+    tolerance: float,
+    everything: bool,
+    threads: int | None,
+) -> tuple[list[NDArray[np.float64]], list[int], list[int]]: ...
 def scattering_function(
     name: str, half_distance: float, mass_ratio: float, values: NDArray[np.float64]
 ) -> NDArray[np.float64]: ...

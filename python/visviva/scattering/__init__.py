@@ -5,6 +5,7 @@ laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile
 keep its shape.
 """
 
+from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
 from visviva.scattering._kinematics import cm_angle, energy_transfer, lab_angle, recoil_angle
 from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._rutherford import (
@@ -18,9 +19,13 @@ from visviva.scattering._tally import Beam, CrossSection, MonteCarlo, Tally
 __all__ = [
     "Beam",
     "CrossSection",
+    "Deflection",
+    "DeflectionStatus",
     "MonteCarlo",
     "Tally",
     "cm_angle",
+    "deflect",
+    "deflection_angle",
     "energy_transfer",
     "lab_angle",
     "monte_carlo",

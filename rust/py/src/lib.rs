@@ -65,6 +65,8 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::closed_forms::{rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
+    use crate::scattering::deflection::deflections;
+    #[pymodule_export]
     use crate::scattering::monte_carlo::monte_carlo;
     #[pymodule_export]
     use crate::scene::{Planned, acceleration, columns, conserved, conserves, plan, run};

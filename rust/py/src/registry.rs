@@ -141,7 +141,7 @@ pub(crate) fn force(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn ForceTe
 ///
 /// # Errors
 /// As [`force`].
-fn described_potential(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Potential>> {
+pub(crate) fn described_potential(description: &Bound<'_, PyDict>) -> PyResult<Arc<dyn Potential>> {
     let kind: String = get(description, "kind")?;
     let names = registry::POTENTIALS.iter().map(|declaration| declaration.name);
     let declaration = registry::potential(&kind).ok_or_else(|| unknown("potential", &kind, names));

@@ -35,6 +35,10 @@ impl<const N: usize> Rows<N> {
         }
         made
     }
+    /// Where the rows begin.
+    pub fn starts(&self) -> &[f64] {
+        &self.starts
+    }
     /// The bin of an argument, which never falls as the argument rises; the first of what is no number.
     #[inline(always)]
     fn bin(&self, x: f64) -> usize {

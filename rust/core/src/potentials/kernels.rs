@@ -8,6 +8,37 @@ use crate::numerics::element::Shape;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::tiered;
 
+#[inline(always)]
+fn value_rows<V: Vector8 + Analytic, P: Formula>(potential: &P, r: &[Lanes], value: &mut [Lanes]) {
+    let own = &splat::<V, P>(potential);
+    for (value, r) in V::view_mut(value).iter_mut().zip(V::view(r)) {
+        *value = potential.value(own, *r);
+    }
+}
+
+#[inline(always)]
+fn force_rows<V: Vector8 + Analytic, P: Formula>(potential: &P, r: &[Lanes], force: &mut [Lanes]) {
+    let own = &splat::<V, P>(potential);
+    for (force, r) in V::view_mut(force).iter_mut().zip(V::view(r)) {
+        *force = potential.force(own, *r);
+    }
+}
+
+/// The potential's own numbers in every lane.
+#[inline(always)]
+fn splat<V: Vector8, P: Formula>(potential: &P) -> Numbers<V> {
+    let mut own = [V::zero(); 5];
+    for (own, number) in own.iter_mut().zip(potential.numbers()) {
+        *own = V::splat(number);
+    }
+    own
+}
+
+tiered! {
+    pub(super) fn value_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], value: &mut [Lanes]) = value_rows;
+    pub(super) fn force_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], force: &mut [Lanes]) = force_rows;
+}
+
 /// Bodies around a fixed point.
 #[derive(Debug)]
 pub struct Around {

@@ -37,6 +37,7 @@ use crate::numerics::rows::Lookup;
 use crate::units::Units;
 use core::fmt::Debug;
 use kernels::{Around, Pairs, around_tier, between_few_tier, between_rows_tier, between_systems_tier};
+use kernels::{force_rows_tier, value_rows_tier};
 use parameters::{Declaration, Value};
 use std::sync::Arc;
 
@@ -102,6 +103,10 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     fn domain(&self) -> Option<(f64, f64)> {
         None
     }
+    /// The distances at which it is not smooth.
+    fn breaks(&self) -> Vec<f64> {
+        Vec::new()
+    }
 }
 
 /// A potential energy as the rest of the core holds it.
@@ -114,6 +119,12 @@ pub trait Potential: Debug + Send + Sync {
     fn jumps(&self) -> bool;
     /// V(r), −dV/dr and d²V/dr² at each distance.
     fn evaluate(&self, r: &[f64]) -> [Vec<f64>; 3];
+    /// The values of its parameters, in the order of the declaration.
+    fn parameters(&self) -> &[Value];
+    /// V(r) of rows of distances.
+    fn value_rows(&self, r: &[Lanes], value: &mut [Lanes]);
+    /// −dV/dr of rows of distances.
+    fn force_rows(&self, r: &[Lanes], force: &mut [Lanes]);
     /// V(r) and −dV/dr to about thirty digits.
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble);
     /// The same potential in other units.
@@ -129,6 +140,8 @@ pub trait Potential: Debug + Send + Sync {
     fn inverse_distance_strength(&self) -> Option<f64>;
     /// The distances between which it is, if not at all. Beyond them it is NaN.
     fn domain(&self) -> Option<(f64, f64)>;
+    /// The distances at which it is not smooth, ascending.
+    fn breaks(&self) -> Vec<f64>;
     /// Writes the accelerations of bodies around a fixed point, or adds them.
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool);
     /// Adds the forces between the bodies of each lane's system, partners in order of index.
@@ -177,6 +190,15 @@ impl<P: Formula> Potential for Held<P> {
             r.iter().map(|&r| self.formula.curvature(own, r)).collect(),
         ]
     }
+    fn parameters(&self) -> &[Value] {
+        &self.values
+    }
+    fn value_rows(&self, r: &[Lanes], value: &mut [Lanes]) {
+        value_rows_tier(&self.formula, r, value);
+    }
+    fn force_rows(&self, r: &[Lanes], force: &mut [Lanes]) {
+        force_rows_tier(&self.formula, r, force);
+    }
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let own = &self.formula.numbers().map(DoubleDouble::from);
         (self.formula.value(own, r), self.formula.force(own, r))
@@ -212,6 +234,9 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn domain(&self) -> Option<(f64, f64)> {
         self.formula.domain()
+    }
+    fn breaks(&self) -> Vec<f64> {
+        self.formula.breaks()
     }
     fn around(&self, field: &Around, q: &[Lanes], a: &mut [Lanes], first: bool) {
         around_tier(&self.formula, field, q, a, first);

@@ -25,6 +25,10 @@ impl<const N: usize> Piecewise<N> {
     pub(crate) fn domain(&self) -> (f64, f64) {
         (self.first, self.last)
     }
+    /// Where its pieces begin.
+    pub(crate) fn starts(&self) -> &[f64] {
+        self.rows.starts()
+    }
     /// The derivative of that order with respect to r; NaN beyond the range.
     #[inline(always)]
     pub(crate) fn derivative<S: Analytic>(&self, r: S, order: usize) -> S {

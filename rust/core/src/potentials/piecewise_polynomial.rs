@@ -96,6 +96,9 @@ impl Formula for PiecewisePolynomial {
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())
     }
+    fn breaks(&self) -> Vec<f64> {
+        [self.curve.starts(), &[self.curve.domain().1]].concat()
+    }
 
     #[inline(always)]
     fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {

@@ -79,6 +79,10 @@ impl Formula for SoftSphere {
         Some(vec![self.n.to_bits()])
     }
 
+    fn breaks(&self) -> Vec<f64> {
+        vec![self.radius]
+    }
+
     #[inline(always)]
     fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
         own[0] * Self::overlap(own, r).power(&self.powers[0])

@@ -109,6 +109,9 @@ impl Formula for Tabulated {
     fn domain(&self) -> Option<(f64, f64)> {
         Some(self.curve.domain())
     }
+    fn breaks(&self) -> Vec<f64> {
+        self.curve.starts().to_vec()
+    }
 
     #[inline(always)]
     fn value<S: Analytic>(&self, _: &Numbers<S>, r: S) -> S {

@@ -1,0 +1,273 @@
+//! The deflection of one pair by intervals that are halved where they must be: beside barriers, where V is not smooth, and
+//! where what is asked for is a small rest.
+//!
+//! The one idea: intervals in w, r = r₀ cosh w, ending wherever h is stationary or V has an edge, so that none hides a
+//! peak; the one with the largest error is halved until all are within the tolerance. Near w = 0, where V(r₀) − V(r)
+//! would cancel, it is the mean of the force in between. Gauss–Kronrod rules of 7 and 15 points: R. Piessens et al.,
+//! *QUADPACK* (1983).
+
+use super::nodes::{Node, sinh};
+use super::profile::Profile;
+use super::trapezoid::INTEGRALS;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use core::f64::consts::FRAC_PI_2;
+
+/// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
+const RULE: [[f64; 3]; 8] = [
+    [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
+    [0.949_107_912_342_758_5, 0.063_092_092_629_978_55, 0.129_484_966_168_869_7],
+    [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],
+    [0.741_531_185_599_394_4, 0.140_653_259_715_525_92, 0.279_705_391_489_276_67],
+    [0.586_087_235_467_691_1, 0.169_004_726_639_267_9, 0.0],
+    [0.405_845_151_377_397_2, 0.190_350_578_064_785_4, 0.381_830_050_505_118_9],
+    [0.207_784_955_007_898_47, 0.204_432_940_075_298_9, 0.0],
+    [0.0, 0.209_482_141_084_727_83, 0.417_959_183_673_469_4],
+];
+/// Points of a rule, filled up to whole rows.
+const POINTS: usize = 2 * WIDTH;
+/// Intervals at most.
+const MOST: usize = 4000;
+/// An interval is no longer than this at first.
+const LONGEST: f64 = 1.5;
+/// Below this w the mean force is taken, by four points.
+const NEAR: f64 = 0.25;
+/// Of Gauss and Legendre between 0 and 1: places and weights.
+const MEAN: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
+/// What is left out at the far end, as a part of the tolerance.
+const LEFT_OUT: f64 = 1e-3;
+/// Of a sum of so many terms.
+const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Where it is at most.
+const FARTHEST: f64 = 750.0;
+
+/// A pair and its turning point; lengths and energies in units of the profile.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Pair {
+    pub(super) energy: f64,
+    pub(super) turning: f64,
+    /// V(r₀)/E and r₀F(r₀)/E.
+    pub(super) value: f64,
+    pub(super) force: f64,
+    /// b/r₀.
+    pub(super) root: f64,
+}
+
+/// What is integrated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Integrand {
+    /// As the trapezoidal rule does.
+    Deflection,
+    /// The turning of the velocity, F sin α/p: ψ = ∫ bF/(E − V)/√G dw, which is small where ψ is, b → 0 at a soft center.
+    Turning,
+}
+
+/// Integrals, and how far the first may be off.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Whole {
+    pub(super) integral: [f64; INTEGRALS],
+    pub(super) error: f64,
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Interval {
+    ends: [f64; 2],
+    integral: [f64; INTEGRALS],
+    error: [f64; INTEGRALS],
+    size: [f64; INTEGRALS],
+}
+
+/// The integrals over all w ≥ 0 with intervals that end at the given distances.
+pub(super) fn integrate(
+    profile: &Profile,
+    pair: &Pair,
+    integrand: Integrand,
+    ends: &[f64],
+    tolerance: f64,
+) -> Whole {
+    let farthest = farthest(profile, pair, LEFT_OUT * tolerance);
+    let mut marks = vec![0.0, farthest];
+    marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
+    marks.retain(|w| *w <= farthest);
+    marks.sort_by(f64::total_cmp);
+    marks.dedup();
+    let mut intervals = Vec::new();
+    for pair_of_marks in marks.windows(2) {
+        let parts = ((pair_of_marks[1] - pair_of_marks[0]) / LONGEST).ceil().max(1.0);
+        let length = (pair_of_marks[1] - pair_of_marks[0]) / parts;
+        for part in 0..parts as usize {
+            let from = length.mul_add(part as f64, pair_of_marks[0]);
+            let to = if part + 1 == parts as usize { pair_of_marks[1] } else { from + length };
+            intervals.push(rule(profile, pair, integrand, [from, to]));
+        }
+    }
+    loop {
+        let (sum, error, size) = totals(&intervals);
+        let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
+        let worst = (0..INTEGRALS).fold(0, |worst, i| if share(i) > share(worst) { i } else { worst });
+        let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
+        let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
+        let [from, to] = intervals[at].ends;
+        let middle = 0.5 * (from + to);
+        if share(worst) <= tolerance || intervals.len() >= MOST || middle <= from || middle >= to {
+            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+        }
+        intervals[at] = rule(profile, pair, integrand, [from, middle]);
+        intervals.push(rule(profile, pair, integrand, [middle, to]));
+    }
+}
+
+/// Sums of integrals, errors and sizes, in the order of the line.
+fn totals(intervals: &[Interval]) -> ([f64; INTEGRALS], [f64; INTEGRALS], [f64; INTEGRALS]) {
+    let mut all = ([0.0; INTEGRALS], [0.0; INTEGRALS], [0.0; INTEGRALS]);
+    for interval in intervals {
+        for i in 0..INTEGRALS {
+            all.0[i] += interval.integral[i];
+            all.1[i] += interval.error[i];
+            all.2[i] += interval.size[i];
+        }
+    }
+    all
+}
+
+/// Both rules over one interval.
+fn rule(profile: &Profile, pair: &Pair, integrand: Integrand, ends: [f64; 2]) -> Interval {
+    let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
+    let mut places = [middle; POINTS];
+    for (k, [x, ..]) in RULE.iter().enumerate() {
+        places[k] = half.mul_add(-x, middle);
+        places[POINTS - 2 - k] = half.mul_add(*x, middle);
+    }
+    let values = integrands(profile, pair, integrand, &places);
+    let mut interval =
+        Interval { ends, integral: [0.0; INTEGRALS], error: [0.0; INTEGRALS], size: [0.0; INTEGRALS] };
+    for i in 0..INTEGRALS {
+        let at = |k: usize| if k == 7 { values[7][i] } else { values[k][i] + values[POINTS - 2 - k][i] };
+        let size = |k: usize| {
+            if k == 7 { values[7][i].abs() } else { values[k][i].abs() + values[POINTS - 2 - k][i].abs() }
+        };
+        let weighed = |column: usize| (0..8).map(|k| RULE[k][column] * at(k)).sum::<f64>();
+        let (fifteen, seven) = (weighed(1), weighed(2));
+        interval.integral[i] = half * fifteen;
+        interval.size[i] = half * (0..8).map(|k| RULE[k][1] * size(k)).sum::<f64>();
+        let off = half * (fifteen - seven).abs();
+        let share = off / interval.size[i];
+        // The rule of 15 points is that much better than that of 7.
+        interval.error[i] = if off == 0.0 {
+            0.0
+        } else {
+            interval.size[i] * {
+                let grown = 200.0 * share;
+                (grown * grown.sqrt()).min(share)
+            }
+        };
+    }
+    interval
+}
+
+/// The integrands at places w.
+fn integrands(
+    profile: &Profile,
+    pair: &Pair,
+    integrand: Integrand,
+    places: &[f64; POINTS],
+) -> [[f64; INTEGRALS]; POINTS] {
+    let nodes = places.map(Node::at);
+    let rows = |of: &dyn Fn(usize) -> f64| -> [Lanes; 2] {
+        core::array::from_fn(|row| Lanes(core::array::from_fn(|lane| of(row * WIDTH + lane))))
+    };
+    let distance = rows(&|k| pair.turning * nodes[k].cosh);
+    let (mut value, mut force) = (distance, distance);
+    profile.values(&distance, &mut value);
+    profile.forces(&distance, &mut force);
+    let mean = mean_forces(profile, pair, places);
+    let (x, y, square) = (pair.value, pair.force, pair.root * pair.root);
+    core::array::from_fn(|k| {
+        let (row, lane) = (k / WIDTH, k % WIDTH);
+        let node = nodes[k];
+        let (v, u) = (value[row].0[lane] / pair.energy, node.ratio);
+        let pull = distance[row].0[lane] * force[row].0[lane] / pair.energy;
+        let squared = u * u;
+        let excess = mean[k].map_or((x * squared - v) * node.weight, |mean| {
+            // (V₀ − V)/tanh² w is the mean force times r₀ cosh² w/(1 + cosh w).
+            mean * (node.cosh * node.cosh / (1.0 + node.cosh)) - x
+        });
+        // Near a barrier, and near b = 0, 1 − V₀/E is (b/r₀)² with more digits.
+        let g = mean[k].map_or(1.0 + excess, |_| square + (excess + x));
+        let root = g.sqrt();
+        if integrand == Integrand::Turning {
+            // b/r times r F/E over (1 − V/E).
+            return [pair.root * u * pull / (1.0 - v) / root, 0.0, 0.0];
+        }
+        let p = excess / (root * (root + 1.0));
+        let bend = bend(pair, places[k], pull, node);
+        let slope = -(y * p) - square * (bend / (g * root));
+        [p * u, slope * u, (p - 0.5 * x * squared) * node.cosh]
+    })
+}
+
+/// (r F(r) − r₀F(r₀) u²)/E/tanh² w.
+fn bend(pair: &Pair, w: f64, pull: f64, node: Node) -> f64 {
+    if w > 0.0 { (pull - pair.force * node.ratio * node.ratio) * node.weight } else { 0.0 }
+}
+
+/// r₀/E times the mean force between r₀ and each near place; nothing for others.
+fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<f64>; POINTS] {
+    let mut means = [None; POINTS];
+    if places[0] >= NEAR {
+        return means;
+    }
+    let mut rows = [Lanes([pair.turning; WIDTH]); POINTS * 4 / WIDTH];
+    let mut force = rows;
+    for (k, w) in places.iter().enumerate() {
+        let half = sinh(0.5 * w);
+        let way = 2.0 * half * half;
+        for (i, [place, _]) in MEAN.iter().enumerate() {
+            let at = 4 * k + i;
+            rows[at / WIDTH].0[at % WIDTH] = (pair.turning * place).mul_add(way, pair.turning);
+        }
+    }
+    profile.forces(&rows, &mut force);
+    for (k, w) in places.iter().enumerate() {
+        let one = |i: usize| MEAN[i][1] * force[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
+        if *w < NEAR {
+            means[k] = Some(pair.turning / pair.energy * ((one(0) + one(3)) + (one(1) + one(2))));
+        }
+    }
+    means
+}
+
+/// Where the rest no longer counts.
+fn farthest(profile: &Profile, pair: &Pair, rest: f64) -> f64 {
+    let at = |w: f64| {
+        let u = Node::at(w).ratio;
+        profile.beyond(pair.turning / u, 1) * u
+    };
+    let mut largest = 0.0_f64;
+    let mut w = 0.5;
+    while w < FARTHEST {
+        largest = largest.max(at(w));
+        // What is left of p falls as u², times u.
+        let free = Node::at(w).ratio;
+        if at(w) <= rest * largest && free * free * free * (1.0 + pair.value.abs()) <= rest {
+            return w;
+        }
+        w += 0.5;
+    }
+    FARTHEST
+}
+
+/// The w ≥ 0 of a cosh w ≥ 1.
+fn inverse_cosh(x: f64) -> f64 {
+    let excess = x - 1.0;
+    crate::numerics::elementary::ln(x + (excess * (x + 1.0)).sqrt())
+}
+
+/// What the integrals go without: those of c₁u² over all w.
+pub(super) fn closed(pair: &Pair) -> [f64; INTEGRALS] {
+    [0.0, 0.0, 0.5 * pair.value * FRAC_PI_2]
+}

@@ -1,0 +1,188 @@
+//! Deflections that are known in closed form: Coulomb, hard sphere, square well, and ±C/r², ±C/r⁴.
+//!
+//! Sources: Landau & Lifshitz, *Mechanics*, §§18–19; for C/r⁴ J. C. Maxwell, Phil. Trans. R. Soc. 157 (1867) 49, with
+//! c = C/(E r₀⁴): ψ = π(1 − √(1 − c)/M(1, √(1 + c))), M the arithmetic-geometric mean.
+
+use super::{Deflection, Status};
+use crate::numerics::angles::atan2;
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::elliptic::arithmetic_geometric_mean;
+use crate::numerics::real::Real;
+use crate::potentials::Potential;
+use crate::scattering::rutherford;
+use core::f64::consts::PI;
+
+/// A potential with such a form.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Closed {
+    /// k/r.
+    Coulomb(f64),
+    /// C/r².
+    InverseSquare(f64),
+    /// C/r⁴: its angle only.
+    InverseFourth(f64),
+    HardSphere(f64),
+    /// Depth and radius.
+    SquareWell(f64, f64),
+}
+
+impl Closed {
+    pub(super) fn of(potential: &dyn Potential) -> Option<Self> {
+        let number = |at: usize| potential.parameters().get(at).map_or(f64::NAN, |value| value.number());
+        match potential.declaration().name {
+            "coulomb" => Some(Self::Coulomb(number(0))),
+            "hard_sphere" => Some(Self::HardSphere(number(0))),
+            "square_well" => Some(Self::SquareWell(number(0), number(1))),
+            "power_law" if number(1) == 1.0 => Some(Self::Coulomb(number(0))),
+            "power_law" if number(1) == 2.0 => Some(Self::InverseSquare(number(0))),
+            "power_law" if number(1) == 4.0 => Some(Self::InverseFourth(number(0))),
+            _ => None,
+        }
+    }
+    /// Whether nothing but the angle is known.
+    pub(super) fn angle_only(self) -> bool {
+        matches!(self, Self::InverseFourth(_))
+    }
+    /// The deflection of one pair.
+    pub(super) fn deflection(self, energy: f64, b: f64) -> Deflection {
+        let known = match self {
+            Self::Coulomb(k) => coulomb(k, energy, b),
+            Self::InverseSquare(c) => inverse_square(c / energy, b),
+            Self::InverseFourth(c) => inverse_fourth(c / energy, b),
+            Self::HardSphere(radius) => sphere(radius, b),
+            Self::SquareWell(depth, radius) => square_well(depth / energy, radius, b),
+        };
+        // A few roundings each.
+        Deflection { error: 4.0 * f64::EPSILON * known.angle.abs(), ..known }
+    }
+}
+
+fn coulomb(k: f64, energy: f64, b: f64) -> Deflection {
+    let half = rutherford::half_distance(k, energy);
+    let angle = rutherford::deflection(half, b);
+    if k == 0.0 {
+        return free(b);
+    }
+    Deflection {
+        angle,
+        complement: 2.0 * atan2(b, half.abs()),
+        closest_approach: rutherford::closest_approach(half, b),
+        derivative: -2.0 / (half + b * (b / half)),
+        delay: if k > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY },
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}
+
+fn free(b: f64) -> Deflection {
+    Deflection {
+        angle: 0.0,
+        complement: PI,
+        closest_approach: b,
+        derivative: 0.0,
+        delay: 0.0,
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}
+
+fn inverse_square(c: f64, b: f64) -> Deflection {
+    let square = b.mul_add(b, c);
+    if c == 0.0 {
+        return free(b);
+    }
+    if square <= 0.0 {
+        return Deflection::captured();
+    }
+    let nearest = square.sqrt();
+    let angle = PI * (c / (nearest * (nearest + b)));
+    Deflection {
+        angle,
+        complement: if c > 0.0 { PI * (b / nearest) } else { PI - angle.abs() },
+        closest_approach: nearest,
+        derivative: -PI * (c / (square * nearest)),
+        delay: 0.0,
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}
+
+fn inverse_fourth(c: f64, b: f64) -> Deflection {
+    if c == 0.0 {
+        return free(b);
+    }
+    let of = DoubleDouble::from;
+    // In the unit |C/E|^(1/4), in which the fourth power of b is 4 where orbits begin.
+    let unit = c.abs().sqrt().sqrt();
+    let square = of(b / unit) * of(b / unit);
+    let sign = if c > 0.0 { 1.0 } else { -1.0 };
+    let under = square * square + of(4.0 * sign);
+    if under.high() < 0.0 || (b == 0.0 && c < 0.0) {
+        return Deflection::captured();
+    }
+    let nearest = (square + under.sqrt()).scale(0.5);
+    let c = of(sign) / (nearest * nearest);
+    let mean = arithmetic_geometric_mean(of(1.0), (of(1.0) + c).sqrt());
+    let ratio = (square / nearest).sqrt() / mean;
+    let small = c.high().abs() < 1e-14;
+    let angle = if small { 0.75 * PI * c.high() } else { (DoubleDouble::PI * (of(1.0) - ratio)).high() };
+    let complement = if c.high() > 0.0 { (DoubleDouble::PI * ratio).high() } else { PI - angle.abs() };
+    let closest_approach = unit * nearest.high().sqrt();
+    Deflection {
+        angle,
+        complement,
+        closest_approach,
+        derivative: f64::NAN,
+        delay: f64::NAN,
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}
+
+fn sphere(radius: f64, b: f64) -> Deflection {
+    if b >= radius {
+        return free(b);
+    }
+    let across = ((radius - b) * (radius + b)).sqrt();
+    Deflection {
+        angle: 2.0 * atan2(across, b),
+        complement: 2.0 * atan2(b, across),
+        closest_approach: radius,
+        derivative: -2.0 / across,
+        delay: -2.0 * across,
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}
+
+/// `share` is depth over energy; the speed within is √(1 + share) times that without.
+fn square_well(share: f64, radius: f64, b: f64) -> Deflection {
+    if b >= radius || share == 0.0 {
+        return free(b);
+    }
+    let square = 1.0 + share;
+    if square <= 0.0 || b >= square.sqrt() * radius {
+        return sphere(radius, b);
+    }
+    let speed = square.sqrt();
+    let (s, t) = (b / radius, b / radius / speed);
+    let (along, within) = (((1.0 - s) * (1.0 + s)).sqrt(), ((1.0 - t) * (1.0 + t)).sqrt());
+    // sin and cos of asin s − asin t, where s² − t² is s² times share over square.
+    let sine = s * (share / square) / (within + along / speed);
+    let angle = -2.0 * atan2(sine, along.mul_add(within, s * t));
+    Deflection {
+        angle,
+        complement: PI - angle.abs(),
+        closest_approach: b / speed,
+        derivative: -2.0 / radius * (1.0 / along - 1.0 / (speed * within)),
+        delay: 2.0 * radius * (within / speed - along),
+        error: 0.0,
+        turning_points: 1,
+        status: Status::Scattered,
+    }
+}

@@ -1,0 +1,2 @@
+//! Deflections against published digits and closed forms.
+use super::*;

@@ -1,0 +1,145 @@
+//! The outermost turning point, where 1 − b²/r² − V/E = 0 for the first time on the way in.
+
+use super::profile::{Center, Profile};
+use crate::numerics::lanes::{Lanes, WIDTH};
+
+/// Newton steps at most; halving alone ends after sixty.
+const MOST_STEPS: usize = 200;
+/// A step of this part of r, by a method that squares errors, leaves none.
+const SMALL_STEP: f64 = 1.0 / (1 << 29) as f64;
+/// The part by which a step must be smaller than the one before, to be told to square errors.
+const FASTER: f64 = 1.0 / 64.0;
+
+/// Where the way in leads.
+#[derive(Clone, Debug)]
+pub(super) enum Way {
+    /// To a turning point between two distances.
+    Turns {
+        bracket: [f64; 2],
+        /// Where h is stationary outside of it, and at its inner end: the barriers that were passed or nearly so.
+        barriers: Vec<f64>,
+    },
+    /// Straight through the center, at b = 0.
+    Through,
+    /// Into the center, at b = 0, where V → −∞ as −1/rⁿ, n below 2.
+    Bounces(f64),
+    /// Into the center.
+    Captured,
+}
+
+/// Where h is stationary at an energy, remembered for the next pair, which often has the same.
+#[derive(Debug, Default)]
+pub(super) struct Critical {
+    energy: f64,
+    radii: Vec<f64>,
+}
+
+impl Critical {
+    /// The way in at an energy and an impact parameter, in units of the profile.
+    pub(super) fn way(&mut self, profile: &Profile, energy: f64, b: f64) -> Way {
+        if energy < profile.one_turning_point_from() {
+            if energy != self.energy {
+                *self = Self { energy, radii: profile.critical_radii(energy) };
+            }
+        } else if !self.radii.is_empty() {
+            *self = Self::default();
+        }
+        let radii = &self.radii;
+        let mut outside = f64::INFINITY;
+        // Inward h falls to the first of each pair and rises to the second.
+        for at in (0..radii.len()).step_by(2) {
+            let lowest = radii[at];
+            if !Profile::reached(lowest, profile.value(lowest), energy, b) {
+                return Self::turns(profile, energy, b, [lowest, outside], radii[..=at].to_vec());
+            }
+            let Some(highest) = radii.get(at + 1) else { return Way::Captured };
+            outside = *highest;
+        }
+        if b == 0.0 {
+            match profile.center() {
+                Center::Open(value) if value < energy => return Way::Through,
+                Center::Attractive(power) if power < 2.0 => return Way::Bounces(power),
+                Center::Attractive(_) => return Way::Captured,
+                _ => {}
+            }
+        }
+        match profile.center() {
+            Center::Attractive(power) if power > 2.0 => Way::Captured,
+            _ => Self::turns(profile, energy, b, [0.0, outside], radii.clone()),
+        }
+    }
+
+    /// How many turning points there are, after [`way`](Self::way) at that energy.
+    pub(super) fn turning_points(&self, profile: &Profile, energy: f64, b: f64) -> u32 {
+        let mut allowed = true;
+        let mut count = 0;
+        let at_center = match profile.center() {
+            Center::Attractive(power) => {
+                power > 2.0 || (power == 2.0 && profile.bracket(energy, b, [0.0, f64::INFINITY]).is_none())
+            }
+            Center::Open(value) => b == 0.0 && value < energy,
+            Center::Repulsive => false,
+        };
+        let marks = self.radii.iter().map(|r| Profile::reached(*r, profile.value(*r), energy, b));
+        for here in marks.chain([at_center]) {
+            count += u32::from(here != allowed);
+            allowed = here;
+        }
+        count
+    }
+
+    fn turns(profile: &Profile, energy: f64, b: f64, ends: [f64; 2], barriers: Vec<f64>) -> Way {
+        profile.bracket(energy, b, ends).map_or(Way::Captured, |bracket| Way::Turns { bracket, barriers })
+    }
+}
+
+/// How near b is to where a barrier has its top, as a part of it.
+pub(super) fn nearness(profile: &Profile, energy: f64, b: f64, barriers: &[f64]) -> f64 {
+    let off = |r: &f64| {
+        let rest = 1.0 - profile.value(*r) / energy;
+        if rest > 0.0 { (r * rest.sqrt() / b - 1.0).abs() } else { f64::INFINITY }
+    };
+    barriers.iter().step_by(2).map(off).fold(f64::INFINITY, f64::min)
+}
+
+/// The turning points of eight pairs between their brackets, each to the last digits that its function has.
+pub(super) fn refine(profile: &Profile, energy: &Lanes, b: &Lanes, low: &Lanes, high: &Lanes) -> Lanes {
+    let (mut low, mut high) = (low.0, high.0);
+    let mut r: [f64; WIDTH] = core::array::from_fn(|lane| low[lane].sqrt() * high[lane].sqrt());
+    let mut last = [f64::INFINITY; WIDTH];
+    let mut going = [true; WIDTH];
+    let (mut value, mut force) = ([Lanes([0.0; WIDTH])], [Lanes([0.0; WIDTH])]);
+    for _ in 0..MOST_STEPS {
+        if going == [false; WIDTH] {
+            break;
+        }
+        profile.values(&[Lanes(r)], &mut value);
+        profile.forces(&[Lanes(r)], &mut force);
+        for lane in 0..WIDTH {
+            if !going[lane] {
+                continue;
+            }
+            let (at, e) = (r[lane], energy.0[lane]);
+            let share = (b.0[lane] / at) * (b.0[lane] / at);
+            let rest = (1.0 - value[0].0[lane] / e) - share;
+            let slope = (at * force[0].0[lane]) / e + 2.0 * share;
+            if rest >= 0.0 {
+                high[lane] = at
+            } else {
+                low[lane] = at
+            }
+            let mut next = at - at * (rest / slope);
+            if !(next >= low[lane] && next <= high[lane]) {
+                next = 0.5 * (low[lane] + high[lane]);
+            }
+            let step = (next - at).abs();
+            let squared = step <= SMALL_STEP * at && step <= FASTER * last[lane];
+            going[lane] = rest != 0.0 && !squared && step > 0.0 && low[lane] < high[lane];
+            if rest != 0.0 {
+                r[lane] = next;
+            }
+            last[lane] = step;
+        }
+    }
+    Lanes(r)
+}
