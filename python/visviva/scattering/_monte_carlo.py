@@ -11,9 +11,9 @@ from visviva import _core
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva._progress import callback
-from visviva.scattering._tally import Beam, MonteCarlo, Tally
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Coulomb
+from visviva.scattering._tally import Beam, MonteCarlo, Tally
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray

@@ -8,9 +8,8 @@
 
 use super::nodes::{Node, sinh};
 use super::profile::Profile;
-use super::trapezoid::INTEGRALS;
+use super::trapezoid::{Comparison, INTEGRALS};
 use crate::numerics::lanes::{Lanes, WIDTH};
-use core::f64::consts::FRAC_PI_2;
 
 /// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
 const RULE: [[f64; 3]; 8] = [
@@ -29,7 +28,7 @@ const POINTS: usize = 2 * WIDTH;
 const MOST: usize = 4000;
 /// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
-/// Below this w the mean force is taken, by four points.
+/// Up to this w at most the mean force is taken, by four points.
 const NEAR: f64 = 0.25;
 /// Of Gauss and Legendre between 0 and 1: places and weights.
 const MEAN: [[f64; 2]; 4] = [
@@ -55,6 +54,15 @@ pub(super) struct Pair {
     pub(super) force: f64,
     /// b/r₀.
     pub(super) root: f64,
+    /// Up to this w the mean of the force tells what V loses.
+    pub(super) near: f64,
+}
+
+/// How far out the mean of four forces has all digits: to where the force has changed little, and V has no edge.
+pub(super) fn near(turning: f64, steepness: f64, edges: &[f64]) -> f64 {
+    let smooth = NEAR.min((0.2 / steepness).sqrt());
+    let edge = edges.iter().filter(|r| **r > turning).fold(f64::INFINITY, |least, r| r.min(least));
+    if edge == f64::INFINITY { smooth } else { smooth.min(inverse_cosh(edge / turning)) }
 }
 
 /// What is integrated.
@@ -89,7 +97,7 @@ pub(super) fn integrate(
     ends: &[f64],
     tolerance: f64,
 ) -> Whole {
-    let farthest = farthest(profile, pair, LEFT_OUT * tolerance);
+    let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
     marks.retain(|w| *w <= farthest);
@@ -186,6 +194,7 @@ fn integrands(
     profile.forces(&distance, &mut force);
     let mean = mean_forces(profile, pair, places);
     let (x, y, square) = (pair.value, pair.force, pair.root * pair.root);
+    let comparison = Comparison::of(x, pair.root);
     core::array::from_fn(|k| {
         let (row, lane) = (k / WIDTH, k % WIDTH);
         let node = nodes[k];
@@ -204,9 +213,16 @@ fn integrands(
             return [pair.root * u * pull / (1.0 - v) / root, 0.0, 0.0];
         }
         let p = excess / (root * (root + 1.0));
-        let bend = bend(pair, places[k], pull, node);
-        let slope = -(y * p) - square * (bend / (g * root));
-        [p * u, slope * u, (p - 0.5 * x * squared) * node.cosh]
+        let compared = (1.0 + square * squared).sqrt();
+        let [c1, c2, c3] = comparison.series;
+        let off = if comparison.strong {
+            1.0 / root - 1.0 / compared
+        } else {
+            c3.mul_add(squared, c2).mul_add(squared, c1) * squared - p
+        };
+        let below = if comparison.strong { -off } else { p };
+        let slope = -(y * below) - square * (bend(pair, places[k], pull, node) / (g * root));
+        [off * u, slope * u, (p - 0.5 * x * squared / (compared * compared)) * node.cosh]
     })
 }
 
@@ -218,7 +234,7 @@ fn bend(pair: &Pair, w: f64, pull: f64, node: Node) -> f64 {
 /// r₀/E times the mean force between r₀ and each near place; nothing for others.
 fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<f64>; POINTS] {
     let mut means = [None; POINTS];
-    if places[0] >= NEAR {
+    if places[0] >= pair.near {
         return means;
     }
     let mut rows = [Lanes([pair.turning; WIDTH]); POINTS * 4 / WIDTH];
@@ -234,26 +250,35 @@ fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Optio
     profile.forces(&rows, &mut force);
     for (k, w) in places.iter().enumerate() {
         let one = |i: usize| MEAN[i][1] * force[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
-        if *w < NEAR {
+        if *w < pair.near {
             means[k] = Some(pair.turning / pair.energy * ((one(0) + one(3)) + (one(1) + one(2))));
         }
     }
     means
 }
 
-/// Where the rest no longer counts.
-fn farthest(profile: &Profile, pair: &Pair, rest: f64) -> f64 {
-    let at = |w: f64| {
-        let u = Node::at(w).ratio;
-        profile.beyond(pair.turning / u, 1) * u
+/// Where the rest no longer counts: neither what V adds, nor what is left of the comparison, which falls as u³.
+fn farthest(profile: &Profile, pair: &Pair, integrand: Integrand, rest: f64) -> f64 {
+    let comparison = Comparison::of(pair.value, pair.root);
+    let turning = integrand == Integrand::Turning;
+    let mut scale = match (turning, comparison.strong) {
+        (true, _) => 0.0,
+        (_, true) => comparison.closed,
+        _ => pair.value.abs(),
     };
-    let mut largest = 0.0_f64;
+    let left =
+        if turning { 0.0 } else { pair.root.max(1.0) * pair.root.max(1.0) * pair.value.abs().min(1.0) };
     let mut w = 0.5;
     while w < FARTHEST {
-        largest = largest.max(at(w));
-        // What is left of p falls as u², times u.
-        let free = Node::at(w).ratio;
-        if at(w) <= rest * largest && free * free * free * (1.0 + pair.value.abs()) <= rest {
+        let u = Node::at(w).ratio;
+        let r = pair.turning / u;
+        if turning {
+            let rate = profile.force(r) * r / pair.energy / (1.0 - profile.value(r) / pair.energy);
+            scale = scale.max(u * rate.abs());
+        } else if !comparison.strong {
+            scale = scale.max((u * profile.value(r) / pair.energy).abs().min(1.0));
+        }
+        if profile.beyond(r, 1) / pair.energy * u <= rest * scale && left * u * u * u <= rest * scale {
             return w;
         }
         w += 0.5;
@@ -265,9 +290,4 @@ fn farthest(profile: &Profile, pair: &Pair, rest: f64) -> f64 {
 fn inverse_cosh(x: f64) -> f64 {
     let excess = x - 1.0;
     crate::numerics::elementary::ln(x + (excess * (x + 1.0)).sqrt())
-}
-
-/// What the integrals go without: those of c₁u² over all w.
-pub(super) fn closed(pair: &Pair) -> [f64; INTEGRALS] {
-    [0.0, 0.0, 0.5 * pair.value * FRAC_PI_2]
 }

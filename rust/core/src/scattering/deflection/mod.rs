@@ -21,10 +21,10 @@ use crate::words::number;
 use crate::{Error, Result};
 use adaptive::{Integrand, Pair};
 use closed::Closed;
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 use profile::Profile;
 use std::sync::Arc;
-use trapezoid::Pack;
+use trapezoid::{Comparison, Pack};
 use turning::{Critical, Way};
 
 /// The tolerance if none is asked for: of an angle, relative to what was added up to it.
@@ -263,24 +263,32 @@ impl Quadrature<'_> {
         };
         let sums = trapezoid::integrate(profile, &pack, self.tolerance, self.all);
         for (lane, pair) in group.iter().enumerate() {
-            let single = Pair {
+            let mut single = Pair {
                 energy: pair.energy,
                 turning: turning.0[lane],
                 value: pack.value.0[lane],
                 force: pack.force.0[lane],
                 root: pack.root.0[lane],
+                near: 0.0,
             };
             let nearness = turning::nearness(profile, pair.energy, pair.b, &pair.barriers);
             let smooth = !profile.breaks().iter().any(|edge| *edge > single.turning);
             let met = sums.met.lane(lane) && nearness > NEAR_BARRIER && smooth;
+            if !met {
+                let r = single.turning;
+                let steepness =
+                    r * r * profile.curvature(r).abs() / (0.01 + single.force.abs()) / single.energy;
+                single.near = adaptive::near(r, steepness.max(1.0), profile.breaks());
+            }
             let (integral, mut error) = if met {
                 (sums.integral.map(|integral| integral.0[lane]), sums.error.0[lane])
             } else {
                 let tolerance = self.tolerance.max(ROUNDING / nearness);
                 self.by_intervals(&single, Integrand::Deflection, &pair.barriers, tolerance)
             };
-            let (mut angle, mut complement) = trapezoid::angle(single.value, single.root, integral[0]);
-            if angle.abs() < CANCELLED * PI * single.value.abs() / (1.0 + single.root) {
+            let comparison = Comparison::of(single.value, single.root);
+            let (mut angle, mut complement) = comparison.angle(single.value, single.root, integral[0]);
+            if angle.abs() < CANCELLED * PI * (single.value / (1.0 + single.root)).abs().min(1.0) {
                 let (turns, off) =
                     self.by_intervals(&single, Integrand::Turning, &pair.barriers, self.tolerance);
                 (angle, complement, error) = (turns[0], PI - turns[0].abs(), 0.5 * off / single.root);
@@ -291,8 +299,12 @@ impl Quadrature<'_> {
                 complement,
                 closest_approach: single.turning,
                 derivative: self
-                    .only_all(-2.0 / (single.turning * steep) * FRAC_PI_2.mul_add(single.force, integral[1])),
-                delay: self.only_all(-2.0 * single.turning * integral[2] + profile.endless_delay()),
+                    .only_all(-2.0 / (single.turning * steep) * comparison.slope(single.force, integral[1])),
+                delay: self.only_all(
+                    -2.0 * single.turning
+                        * (integral[2] + trapezoid::closed_delay(single.value, single.root))
+                        + profile.endless_delay(),
+                ),
                 error: 2.0 * single.root * error + f64::EPSILON * angle.abs(),
                 turning_points: found[pair.place].turning_points,
                 status: if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered },
@@ -314,8 +326,7 @@ impl Quadrature<'_> {
     ) -> ([f64; trapezoid::INTEGRALS], f64) {
         let ends = [barriers, self.profile.breaks()].concat();
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, tolerance);
-        let closed = if integrand == Integrand::Deflection { adaptive::closed(pair) } else { [0.0; 3] };
-        (core::array::from_fn(|i| whole.integral[i] + closed[i]), whole.error)
+        (whole.integral, whole.error)
     }
 
     /// b = 0, found at a tiny one where the center is open: through it, or round a point that attracts.

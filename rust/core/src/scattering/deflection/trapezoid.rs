@@ -20,12 +20,10 @@ use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
 const BLOCK: usize = 4;
 /// What is left out, as a part of the tolerance.
 const LEFT_OUT: f64 = 0.01;
-/// Where |b²/r₀²| is larger, c₂ and c₃ would be sums of large terms.
-const SHORT_SERIES: f64 = 2.0;
-/// And c₁.
-const NO_SERIES: f64 = 1e3;
-/// Squares of differences are trusted down to this many times the tolerance.
-const MARGIN: f64 = 10.0;
+/// Where V(r₀)/E is less, the attraction is strong.
+const STRONG: f64 = -0.5;
+/// The error after halving is the square of the one before times a number that is below 200 in all that was tried.
+const MARGIN: f64 = 300.0;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Where G comes nearer to zero, a barrier is near.
@@ -68,6 +66,60 @@ struct Running {
     least: Lanes,
 }
 
+/// What 1/√G is compared with in each lane, and the integral of that.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Comparison {
+    /// Whether that is 1/√(1 + (bu/r₀)²); else 1 − c₁u² − c₂u⁴ − c₃u⁶.
+    pub(super) strong: bool,
+    pub(super) series: [f64; 3],
+    /// ∫ u times it, less π/2 if it is the series.
+    pub(super) closed: f64,
+}
+
+impl Comparison {
+    /// Of V(r₀)/E and b/r₀.
+    pub(super) fn of(x: f64, root: f64) -> Self {
+        let b = root * root;
+        if x < STRONG {
+            let closed = FRAC_PI_2 / arithmetic_geometric_mean(1.0, (1.0 + b).sqrt());
+            return Self { strong: true, series: [0.0; 3], closed };
+        }
+        let series = [0.5 * x, x * (1.0 + 3.0 * b) / 8.0, x * (1.0 + 2.0 * b + 5.0 * b * b) / 16.0];
+        let closed = -(series[2].mul_add(5.0 / 6.0, series[1]) * 0.75 + series[0]) * FRAC_PI_4;
+        Self { strong: false, series, closed }
+    }
+    /// ψ and π − |ψ| from ∫ u (1/√G − what it is compared with).
+    pub(super) fn angle(&self, x: f64, root: f64, integral: f64) -> (f64, f64) {
+        let whole = integral + self.closed;
+        if self.strong {
+            let angle = PI - 2.0 * root * whole;
+            return (angle, if angle > 0.0 { 2.0 * root * whole } else { PI + angle });
+        }
+        // Of r₀ rounded V(r₀) knows less than b/r₀ where it is steep, and b/r₀ less of small differences.
+        let short = if x.abs() < 0.5 { x / (1.0 + root) } else { 1.0 - root };
+        let angle = PI * short - 2.0 * root * whole;
+        (angle, if angle > 1.0 { root * (PI + 2.0 * whole) } else { PI - angle.abs() })
+    }
+    /// The integral that goes into dψ/db, with the part in closed form.
+    pub(super) fn slope(&self, force: f64, integral: f64) -> f64 {
+        let known = if self.strong { self.closed } else { FRAC_PI_2 };
+        force.mul_add(known, integral)
+    }
+}
+
+/// The integral of ½(V₀/E)u²/(1 + (bu/r₀)²) cosh w, which the delay's integrand goes without.
+pub(super) fn closed_delay(x: f64, root: f64) -> f64 {
+    0.5 * x * FRAC_PI_2 / root.mul_add(root, 1.0).sqrt()
+}
+
+/// Of two positive numbers, in a few roundings.
+fn arithmetic_geometric_mean(mut a: f64, mut b: f64) -> f64 {
+    while (a - b).abs() > 1e-8 * a {
+        (a, b) = (0.5 * (a + b), (a * b).sqrt());
+    }
+    0.5 * (a + b)
+}
+
 /// The numbers of a pack that do not change from node to node.
 #[derive(Clone, Copy, Debug)]
 struct Constants {
@@ -76,28 +128,22 @@ struct Constants {
     force: Lanes,
     square: Lanes,
     series: [Lanes; 3],
+    strong: Bits,
 }
 
 impl Constants {
-    fn of(pack: &Pack) -> Self {
-        let mut series = [Lanes([0.0; WIDTH]); 3];
-        for lane in 0..WIDTH {
-            let x = pack.value.0[lane];
-            let b = 1.0 - x;
-            if b.abs() <= NO_SERIES {
-                series[0].0[lane] = 0.5 * x;
-            }
-            if b.abs() <= SHORT_SERIES {
-                series[1].0[lane] = x * (1.0 + 3.0 * b) / 8.0;
-                series[2].0[lane] = x * (1.0 + 2.0 * b + 5.0 * b * b) / 16.0;
-            }
+    fn of(pack: &Pack, comparisons: &[Comparison; WIDTH]) -> Self {
+        let mut strong = 0;
+        for (lane, comparison) in comparisons.iter().enumerate() {
+            strong |= u8::from(comparison.strong) << lane;
         }
         Self {
             inverse_energy: pack.energy.map(|e| 1.0 / e),
             value: pack.value,
             force: pack.force,
             square: pack.root.map(|root| root * root),
-            series,
+            series: core::array::from_fn(|i| Lanes(core::array::from_fn(|lane| comparisons[lane].series[i]))),
+            strong: Bits(strong),
         }
     }
 }
@@ -112,7 +158,7 @@ fn add_nodes<V: Vector8>(
     rows: (&[Lanes], &[Lanes], &[Lanes]),
     running: &mut Running,
 ) {
-    let (one, reach) = (V::one(), V::load(*reach));
+    let (one, half, reach) = (V::one(), V::splat(0.5), V::load(*reach));
     let (inverse_energy, value, square) =
         (V::load(constants.inverse_energy), V::load(constants.value), V::load(constants.square));
     let turn = V::load(constants.force);
@@ -134,7 +180,15 @@ fn add_nodes<V: Vector8>(
         let root = g.sqrt();
         let p = excess / (root * (root + one));
         let series = c3.multiply_add(squared, c2).multiply_add(squared, c1) * squared;
-        let angle = V::select(counts, (p - series) * u, V::zero());
+        let mut off = series - p;
+        // Less than what the slope is compared with.
+        let mut below = p;
+        if constants.strong.any() {
+            let inverse = one / square.multiply_add(squared, one).sqrt();
+            off = V::select(constants.strong, one / root - inverse, off);
+            below = V::select(constants.strong, -off, p);
+        }
+        let angle = V::select(counts, off * u, V::zero());
         sum[0] += angle;
         size[0] += angle.abs();
         last[0] = angle.abs();
@@ -142,12 +196,13 @@ fn add_nodes<V: Vector8>(
         if all {
             let pull = forces[k] * distances[k] * inverse_energy;
             let bend = turn.multiply_subtract_from(squared, pull) * weight;
-            let slope = -(turn * p) - square * (bend / (g * root));
+            let slope = -(turn * below) - square * (bend / (g * root));
             let slope = V::select(counts, slope * u, V::zero());
             sum[1] += slope;
             size[1] += slope.abs();
             last[1] = slope.abs();
-            let way = V::select(counts, (p - c1 * squared) * V::splat(node.cosh), V::zero());
+            let far = half * value * squared / square.multiply_add(squared, one);
+            let way = V::select(counts, (p - far) * V::splat(node.cosh), V::zero());
             sum[2] += way;
             size[2] += way.abs();
             last[2] = way.abs();
@@ -165,17 +220,19 @@ tiered! {
     fn add_nodes_tier[][](constants: &Constants, nodes: &[Node], place: usize, reach: &Lanes, rows: (&[Lanes], &[Lanes], &[Lanes]), running: &mut Running) = add_nodes;
 }
 
-/// What the integrands are at w = 0.
-fn at_turning_point(pack: &Pack, constants: &Constants, lane: usize) -> ([f64; INTEGRALS], f64) {
-    let (x, y) = (pack.value.0[lane], pack.force.0[lane]);
+/// What the integrands are at w = 0, and G.
+fn at_turning_point(pack: &Pack, comparison: &Comparison, lane: usize) -> ([f64; INTEGRALS], f64) {
+    let (x, y, square) = (pack.value.0[lane], pack.force.0[lane], pack.root.0[lane] * pack.root.0[lane]);
     let excess = 0.5 * y - x;
     let g = 1.0 + excess;
     let root = g.sqrt();
     let p = excess / (root * (root + 1.0));
-    let [c1, c2, c3] = constants.series.map(|c| c.0[lane]);
+    let [c1, c2, c3] = comparison.series;
+    let off = if comparison.strong { 1.0 / root - 1.0 / (1.0 + square).sqrt() } else { c1 + c2 + c3 - p };
     let bend = y + 0.5 * (y - pack.curvature.0[lane]);
-    let slope = -(y * p) - constants.square.0[lane] * (bend / (g * root));
-    ([p - (c1 + c2 + c3), slope, p - c1], g)
+    let below = if comparison.strong { -off } else { p };
+    let slope = -(y * below) - square * (bend / (g * root));
+    ([off, slope, p - 0.5 * x / (1.0 + square)], g)
 }
 
 /// Rows of distances, V and −dV/dr at the nodes of a block.
@@ -203,7 +260,9 @@ impl Rows {
 
 /// The integrals of eight pairs, the last two only if `all`.
 pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: bool) -> Sums {
-    let constants = Constants::of(pack);
+    let comparisons: [Comparison; WIDTH] =
+        core::array::from_fn(|lane| Comparison::of(pack.value.0[lane], pack.root.0[lane]));
+    let constants = Constants::of(pack, &comparisons);
     let empty = Lanes([0.0; WIDTH]);
     let wanted = if all { INTEGRALS } else { 1 };
     let mut running = Running {
@@ -213,7 +272,7 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
         least: Lanes([1.0; WIDTH]),
     };
     for lane in 0..WIDTH {
-        let (start, g) = at_turning_point(pack, &constants, lane);
+        let (start, g) = at_turning_point(pack, &comparisons[lane], lane);
         for i in 0..INTEGRALS {
             running.sum[i].0[lane] = 0.5 * start[i];
             running.size[i].0[lane] = 0.5 * start[i].abs();
@@ -280,7 +339,7 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
                 continue;
             }
             let agree = |i: usize| {
-                let size = running.size[i].0[lane] * h + scale(pack, i, lane);
+                let size = running.size[i].0[lane] * h + scale(pack, &comparisons[lane], i, lane);
                 let off = (finer[i].0[lane] - means[i].0[lane]).abs() / size;
                 off <= tolerance || MARGIN * off * off <= tolerance || size == 0.0
             };
@@ -290,7 +349,7 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
             }
             if done.met.lane(lane) || !fine || running.least.0[lane].is_nan() {
                 open[lane] = false;
-                let size = running.size[0].0[lane] * h + scale(pack, 0, lane);
+                let size = running.size[0].0[lane] * h + scale(pack, &comparisons[lane], 0, lane);
                 let off = (finer[0].0[lane] - means[0].0[lane]).abs();
                 done.error.0[lane] = off.min(MARGIN * off * (off / size)).max(ROUNDING * size);
                 for i in 0..INTEGRALS {
@@ -300,17 +359,16 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
         }
         means = finer;
     }
-    for lane in 0..WIDTH {
-        for (i, rest) in closed(&constants, lane).into_iter().enumerate() {
-            done.integral[i].0[lane] += rest;
-        }
-    }
     done
 }
 
 /// What integrals are measured beside themselves.
-fn scale(pack: &Pack, which: usize, lane: usize) -> f64 {
-    if which == 1 { pack.force.0[lane].abs() } else { pack.value.0[lane].abs() }
+fn scale(pack: &Pack, comparison: &Comparison, which: usize, lane: usize) -> f64 {
+    match which {
+        0 if comparison.strong => comparison.closed,
+        1 => pack.force.0[lane].abs(),
+        _ => pack.value.0[lane].abs(),
+    }
 }
 
 /// Whether from a node on V adds less than `rest` to the integrals.
@@ -319,18 +377,4 @@ fn gone(profile: &Profile, pack: &Pack, lane: usize, node: Node, rest: f64, all:
     // The delay's integrand falls as r V, not as V/r.
     let lever = if all { node.cosh } else { node.ratio };
     profile.beyond(r, usize::from(all)) / e * lever <= rest.max(f64::MIN_POSITIVE)
-}
-
-/// The integrals of c₁u³ + c₂u⁵ + c₃u⁷, and of what the others have of such.
-fn closed(constants: &Constants, lane: usize) -> [f64; INTEGRALS] {
-    let [c1, c2, c3] = constants.series.map(|c| c.0[lane]);
-    let angle = (c3.mul_add(5.0 / 6.0, c2) * 0.75 + c1) * FRAC_PI_4;
-    [angle, 0.0, c1 * FRAC_PI_2]
-}
-
-/// ψ and π − |ψ| from the integral, in lanes; x is V(r₀)/E and `root` b/r₀.
-pub(super) fn angle(x: f64, root: f64, integral: f64) -> (f64, f64) {
-    let angle = PI * (x / (1.0 + root)) + 2.0 * root * integral;
-    let complement = if angle > 1.0 { root * (PI - 2.0 * integral) } else { PI - angle.abs() };
-    (angle, complement)
 }
