@@ -167,6 +167,27 @@ def monte_carlo(
     float,
     list[tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int, NDArray[np.float64], tuple[float, float]]],
 ]: ...
+def scattering_structure(
+    description: dict[str, Any], energy: float
+) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]], list[tuple[float, float, bool]], float]: ...
+def scattering_branches(
+    description: dict[str, Any], energy: float, angle: NDArray[np.float64]
+) -> tuple[list[int], list[NDArray[np.float64]]]: ...
+def differential_cross_section(
+    description: dict[str, Any], energy: float, angle: NDArray[np.float64], frame: str, mass_ratio: float
+) -> NDArray[np.float64]: ...
+def scattering_range(description: dict[str, Any]) -> float: ...
+def beyond_angle(description: dict[str, Any], energy: float, angle: NDArray[np.float64]) -> NDArray[np.float64]: ...
+def transport_cross_sections(
+    description: dict[str, Any], energy: NDArray[np.float64], order: int, threads: int | None
+) -> NDArray[np.float64]: ...
+def collision_integrals(
+    description: dict[str, Any],
+    temperature: NDArray[np.float64],
+    orders: tuple[int, int],
+    diameter: float,
+    threads: int | None,
+) -> NDArray[np.float64]: ...
 def deflections(
     description: dict[str, Any],
     energy: NDArray[np.float64],

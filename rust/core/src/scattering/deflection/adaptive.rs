@@ -12,7 +12,7 @@ use super::trapezoid::{Comparison, INTEGRALS};
 use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
-const RULE: [[f64; 3]; 8] = [
+pub(in crate::scattering) const RULE: [[f64; 3]; 8] = [
     [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
     [0.949_107_912_342_758_5, 0.063_092_092_629_978_55, 0.129_484_966_168_869_7],
     [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],

@@ -3,7 +3,7 @@
 //! Sources: Landau & Lifshitz, *Mechanics*, §§18–19; for C/r⁴ J. C. Maxwell, Phil. Trans. R. Soc. 157 (1867) 49, with
 //! c = C/(E r₀⁴): ψ = π(1 − √(1 − c)/M(1, √(1 + c))), M the arithmetic-geometric mean.
 
-use super::{Deflection, Status};
+use super::{Deflection, Edge, Status};
 use crate::numerics::angles::atan2;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elliptic::arithmetic_geometric_mean;
@@ -37,6 +37,29 @@ impl Closed {
             "power_law" if number(1) == 2.0 => Some(Self::InverseSquare(number(0))),
             "power_law" if number(1) == 4.0 => Some(Self::InverseFourth(number(0))),
             _ => None,
+        }
+    }
+    /// Where it is not smooth.
+    pub(super) fn edges(self, energy: f64) -> Vec<Edge> {
+        let rim = |b: f64| Edge { impact_parameter: b, orbit: None, captures: false };
+        match self {
+            Self::InverseSquare(c) if c < 0.0 => {
+                vec![Edge { impact_parameter: (-c / energy).sqrt(), orbit: None, captures: true }]
+            }
+            Self::HardSphere(radius) => vec![rim(radius)],
+            Self::SquareWell(depth, radius) => {
+                let square = 1.0 + depth / energy;
+                let total = (square > 0.0 && square < 1.0).then(|| rim(square.sqrt() * radius));
+                total.into_iter().chain([rim(radius)]).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+    /// Beyond which there is no deflection.
+    pub(super) fn range(self) -> f64 {
+        match self {
+            Self::HardSphere(radius) | Self::SquareWell(_, radius) => radius,
+            _ => f64::INFINITY,
         }
     }
     /// Whether nothing but the angle is known.

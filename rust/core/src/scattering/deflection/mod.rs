@@ -8,6 +8,7 @@
 //! Sources: Landau & Lifshitz, *Mechanics*, §18; L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385.
 
 mod adaptive;
+pub(super) use adaptive::RULE as KRONROD;
 mod closed;
 mod nodes;
 mod profile;
@@ -38,7 +39,7 @@ const NEAR_ORBITING: f64 = 1e-4;
 /// What rounding leaves of the distance to a barrier, as a part of b.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 /// And here equal steps would be many.
-const NEAR_BARRIER: f64 = 0.05;
+const NEAR_BARRIER: f64 = 0.003;
 /// An angle of less than this part of what cancels in it is found as a sum of small turns.
 const CANCELLED: f64 = 0.05;
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
@@ -97,6 +98,17 @@ impl Deflection {
     }
 }
 
+/// An impact parameter at which the deflection function is not smooth.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Edge {
+    /// Where.
+    pub impact_parameter: f64,
+    /// The radius of the circular orbit that is approached there; None where V ends or has an edge itself.
+    pub orbit: Option<f64>,
+    /// Whether what comes with less is captured.
+    pub captures: bool,
+}
+
 /// The deflection function of a potential.
 #[derive(Debug)]
 pub struct Deflector {
@@ -126,9 +138,29 @@ impl Deflector {
         }
         Ok(Self { profile, closed, tolerance })
     }
-    /// Whether ψ has a closed form.
-    pub fn is_closed(&self) -> bool {
-        self.closed.is_some()
+    /// Where the deflection function is not smooth at an energy, ascending.
+    pub fn edges(&self, energy: f64) -> Vec<Edge> {
+        let known = self.closed.map(|closed| closed.edges(energy)).unwrap_or_default();
+        let found = self.profile.as_ref().map(|profile| turning::edges(profile, energy)).unwrap_or_default();
+        [known, found].concat()
+    }
+    /// Whether the angle falls so slowly with the impact parameter that even momentum transfer has no end.
+    pub fn falls_as_inverse_distance(&self) -> bool {
+        matches!(self.closed, Some(Closed::Coulomb(_)))
+            || self.profile.as_ref().is_some_and(|profile| profile.endless_delay() != 0.0)
+    }
+    /// Beyond which there is no deflection; infinite for most.
+    pub fn range(&self) -> f64 {
+        let known = self.closed.map_or(f64::INFINITY, Closed::range);
+        self.profile.as_ref().map_or(known, |profile| profile.range().min(known))
+    }
+    /// The energies at which orbits begin or end to be: the extrema of V + r V′/2.
+    pub fn critical_energies(&self) -> Vec<f64> {
+        self.profile.as_ref().map(Profile::critical_energies).unwrap_or_default()
+    }
+    /// A length of the potential's own, of which impact parameters are multiples or parts.
+    pub fn length(&self) -> f64 {
+        self.profile.as_ref().map_or(1.0, |profile| profile.give_length(1.0))
     }
     /// The deflections of pairs; derivatives and delays (else NaN) only if `all`. The bits of a pair do not depend on
     /// the others, nor on the number of threads.
@@ -250,6 +282,10 @@ impl Quadrature<'_> {
         profile.forces(&[turning], &mut force);
         let per_energy =
             |of: &dyn Fn(usize) -> f64| Lanes(core::array::from_fn(|lane| of(lane) / energy.0[lane]));
+        let nearness: [f64; WIDTH] = core::array::from_fn(|lane| {
+            let pair = &group[lane.min(group.len() - 1)];
+            turning::nearness(profile, pair.energy, pair.b, &pair.barriers)
+        });
         let pack = Pack {
             energy,
             turning,
@@ -260,6 +296,8 @@ impl Quadrature<'_> {
                 if self.all { r * r * profile.curvature(r) } else { 0.0 }
             }),
             root: Lanes(core::array::from_fn(|lane| b.0[lane] / turning.0[lane])),
+            // The peak of 1/√G at a barrier is about √(2 × nearness) wide.
+            longest: Lanes(nearness.map(f64::sqrt)),
         };
         let sums = trapezoid::integrate(profile, &pack, self.tolerance, self.all);
         for (lane, pair) in group.iter().enumerate() {
@@ -271,7 +309,7 @@ impl Quadrature<'_> {
                 root: pack.root.0[lane],
                 near: 0.0,
             };
-            let nearness = turning::nearness(profile, pair.energy, pair.b, &pair.barriers);
+            let nearness = nearness[lane];
             let smooth = !profile.breaks().iter().any(|edge| *edge > single.turning);
             let met = sums.met.lane(lane) && nearness > NEAR_BARRIER && smooth;
             if !met {

@@ -187,6 +187,16 @@ impl Profile {
         self.beyond[if r < radius(0) { 0 } else { place(r) }][which]
     }
 
+    /// Beyond which V is zero, in the caller's units.
+    pub(super) fn range(&self) -> f64 {
+        let edge = self.breaks.last().copied().filter(|r| self.value(r.next_up()) == 0.0);
+        self.give_length(edge.unwrap_or(self.domain[1]).min(self.domain[1]))
+    }
+    /// The positive extrema of U, in the caller's units.
+    pub(super) fn critical_energies(&self) -> Vec<f64> {
+        let inner = self.extrema.iter().skip(1).take(self.extrema.len().saturating_sub(2));
+        inner.map(|[_, u]| scale(*u, self.energy)).filter(|u| *u > 0.0).collect()
+    }
     /// Whether V goes to zero far out.
     pub(super) fn vanishes(&self) -> bool {
         let far = self.value[POINTS - 1].abs();

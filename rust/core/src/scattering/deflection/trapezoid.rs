@@ -27,7 +27,7 @@ const MARGIN: f64 = 300.0;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Where G comes nearer to zero, a barrier is near.
-const NEAR_ZERO: f64 = 0.02;
+const NEAR_ZERO: f64 = 0.004;
 
 /// How many integrals: ψ, dψ/db, delay.
 pub(super) const INTEGRALS: usize = 3;
@@ -43,6 +43,8 @@ pub(super) struct Pack {
     pub(super) curvature: Lanes,
     /// b/r₀.
     pub(super) root: Lanes,
+    /// The longest distance of nodes that sees every barrier.
+    pub(super) longest: Lanes,
 }
 
 /// The integrals of eight pairs.
@@ -344,7 +346,7 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
                 off <= tolerance || MARGIN * off * off <= tolerance || size == 0.0
             };
             let fine = running.least.0[lane] > NEAR_ZERO;
-            if (0..wanted).all(agree) && fine {
+            if (0..wanted).all(agree) && fine && h <= pack.longest.0[lane] {
                 done.met = done.met.or(Bits(1 << lane));
             }
             if done.met.lane(lane) || !fine || running.least.0[lane].is_nan() {

@@ -1,8 +1,11 @@
 //! The outermost turning point, where 1 − b²/r² − V/E = 0 for the first time on the way in.
 
+use super::Edge;
 use super::profile::{Center, Profile};
 use crate::numerics::lanes::{Lanes, WIDTH};
 
+/// Edges of V beyond which a table is taken for smooth.
+const MANY: usize = 8;
 /// Newton steps at most; halving alone ends after sixty.
 const MOST_STEPS: usize = 200;
 /// A step of this part of r, by a method that squares errors, leaves none.
@@ -91,6 +94,36 @@ impl Critical {
     fn turns(profile: &Profile, energy: f64, b: f64, ends: [f64; 2], barriers: Vec<f64>) -> Way {
         profile.bracket(energy, b, ends).map_or(Way::Captured, |bracket| Way::Turns { bracket, barriers })
     }
+}
+
+/// Where the deflection function is not smooth at an energy, in the caller's units.
+pub(super) fn edges(profile: &Profile, energy: f64) -> Vec<Edge> {
+    let e = profile.take_energy(energy);
+    let radii = if e < profile.one_turning_point_from() { profile.critical_radii(e) } else { Vec::new() };
+    let mut critical = Critical::default();
+    let mut edges: Vec<Edge> = Vec::new();
+    for r in radii.iter().step_by(2) {
+        let rest = 1.0 - profile.value(*r) / e;
+        let b = r * rest.max(0.0).sqrt();
+        let hidden = edges.iter().any(|edge| edge.impact_parameter <= profile.give_length(b));
+        if b > 0.0 && !hidden {
+            let captures = matches!(critical.way(profile, e, b * (1.0 - 1e-9)), Way::Captured);
+            edges.push(Edge {
+                impact_parameter: profile.give_length(b),
+                orbit: Some(profile.give_length(*r)),
+                captures,
+            });
+        }
+    }
+    // What has an edge itself shows it to what just touches it.
+    let rims = profile.breaks().iter().filter(|_| profile.breaks().len() <= MANY);
+    let end = (profile.range() < f64::INFINITY).then(|| profile.range());
+    for b in rims.map(|r| profile.give_length(*r)).chain(end) {
+        edges.push(Edge { impact_parameter: b, orbit: None, captures: false });
+    }
+    edges.sort_by(|a, b| a.impact_parameter.total_cmp(&b.impact_parameter));
+    edges.dedup_by(|a, b| a.impact_parameter == b.impact_parameter);
+    edges
 }
 
 /// How near b is to where a barrier has its top, as a part of it.

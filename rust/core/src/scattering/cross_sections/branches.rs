@@ -1,0 +1,168 @@
+//! Which impact parameters lead to an angle, and the differential cross section that they make together.
+
+use super::{MOST_STEPS, Sample, Structure, range};
+use crate::Result;
+use crate::parallel::Ticker;
+use crate::scattering::kinematics::Collision;
+use core::f64::consts::PI;
+
+/// One way to an angle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Branch {
+    /// Its impact parameter.
+    pub impact_parameter: f64,
+    /// ψ, signed and not folded.
+    pub angle: f64,
+    /// π − |ψ|.
+    pub complement: f64,
+    /// dψ/db.
+    pub derivative: f64,
+}
+
+impl Branch {
+    /// dσ/dΩ = b/(|sin ψ| |dψ/db|), and its limit head-on.
+    pub fn cross_section(&self) -> f64 {
+        if self.impact_parameter == 0.0 {
+            return 1.0 / (self.derivative * self.derivative);
+        }
+        let sine =
+            if self.angle.abs() > 1.0 && self.angle.abs() < PI + 1.0 { self.complement } else { self.angle };
+        let sine = crate::numerics::angles::sin(sine).abs();
+        (self.impact_parameter / sine) / self.derivative.abs()
+    }
+}
+
+impl Structure<'_> {
+    /// All impact parameters that lead to an angle θ in [0, π] from the beam: |ψ| = θ but for whole turns, from the
+    /// smallest on.
+    ///
+    /// # Errors
+    /// As [`Deflector::deflect`](super::Deflector::deflect).
+    pub fn branches(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<Vec<Branch>> {
+        let mut found: Vec<Sample> = Vec::new();
+        for stretch in &self.stretches {
+            let (low, high) = range(stretch);
+            let most = ((low.abs().max(high.abs()) + angle) / (2.0 * PI)).ceil() as i64;
+            for turns in -most..=most {
+                let whole = 2.0 * PI * turns as f64;
+                for target in [whole + angle, whole - angle] {
+                    // Both are one at 0 and at π.
+                    let twice =
+                        target == whole + angle && (angle == 0.0 || angle == PI) && target != whole - angle;
+                    if !twice && target >= low && target <= high {
+                        found.extend(self.solve(stretch, target, ticker)?);
+                    }
+                }
+            }
+        }
+        found.sort_by(|a, b| a.b.total_cmp(&b.b));
+        found.dedup_by(|a, b| a.b == b.b);
+        let branch = |sample: &Sample| Branch {
+            impact_parameter: sample.b,
+            angle: sample.angle,
+            complement: sample.complement,
+            derivative: sample.derivative,
+        };
+        Ok(found.iter().map(branch).collect())
+    }
+    /// dσ/dΩ in the centre-of-mass frame, all branches together.
+    ///
+    /// # Errors
+    /// As [`branches`](Self::branches).
+    pub fn cross_section(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).sum())
+    }
+    /// dσ/dΩ of the projectile in the laboratory, all branches of either kind together; 0 where none leads.
+    ///
+    /// # Errors
+    /// As [`branches`](Self::branches).
+    pub fn lab_cross_section(
+        &self,
+        collision: Collision,
+        angle: f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
+        let mut sum = 0.0;
+        for (cm_angle, jacobian) in collision.branches(angle).into_iter().flatten() {
+            // A jacobian of 0 (equal masses across the beam) meets a finite cross section.
+            if jacobian != 0.0 {
+                sum += jacobian * self.cross_section(cm_angle.min(PI), ticker)?;
+            }
+        }
+        Ok(sum)
+    }
+    /// dσ/dΩ of the target in the laboratory.
+    ///
+    /// # Errors
+    /// As [`branches`](Self::branches).
+    pub fn recoil_cross_section(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let cm_angle = (PI - 2.0 * angle).max(0.0);
+        Ok(Collision::recoil_jacobian(angle) * self.cross_section(cm_angle, ticker)?)
+    }
+    /// The area of all impact parameters with an angle of at least that from the beam, captured ones too.
+    ///
+    /// # Errors
+    /// As [`branches`](Self::branches).
+    pub fn beyond(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        let branches = self.branches(angle, ticker)?;
+        let mut places = vec![self.capture()];
+        places.extend(self.edges.iter().map(|edge| edge.impact_parameter));
+        places.extend(branches.iter().map(|branch| branch.impact_parameter));
+        places.retain(|b| *b >= self.capture());
+        places.sort_by(f64::total_cmp);
+        places.dedup();
+        let mut area = PI * self.capture() * self.capture();
+        for pair in places.windows(2) {
+            let middle = self.sample(0.5 * (pair[0] + pair[1]), ticker)?;
+            let folded = middle.angle - 2.0 * PI * (middle.angle / (2.0 * PI)).round();
+            if folded.abs() >= angle {
+                area += PI * (pair[1] - pair[0]) * (pair[1] + pair[0]);
+            }
+        }
+        Ok(area)
+    }
+
+    /// The sample of a monotone stretch with that ψ, if it has one.
+    pub(super) fn solve(
+        &self,
+        stretch: &[Sample],
+        target: f64,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Option<Sample>> {
+        // Near π what is missing to it has the digits; it falls as the angle rises.
+        let near = target > 1.0 && target <= PI;
+        let sign = |sample: &Sample| {
+            if near { (PI - target) - sample.complement } else { sample.angle - target }
+        };
+        if let Some(exact) = stretch.iter().find(|sample| sign(sample) == 0.0) {
+            return Ok(Some(*exact));
+        }
+        let Some(at) = stretch.windows(2).position(|pair| sign(&pair[0]) * sign(&pair[1]) < 0.0) else {
+            return Ok(None);
+        };
+        let (mut low, mut high) = (stretch[at], stretch[at + 1]);
+        let mut here = if sign(&low).abs() < sign(&high).abs() { low } else { high };
+        for _ in 0..MOST_STEPS {
+            let newton = here.b - sign(&here) / here.derivative;
+            let middle = if low.b > 0.0 { (low.b * high.b).sqrt() } else { 0.5 * (low.b + high.b) };
+            let b = if newton > low.b && newton < high.b { newton } else { middle };
+            if b == here.b || b <= low.b || b >= high.b {
+                break;
+            }
+            let step = (b - here.b).abs();
+            here = self.sample(b, ticker)?;
+            if sign(&here) == 0.0 {
+                break;
+            }
+            if sign(&here) * sign(&low) > 0.0 {
+                low = here
+            } else {
+                high = here
+            }
+            if step <= 1e-15 * b || high.b - low.b <= 2.0 * f64::EPSILON * high.b {
+                break;
+            }
+        }
+        Ok(Some(here))
+    }
+}

@@ -1,0 +1,245 @@
+//! What the deflection function of one energy has: branches, rainbows, glories, orbits, and the cross sections they make.
+//!
+//! The one idea: between its edges, where something orbits or V ends, ψ(b) is smooth, and between the zeros of dψ/db,
+//! which are the rainbows, it is monotone. So a grid that is fine wherever ψ may bend, with the analytic derivative on
+//! it, cuts the line of impact parameters into monotone stretches, and every question of which b leads to an angle is a
+//! bracketed root on each of them (`branches`). Integrals over b go by the same edges (`transport`).
+//! Sources: Goldstein, Poole & Safko, *Classical Mechanics* (3rd ed.), §3.10–3.11; K. W. Ford, J. A. Wheeler, Ann.
+//! Phys. 7 (1959) 259; J. O. Hirschfelder, C. F. Curtiss, R. B. Bird, *Molecular Theory of Gases and Liquids* (1954), §8.2.
+
+mod branches;
+mod transport;
+
+pub use branches::Branch;
+pub use transport::{collision_integral, transport};
+
+use super::deflection::{Deflection, Deflector, Edge, Status};
+use crate::Result;
+use crate::numerics::elementary::Exponential;
+use crate::parallel::Ticker;
+use core::f64::consts::{LN_2, PI};
+
+/// Octaves of impact parameters on either side of the potential's length.
+const OCTAVES: i32 = 24;
+/// Samples to an octave.
+const PER_OCTAVE: i32 = 12;
+/// Samples towards an edge, each this much nearer than the one before.
+const TOWARDS_EDGE: i32 = 56;
+const NEARER: f64 = 0.562_341_325_190_349; // 10^(−1/4)
+/// Angles below this are not looked at.
+const SMALLEST: f64 = 1e-13;
+/// Halvings and secants until a root has all its digits.
+const MOST_STEPS: usize = 100;
+
+/// An extremum of ψ(b): infinite cross section at an angle beyond which nothing of its stretches goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rainbow {
+    /// Where ψ is extremal.
+    pub impact_parameter: f64,
+    /// ψ there.
+    pub angle: f64,
+}
+
+/// An impact parameter that is not zero and leads straight on or straight back: ψ = kπ.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Glory {
+    /// Not zero.
+    pub impact_parameter: f64,
+    /// kπ.
+    pub angle: f64,
+    /// dψ/db.
+    pub derivative: f64,
+}
+
+/// A place on the line of impact parameters.
+#[derive(Clone, Copy, Debug)]
+struct Sample {
+    b: f64,
+    angle: f64,
+    complement: f64,
+    derivative: f64,
+}
+
+/// The deflection function at one energy, cut into monotone stretches.
+#[derive(Debug)]
+pub struct Structure<'a> {
+    deflector: &'a Deflector,
+    energy: f64,
+    /// Monotone between neighbours of one stretch.
+    stretches: Vec<Vec<Sample>>,
+    edges: Vec<Edge>,
+    rainbows: Vec<Rainbow>,
+}
+
+impl<'a> Structure<'a> {
+    /// Of an energy.
+    ///
+    /// # Errors
+    /// As [`Deflector::deflect`].
+    pub fn new(deflector: &'a Deflector, energy: f64, ticker: &mut Ticker<'_>) -> Result<Self> {
+        let edges = deflector.edges(energy);
+        let mut made = Self { deflector, energy, stretches: Vec::new(), edges, rainbows: Vec::new() };
+        let ends: Vec<f64> = [0.0]
+            .into_iter()
+            .chain(made.edges.iter().map(|edge| edge.impact_parameter))
+            .chain([f64::INFINITY])
+            .collect();
+        for pair in ends.windows(2) {
+            if pair[0] < deflector.range() {
+                made.cut([pair[0], pair[1].min(deflector.range())], ticker)?;
+            }
+        }
+        Ok(made)
+    }
+    /// Where something orbits, V ends or has an edge.
+    pub fn edges(&self) -> &[Edge] {
+        &self.edges
+    }
+    /// The extrema of ψ(b), from the smallest impact parameter on.
+    pub fn rainbows(&self) -> &[Rainbow] {
+        &self.rainbows
+    }
+    /// The largest impact parameter that is captured; 0 if none is.
+    pub fn capture(&self) -> f64 {
+        let captures = self.edges.iter().filter(|edge| edge.captures);
+        captures.map(|edge| edge.impact_parameter).fold(0.0, f64::max)
+    }
+    /// Impact parameters that lead straight on or straight back, nearer to an edge than which none is told from the next.
+    ///
+    /// # Errors
+    /// As [`Deflector::deflect`].
+    pub fn glories(&self, ticker: &mut Ticker<'_>) -> Result<Vec<Glory>> {
+        let mut found = Vec::new();
+        for stretch in &self.stretches {
+            let (low, high) = range(stretch);
+            for k in (low / PI).ceil() as i64..=(high / PI).floor() as i64 {
+                let target = PI * k as f64;
+                if let Some(sample) = self.solve(stretch, target, ticker)?
+                    && sample.b > 0.0
+                    && !(k == 0 && sample.angle == 0.0 && sample.derivative == 0.0)
+                {
+                    found.push(Glory {
+                        impact_parameter: sample.b,
+                        angle: target,
+                        derivative: sample.derivative,
+                    });
+                }
+            }
+        }
+        found.sort_by(|a, b| a.impact_parameter.total_cmp(&b.impact_parameter));
+        found.dedup_by(|a, b| a.impact_parameter == b.impact_parameter);
+        Ok(found)
+    }
+
+    fn sample(&self, b: f64, ticker: &mut Ticker<'_>) -> Result<Sample> {
+        let found = self.deflector.deflect(&[self.energy], &[b], true, 1, ticker)?;
+        Ok(sampled(b, found.first()))
+    }
+    /// Samples between two edges, cut where the derivative changes its sign.
+    fn cut(&mut self, ends: [f64; 2], ticker: &mut Ticker<'_>) -> Result<()> {
+        let places = places(ends, &self.edges, self.deflector.length());
+        let energies = vec![self.energy; places.len()];
+        let found = self.deflector.deflect(&energies, &places, true, 1, ticker)?;
+        let mut stretch: Vec<Sample> = Vec::new();
+        for (b, deflection) in places.iter().zip(&found) {
+            if deflection.status == Status::Captured {
+                continue;
+            }
+            let next = sampled(*b, Some(deflection));
+            if let Some(last) = stretch.last().copied()
+                && last.derivative * next.derivative < 0.0
+            {
+                let top = self.rainbow(last, next, ticker)?;
+                self.rainbows.push(Rainbow { impact_parameter: top.b, angle: top.angle });
+                stretch.push(top);
+                self.stretches.push(core::mem::replace(&mut stretch, vec![top]));
+            }
+            stretch.push(next);
+            // What is still to come is even less.
+            if next.angle.abs() < SMALLEST
+                && next.b > 4.0 * self.deflector.length()
+                && ends[1] == f64::INFINITY
+            {
+                break;
+            }
+        }
+        if stretch.len() > 1 {
+            self.stretches.push(stretch);
+        }
+        Ok(())
+    }
+    /// The zero of dψ/db between two samples.
+    fn rainbow(&self, mut low: Sample, mut high: Sample, ticker: &mut Ticker<'_>) -> Result<Sample> {
+        let mut weights = [low.derivative, high.derivative];
+        for _ in 0..MOST_STEPS {
+            let b = false_position([low.b, high.b], weights);
+            let next = self.sample(b, ticker)?;
+            if b <= low.b || b >= high.b || next.derivative == 0.0 {
+                return Ok(next);
+            }
+            if next.derivative * low.derivative > 0.0 {
+                weights = [next.derivative, 0.5 * weights[1]];
+                low = next;
+            } else {
+                weights = [0.5 * weights[0], next.derivative];
+                high = next;
+            }
+            if high.b - low.b <= 1e-13 * high.b {
+                break;
+            }
+        }
+        self.sample(0.5 * (low.b + high.b), ticker)
+    }
+}
+
+fn sampled(b: f64, found: Option<&Deflection>) -> Sample {
+    let nothing = f64::NAN;
+    found.map_or(Sample { b, angle: nothing, complement: nothing, derivative: nothing }, |found| Sample {
+        b,
+        angle: found.angle,
+        complement: found.complement,
+        derivative: found.derivative,
+    })
+}
+
+/// The least and the largest angle of a stretch.
+fn range(stretch: &[Sample]) -> (f64, f64) {
+    let first = stretch.first().map_or(f64::NAN, |sample| sample.angle);
+    let last = stretch.last().map_or(f64::NAN, |sample| sample.angle);
+    (first.min(last), first.max(last))
+}
+
+/// Where a straight line between two values of opposite sign is zero, kept off the ends.
+fn false_position(places: [f64; 2], values: [f64; 2]) -> f64 {
+    let [low, high] = places;
+    let line = low + (high - low) * (values[0] / (values[0] - values[1]));
+    if line > low && line < high { line } else { 0.5 * (low + high) }
+}
+
+/// Impact parameters to look at between two ends: to every octave, and ever nearer to orbits.
+fn places(ends: [f64; 2], edges: &[Edge], length: f64) -> Vec<f64> {
+    let [low, high] = ends;
+    let octaves = (-OCTAVES * PER_OCTAVE..=OCTAVES * PER_OCTAVE)
+        .map(|k| length * Exponential::exp(f64::from(k) * LN_2 / f64::from(PER_OCTAVE)));
+    let mut places: Vec<f64> = octaves.filter(|b| *b > low && *b < high).collect();
+    let orbits = |b: f64| edges.iter().any(|edge| edge.impact_parameter == b);
+    let reach = if high < f64::INFINITY { 0.5 * (high - low) } else { low.max(length) };
+    for k in 0..TOWARDS_EDGE {
+        let off = reach * NEARER.powi(k);
+        if low > 0.0 && orbits(low) && off > 4.0 * f64::EPSILON * low {
+            places.push(low + off);
+        }
+        if high < f64::INFINITY && off > 4.0 * f64::EPSILON * high {
+            places.push(high - off);
+        }
+    }
+    if low == 0.0 {
+        places.push(0.0);
+        // Also where there is one edge only, not far from zero.
+        places.extend((1..16).map(|k| reach.min(length) * f64::from(k) / 16.0));
+    }
+    places.retain(|b| *b >= low && *b < high);
+    places.sort_by(f64::total_cmp);
+    places.dedup();
+    places
+}

@@ -1,0 +1,288 @@
+//! Integrals over impact parameters and energies: transport cross sections Q^(l)(E) and collision integrals Ω^(l,s)(T).
+//!
+//! The one idea: every integrand is smooth in the logarithm of the distance to an edge, since near orbiting ψ is linear
+//! in it, and in the logarithm of b far out. So intervals go by those, and are halved, all at once, where two rules differ.
+
+use super::super::deflection::{Deflector, Edge, Status};
+use crate::numerics::angles::sin;
+use crate::numerics::elementary::{Exponential, ln};
+use crate::parallel::Ticker;
+use crate::words::number;
+use crate::{Error, Result};
+use core::f64::consts::PI;
+
+/// The rule of Gauss and Kronrod of 15 points: places, weights, and weights of the rule of 7 in it.
+const RULE: [[f64; 3]; 8] = super::super::deflection::KRONROD;
+/// Rounds of halving.
+const ROUNDS: usize = 40;
+/// The tolerance of a cross section, relative, and of the angles in it.
+const TOLERANCE: f64 = 1e-10;
+/// How near to an edge and how far out intervals go, as exponents of e.
+const NEAREST: f64 = 26.0;
+const FARTHEST: f64 = 40.0;
+/// Rounds of halving of intervals of energy: each costs fifteen cross sections an interval.
+const MOST_ROUNDS: usize = 4;
+/// Intervals are no longer than this at first.
+const LONGEST: f64 = 2.0;
+
+/// How a variable of an interval makes an impact parameter.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    /// b itself.
+    Straight,
+    /// b = scale · e^t.
+    Far(f64),
+    /// b = edge + side · e^t.
+    Near(f64, f64),
+}
+
+impl Way {
+    /// b and db/dt.
+    fn at(self, t: f64) -> (f64, f64) {
+        match self {
+            Self::Straight => (t, 1.0),
+            Self::Far(scale) => {
+                let b = scale * Exponential::exp(t);
+                (b, b)
+            }
+            Self::Near(edge, side) => {
+                let off = Exponential::exp(t);
+                (edge + side * off, off)
+            }
+        }
+    }
+}
+
+#[derive(Clone, Copy, Debug)]
+struct Interval {
+    way: Way,
+    ends: [f64; 2],
+}
+
+/// Q^(l)(E) = 2π ∫ (1 − cos^l ψ) b db.
+///
+/// # Errors
+/// `InvalidInput` naming `potential` if the integral has no end, or if some are captured, whose angle is none;
+/// `Interrupted`.
+pub fn transport(
+    deflector: &Deflector,
+    energy: f64,
+    l: u32,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<f64> {
+    if deflector.falls_as_inverse_distance() {
+        return Err(Error::invalid(
+            "potential",
+            "expected one that falls faster than 1/r: of others transport cross sections are infinite; screen it, \
+             or cut the impact parameters and integrate deflect() up to there",
+        ));
+    }
+    let edges = deflector.edges(energy);
+    if let Some(edge) = edges.iter().find(|edge| edge.captures) {
+        return Err(Error::invalid(
+            "potential",
+            format!(
+                "expected one that captures nothing: up to impact parameter {} there is no angle; take \
+                 capture_cross_section, or give the potential a core that repels",
+                number(edge.impact_parameter)
+            ),
+        ));
+    }
+    let mut pending = intervals(deflector, &edges);
+    let (mut sum, mut error) = (0.0, 0.0);
+    let mut done: Vec<[f64; 2]> = Vec::new();
+    for round in 0..ROUNDS {
+        let found = evaluate(deflector, energy, l, &pending, threads, ticker)?;
+        let whole: f64 = done.iter().chain(&found).map(|[value, _]| value.abs()).sum();
+        let mut next = Vec::new();
+        for (interval, [value, off]) in pending.iter().zip(found) {
+            let [from, to] = interval.ends;
+            let middle = 0.5 * (from + to);
+            if off <= TOLERANCE * whole * 1e-3
+                || off <= TOLERANCE * value.abs() * 1e-2
+                || round + 1 == ROUNDS
+                || middle <= from
+                || middle >= to
+            {
+                done.push([value, off]);
+            } else {
+                next.push(Interval { ends: [from, middle], ..*interval });
+                next.push(Interval { ends: [middle, to], ..*interval });
+            }
+        }
+        pending = next;
+        if pending.is_empty() {
+            break;
+        }
+    }
+    for [value, off] in done {
+        sum += value;
+        error += off;
+    }
+    if error > 1e-6 * sum {
+        let message = format!(
+            "expected one at which a transport cross section can be known to 1e-6, got {}, where it is to {}",
+            number(energy),
+            number(error / sum)
+        );
+        return Err(Error::invalid("energy", message));
+    }
+    Ok(2.0 * PI * sum)
+}
+
+/// Intervals between edges, towards them and far out.
+fn intervals(deflector: &Deflector, edges: &[Edge]) -> Vec<Interval> {
+    let range = deflector.range();
+    let mut ends: Vec<f64> =
+        [0.0].into_iter().chain(edges.iter().map(|edge| edge.impact_parameter)).collect();
+    ends.retain(|b| *b < range);
+    ends.push(range);
+    let mut all = Vec::new();
+    let mut add = |way: Way, from: f64, to: f64| {
+        let parts = if matches!(way, Way::Straight) { 4.0 } else { ((to - from) / LONGEST).ceil().max(1.0) };
+        for part in 0..parts as usize {
+            let at = |k: usize| (to - from).mul_add(k as f64 / parts, from);
+            all.push(Interval { way, ends: [at(part), at(part + 1)] });
+        }
+    };
+    for pair in ends.windows(2) {
+        let [low, high] = [pair[0], pair[1]];
+        let length = deflector.length();
+        let middle = if high < f64::INFINITY { 0.5 * (low + high) } else { low + length };
+        if low > 0.0 {
+            let most = ln(middle - low);
+            add(Way::Near(low, 1.0), (ln(low) - NEAREST).min(most - 1.0), most);
+        } else if high == f64::INFINITY {
+            add(Way::Far(length), -FARTHEST, 0.0);
+        } else {
+            add(Way::Straight, 0.0, middle);
+        }
+        if high < f64::INFINITY {
+            let most = ln(high - middle);
+            add(Way::Near(high, -1.0), (ln(high) - NEAREST).min(most - 1.0), most);
+        } else {
+            let from = ln(middle / length);
+            add(Way::Far(length), from, from + FARTHEST);
+        }
+    }
+    all
+}
+
+/// Each interval by both rules: its part, and how far they differ.
+fn evaluate(
+    deflector: &Deflector,
+    energy: f64,
+    l: u32,
+    intervals: &[Interval],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<[f64; 2]>> {
+    let mut places = Vec::with_capacity(15 * intervals.len());
+    for interval in intervals {
+        for k in 0..15 {
+            places.push(interval.way.at(point(interval.ends, k)));
+        }
+    }
+    let b: Vec<f64> = places.iter().map(|(b, _)| *b).collect();
+    let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
+    let mut values = Vec::with_capacity(places.len());
+    for ((b, weight), deflection) in places.iter().zip(&found) {
+        let turned =
+            if deflection.status == Status::Captured { 0.0 } else { less_than_one(deflection.angle, l) };
+        values.push(turned * b * weight);
+    }
+    let rules = |(interval, values): (&Interval, &[f64])| both_rules(interval.ends, values);
+    Ok(intervals.iter().zip(values.chunks(15)).map(rules).collect())
+}
+
+/// The k-th of 15 places of an interval.
+fn point([from, to]: [f64; 2], k: usize) -> f64 {
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    if k < 8 { half.mul_add(-RULE[k][0], middle) } else { half.mul_add(RULE[14 - k][0], middle) }
+}
+
+/// From values at the 15 places: the integral, and how far it may be off.
+fn both_rules([from, to]: [f64; 2], values: &[f64]) -> [f64; 2] {
+    let half = 0.5 * (to - from);
+    let (mut fifteen, mut seven, mut size) = (0.0, 0.0, 0.0);
+    for (k, value) in values.iter().enumerate() {
+        let [_, more, less] = RULE[k.min(14 - k)];
+        fifteen += more * value;
+        seven += less * value;
+        size += more * value.abs();
+    }
+    let (off, size) = (half * (fifteen - seven).abs(), half * size);
+    let grown = 200.0 * off / size;
+    [half * fifteen, if off == 0.0 { 0.0 } else { size * (grown * grown.sqrt()).min(off / size) }]
+}
+
+/// 1 − cos^l ψ, without a difference where ψ is small: with s = 1 − cos ψ it is s (1 + cos ψ + … + cos^(l−1) ψ).
+fn less_than_one(angle: f64, l: u32) -> f64 {
+    let half = sin(0.5 * angle);
+    let less = 2.0 * half * half;
+    let cosine = 1.0 - less;
+    let powers = (1..l).fold(1.0, |sum, _| sum * cosine + 1.0);
+    less * powers
+}
+
+/// Ω^(l,s)*(T) = ∫ Q^(l)(E) e^(−E/T) E^(s+1) dE / ((s + 1)! T^(s+2) π d² (1 − (1 + (−1)^l)/(2(1 + l)))): in units of what
+/// hard spheres of diameter `d` have. T is k_B times the temperature, an energy.
+///
+/// # Errors
+/// As [`transport`].
+pub fn collision_integral(
+    deflector: &Deflector,
+    temperature: f64,
+    orders: (u32, u32),
+    diameter: f64,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<f64> {
+    let (l, s) = orders;
+    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-9 of its largest outside of these.
+    let power = f64::from(s + 2);
+    let [least, most] = [-22.0 / power, 3.4];
+    let mut marks = vec![least, most];
+    marks.extend(deflector.critical_energies().iter().map(|energy| ln(energy / temperature)));
+    marks.retain(|x| (least..=most).contains(x));
+    marks.sort_by(f64::total_cmp);
+    marks.dedup();
+    let mut pending: Vec<[f64; 2]> = Vec::new();
+    for pair in marks.windows(2) {
+        let parts = ((pair[1] - pair[0]) / LONGEST).ceil().max(1.0);
+        let at = |k: f64| (pair[1] - pair[0]).mul_add(k / parts, pair[0]);
+        pending.extend((0..parts as usize).map(|part| [at(part as f64), at(part as f64 + 1.0)]));
+    }
+    let factorial: f64 = (1..=s + 1).map(f64::from).product();
+    let mut done: Vec<f64> = Vec::new();
+    for round in 0..MOST_ROUNDS {
+        let mut found = Vec::with_capacity(pending.len());
+        for ends in &pending {
+            let mut values = [0.0; 15];
+            for (k, value) in values.iter_mut().enumerate() {
+                let x = point(*ends, k);
+                let share = Exponential::exp(x);
+                let weight = Exponential::exp(power * x - share) / factorial;
+                *value = weight * transport(deflector, temperature * share, l, threads, ticker)?;
+            }
+            found.push(both_rules(*ends, &values));
+        }
+        let whole: f64 = done.iter().sum::<f64>() + found.iter().map(|[value, _]| value).sum::<f64>();
+        let mut next = Vec::new();
+        for (ends, [value, off]) in pending.iter().zip(&found) {
+            if *off <= 1e-7 * whole || round + 1 == MOST_ROUNDS {
+                done.push(*value);
+            } else {
+                let middle = 0.5 * (ends[0] + ends[1]);
+                next.extend([[ends[0], middle], [middle, ends[1]]]);
+            }
+        }
+        pending = next;
+        if pending.is_empty() {
+            break;
+        }
+    }
+    let sphere = 1.0 - f64::from(1 + if l % 2 == 0 { 1 } else { -1 }) / (2.0 * f64::from(1 + l));
+    Ok(done.iter().sum::<f64>() / (PI * diameter * diameter * sphere))
+}

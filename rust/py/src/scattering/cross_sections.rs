@@ -1,0 +1,176 @@
+//! Branches, rainbows, glories, orbits and cross sections of a potential at an energy.
+
+use crate::arrays::{copied, moved};
+use crate::errors::raised;
+use crate::gate::compute;
+use crate::registry::described_potential;
+use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use visviva_core::parallel::thread_count;
+use visviva_core::scattering::cross_sections::{Structure, collision_integral, transport};
+use visviva_core::scattering::deflection::{Deflector, TOLERANCE};
+use visviva_core::scattering::kinematics::Collision;
+
+type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
+/// Rainbows (b, ψ), glories (b, ψ, dψ/db), orbits (b, r, whether it captures), and the largest b that is captured.
+type Marks = (Vec<(f64, f64)>, Vec<(f64, f64, f64)>, Vec<(f64, f64, bool)>, f64);
+
+/// What marks the deflection function at an energy.
+#[pyfunction]
+pub(crate) fn scattering_structure(
+    py: Python<'_>,
+    description: &Bound<'_, PyDict>,
+    energy: f64,
+) -> PyResult<Marks> {
+    let potential = described_potential(description)?;
+    compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let structure = Structure::new(&deflector, energy, ticker)?;
+        let rainbows = structure.rainbows().iter().map(|mark| (mark.impact_parameter, mark.angle)).collect();
+        let glories = structure.glories(ticker)?;
+        let glories =
+            glories.iter().map(|mark| (mark.impact_parameter, mark.angle, mark.derivative)).collect();
+        let orbits = structure.edges().iter();
+        let orbits =
+            orbits.filter_map(|edge| edge.orbit.map(|r| (edge.impact_parameter, r, edge.captures))).collect();
+        Ok((rainbows, glories, orbits, structure.capture()))
+    })?
+    .whole(py)
+}
+
+/// Of each angle the branches: how many, and b, ψ, dψ/db and dσ/dΩ of all, one angle after another.
+#[pyfunction]
+pub(crate) fn scattering_branches<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    energy: f64,
+    angle: PyReadonlyArrayDyn<'py, f64>,
+) -> PyResult<(Vec<usize>, Vec<Column<'py>>)> {
+    let potential = described_potential(description)?;
+    let (angle, _) = copied("angle", &angle, [None])?;
+    let (counts, columns) = compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let structure = Structure::new(&deflector, energy, ticker)?;
+        let mut counts = Vec::with_capacity(angle.len());
+        let mut columns: [Vec<f64>; 4] = Default::default();
+        for angle in &angle {
+            let branches = structure.branches(*angle, ticker)?;
+            counts.push(branches.len());
+            for branch in &branches {
+                let numbers =
+                    [branch.impact_parameter, branch.angle, branch.derivative, branch.cross_section()];
+                for (column, number) in columns.iter_mut().zip(numbers) {
+                    column.push(number);
+                }
+            }
+        }
+        Ok((counts, columns))
+    })?
+    .whole(py)?;
+    let moved = |column: Vec<f64>| {
+        let length = column.len();
+        moved(py, column, &[length])
+    };
+    Ok((counts, columns.into_iter().map(moved).collect::<PyResult<_>>()?))
+}
+
+/// dσ/dΩ at each angle in a frame: "cm", "lab" or "recoil"; `mass_ratio` is m₁/m₂.
+#[pyfunction]
+pub(crate) fn differential_cross_section<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    energy: f64,
+    angle: PyReadonlyArrayDyn<'py, f64>,
+    frame: &str,
+    mass_ratio: f64,
+) -> PyResult<Column<'py>> {
+    let potential = described_potential(description)?;
+    let (angle, shape) = copied("angle", &angle, [None])?;
+    let found = compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let structure = Structure::new(&deflector, energy, ticker)?;
+        let collision = Collision::new(mass_ratio, 1.0)?;
+        let one = |angle: &f64| match frame {
+            "lab" => structure.lab_cross_section(collision, *angle, ticker),
+            "recoil" => structure.recoil_cross_section(*angle, ticker),
+            _ => structure.cross_section(*angle, ticker),
+        };
+        angle.iter().map(one).collect::<visviva_core::Result<Vec<f64>>>()
+    })?
+    .whole(py)?;
+    moved(py, found, &shape)
+}
+
+/// The area of all impact parameters that lead to at least each angle.
+#[pyfunction]
+pub(crate) fn beyond_angle<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    energy: f64,
+    angle: PyReadonlyArrayDyn<'py, f64>,
+) -> PyResult<Column<'py>> {
+    let potential = described_potential(description)?;
+    let (angle, shape) = copied("angle", &angle, [None])?;
+    let areas = compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let structure = Structure::new(&deflector, energy, ticker)?;
+        angle.iter().map(|angle| structure.beyond(*angle, ticker)).collect::<visviva_core::Result<Vec<f64>>>()
+    })?
+    .whole(py)?;
+    moved(py, areas, &shape)
+}
+
+/// Beyond which there is no deflection; infinite for most.
+#[pyfunction]
+pub(crate) fn scattering_range(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<f64> {
+    let potential = described_potential(description)?;
+    Deflector::new(&potential, TOLERANCE)
+        .map(|deflector| deflector.range())
+        .map_err(|error| raised(py, error))
+}
+
+/// Q^(l) at each energy.
+#[pyfunction]
+pub(crate) fn transport_cross_sections<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    energy: PyReadonlyArrayDyn<'py, f64>,
+    order: u32,
+    threads: Option<i64>,
+) -> PyResult<Column<'py>> {
+    let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+    let potential = described_potential(description)?;
+    let (energy, shape) = copied("energy", &energy, [None])?;
+    let found = compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        energy
+            .iter()
+            .map(|energy| transport(&deflector, *energy, order, threads, ticker))
+            .collect::<visviva_core::Result<Vec<f64>>>()
+    })?
+    .whole(py)?;
+    moved(py, found, &shape)
+}
+
+/// Ω^(l,s)* at each temperature.
+#[pyfunction]
+pub(crate) fn collision_integrals<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    temperature: PyReadonlyArrayDyn<'py, f64>,
+    orders: (u32, u32),
+    diameter: f64,
+    threads: Option<i64>,
+) -> PyResult<Column<'py>> {
+    let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+    let potential = described_potential(description)?;
+    let (temperature, shape) = copied("temperature", &temperature, [None])?;
+    let found = compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let one = |kt: &f64| collision_integral(&deflector, *kt, orders, diameter, threads, ticker);
+        temperature.iter().map(one).collect::<visviva_core::Result<Vec<f64>>>()
+    })?
+    .whole(py)?;
+    moved(py, found, &shape)
+}
