@@ -1,12 +1,31 @@
 """Scattering of a beam: closed forms, two-body kinematics, Monte Carlo.
 
 Angles are in radians. ``energy`` is that of relative motion, ½μu²; ``beam_energy`` is the projectile's in the
-laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile over target. The functions of one array
-keep its shape.
+laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile over target. Arguments of the kinematics
+broadcast against each other; the functions of one array keep its shape.
 """
 
 from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
-from visviva.scattering._kinematics import cm_angle, energy_transfer, lab_angle, recoil_angle
+from visviva.scattering._energies import (
+    Moderation,
+    energy_kept,
+    energy_transfer,
+    greatest_lab_angle,
+    greatest_recoil_angle,
+    kinematic_factor,
+    moderation,
+    threshold_energy,
+    two_branch_energy,
+)
+from visviva.scattering._kinematics import (
+    cm_angle,
+    cm_angle_from_recoil,
+    lab_angle,
+    lab_jacobian,
+    opening_angle,
+    recoil_angle,
+    recoil_jacobian,
+)
 from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._rutherford import (
     rutherford_angle,
@@ -21,19 +40,31 @@ __all__ = [
     "CrossSection",
     "Deflection",
     "DeflectionStatus",
+    "Moderation",
     "MonteCarlo",
     "Tally",
     "cm_angle",
+    "cm_angle_from_recoil",
     "deflect",
     "deflection_angle",
+    "energy_kept",
     "energy_transfer",
+    "greatest_lab_angle",
+    "greatest_recoil_angle",
+    "kinematic_factor",
     "lab_angle",
+    "lab_jacobian",
+    "moderation",
     "monte_carlo",
+    "opening_angle",
     "recoil_angle",
+    "recoil_jacobian",
     "rutherford_angle",
     "rutherford_closest_approach",
     "rutherford_cross_section",
     "rutherford_impact_parameter",
+    "threshold_energy",
+    "two_branch_energy",
 ]
 
 

@@ -65,7 +65,13 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::closed_forms::{rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
+    use crate::scattering::collisions::{
+        collided, contact_time, line_of_centers, reduced_mass, relative_split,
+    };
+    #[pymodule_export]
     use crate::scattering::deflection::deflections;
+    #[pymodule_export]
+    use crate::scattering::kinematics::{kinematics, moderation, special_energy};
     #[pymodule_export]
     use crate::scattering::monte_carlo::monte_carlo;
     #[pymodule_export]

@@ -61,6 +61,9 @@ mod tests {
         assert_eq!((time(5.0, 1.0, 1.0), time(5.0, 1.000_000_000_000_001, 1.0)), (2.5, f64::INFINITY));
         assert_eq!((time(-5.0, 0.0, 1.0), time(1.0, 0.0, 1.0)), (f64::INFINITY, 0.0));
         assert!(contact_time([[0.5, 0.0, 0.0], [0.0; 3]], [[0.0; 3]; 2], 1.0).is_err());
-        assert_eq!(contact_time([[5.0, 0.0, 0.0], [0.0; 3]], [[1e-200, 0.0, 0.0]; 2], 1.0), Ok(f64::INFINITY));
+        assert_eq!(
+            contact_time([[5.0, 0.0, 0.0], [0.0; 3]], [[1e-200, 0.0, 0.0]; 2], 1.0),
+            Ok(f64::INFINITY)
+        );
     }
 }

@@ -141,7 +141,10 @@ impl Pair {
         if numbers.chain([&outcome.energy_loss]).all(|value| value.is_finite()) {
             return Ok(outcome);
         }
-        Err(Error::invalid("velocity1", "expected numbers whose results are within float64; choose other units"))
+        Err(Error::invalid(
+            "velocity1",
+            "expected numbers whose results are within float64; choose other units",
+        ))
     }
     /// The speed with which they part and the energy that is lost, of the speed with which they meet.
     fn parting(&self, rule: Rule, speed: f64) -> Result<(f64, f64)> {

@@ -132,8 +132,8 @@ impl Reaction {
         }
         // Q/E₁, both of order one, and put back by a power of two.
         let (taken, given) = (exponent(self.q_value), exponent(beam_energy));
-        let ratio = DoubleDouble::from(scale(self.q_value, -taken))
-            / DoubleDouble::from(scale(beam_energy, -given));
+        let ratio =
+            DoubleDouble::from(scale(self.q_value, -taken)) / DoubleDouble::from(scale(beam_energy, -given));
         let (high, low) = ratio.parts();
         let ratio = DoubleDouble::new(scale(high, taken - given), scale(low, taken - given));
         // The rounded threshold may be below the exact one.
@@ -142,12 +142,16 @@ impl Reaction {
         let product = |own: f64, other: f64| {
             let total = self.total.high();
             let frame = self.projectile.sqrt() * own.sqrt() / total;
-            let speed = (relative * (other / total)).sqrt();
+            let speed = relative.sqrt() * (other / total).sqrt(); // of both: the product may be below all numbers
             let fast = frame + speed;
             let [projectile, other] = [self.projectile, other].map(DoubleDouble::from);
             let difference = projectile - other - other * ratio;
             let slow = if speed == 0.0 { frame } else { difference.high() / total / fast };
-            Product { circle: Circle { frame, own: speed, slow, fast }, ahead: fast * fast, back: slow * slow }
+            Product {
+                circle: Circle { frame, own: speed, slow, fast },
+                ahead: fast * fast,
+                back: slow * slow,
+            }
         };
         Ok(Encounter { projectile: product(third, fourth), target: product(fourth, third) })
     }

@@ -80,8 +80,8 @@ fn a_small_q_is_next_to_none() {
         let almost = Reaction::new((3.0, 3.0), (3.0, 3.0), q).unwrap().at(1.0).unwrap();
         for psi in [0.0, 1e-200, 1e-8, 1.0, 3.0] {
             let half = HalfAngle::of(psi);
-            let difference = almost.projectile().circle().lab_angle(half)
-                - elastic.projectile().circle().lab_angle(half);
+            let difference =
+                almost.projectile().circle().lab_angle(half) - elastic.projectile().circle().lab_angle(half);
             assert!(difference.abs() <= 2e-16 * psi, "{q} {psi} {difference}");
             let (mine, theirs) = (almost.opening_angle(half), elastic.opening_angle(half));
             // The target of a forward collision is at rest: a Q that is not nothing decides where it goes.
