@@ -231,7 +231,7 @@ X, REST = [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]
         ("coefficient", "from 0 to 1, got 1.5", lambda: c.restitution(1, 1, X, REST, coefficient=1.5, normal=X)),
         ("coefficient", "entry 1 of 2", lambda: c.restitution(1, 1, X, REST, coefficient=[0.5, -1], normal=X)),
         ("q_value", "threshold, -0.25", lambda: c.inelastic(1, 1, X, REST, q_value=-0.26, direction=X)),
-        ("q_value", "threshold, -0.0", lambda: c.inelastic(1, 1, X, X, q_value=-0.26, direction=X)),
+        ("q_value", "threshold, 0.0,", lambda: c.inelastic(1, 1, X, X, q_value=-0.26, direction=X)),
         ("normal", "not known", lambda: c.inelastic(1, 1, X, REST, q_value=1.0, normal=[0, 1, 0])),
         ("q_value", "finite", lambda: c.inelastic(1, 1, X, REST, q_value=np.inf, direction=X)),
         ("impact", "they miss", lambda: c.line_of_centers(X, REST, impact=[0, 1.5, 0], distance=1.0)),

@@ -100,7 +100,7 @@ def energy_kept(
     Examples
     --------
     >>> import numpy as np, visviva as vv
-    >>> vv.scattering.energy_kept(np.pi, mass_ratio=[0.5, 1.0])
+    >>> vv.scattering.energy_kept(np.pi, mass_ratio=[0.5, 1.0]).round(12)
     array([0.11111111, 0.        ])
     """
     values = angles("cm_angle", cm_angle)

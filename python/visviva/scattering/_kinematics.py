@@ -52,8 +52,8 @@ def lab_angle(
     >>> import numpy as np, visviva as vv
     >>> np.degrees(vv.scattering.lab_angle(np.pi / 2, mass_ratio=1.0)).round(12)
     np.float64(45.0)
-    >>> vv.scattering.lab_angle(np.pi, mass_ratio=[0.5, 2.0])
-    array([3.14159265, 0.        ])
+    >>> vv.scattering.lab_angle(np.pi, mass_ratio=[0.5, 2.0]).round(6)
+    array([3.141593, 0.      ])
     """
     values = angles("cm_angle", cm_angle)
     return kinematic("lab_angle", "cm_angle", values, mass_ratio, q_value, beam_energy, products)
@@ -189,8 +189,8 @@ def lab_jacobian(
     Examples
     --------
     >>> import visviva as vv
-    >>> vv.scattering.lab_jacobian(1.2, mass_ratio=1.0)  # 4 cos θ₁
-    np.float64(3.301342459638713)
+    >>> vv.scattering.lab_jacobian(1.2, mass_ratio=1.0).round(12)  # 4 cos θ₁
+    np.float64(3.301342459639)
     """
     values = angles("cm_angle", cm_angle)
     return kinematic("lab_jacobian", "cm_angle", values, mass_ratio, q_value, beam_energy, products)

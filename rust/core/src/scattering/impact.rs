@@ -5,7 +5,9 @@
 //! takes the other's share of the mass of Δ. So momentum is conserved by construction.
 //! Source: Goldstein, Poole & Safko, *Classical Mechanics* (3rd ed.), §3.11; Landau & Lifshitz, *Mechanics*, §16–17.
 
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::power_of_two::{exponent, scale};
+use crate::numerics::real::Real;
 use crate::words::number;
 use crate::{Error, Result};
 
@@ -50,6 +52,24 @@ pub struct Outcome {
     pub impulse: Vector,
     /// Kinetic energy that is gone; negative where some was released.
     pub energy_loss: f64,
+}
+
+/// A speed, by its square in units of 2^(2 unit).
+#[derive(Clone, Copy)]
+struct Speed {
+    squared: DoubleDouble,
+    unit: i32,
+}
+
+impl Speed {
+    fn value(self) -> f64 {
+        scale(self.squared.sqrt().to_f64(), self.unit)
+    }
+}
+
+fn scaled(value: DoubleDouble, exponent: i32) -> DoubleDouble {
+    let (high, low) = value.parts();
+    DoubleDouble::new(scale(high, exponent), scale(low, exponent))
 }
 
 fn dot(a: Vector, b: Vector) -> f64 {
@@ -104,14 +124,13 @@ impl Pair {
     /// `InvalidInput` naming what gives no direction, a coefficient that is none, or a Q-value below the threshold.
     pub fn collide(&self, rule: Rule, geometry: Geometry) -> Result<Outcome> {
         let relative = self.relative();
-        let reduced = reduced_mass(self.masses);
         let no_direction = |name: &str| Error::invalid(name, "expected a vector with a direction, got zero");
         let (change, energy_loss) = match geometry {
-            Geometry::Normal(normal) => {
-                let (normal, _) = normalized(normal).ok_or_else(|| no_direction("normal"))?;
-                let along = dot(relative, normal);
-                let (after, loss) = self.parting(rule, along.abs())?;
-                if along == 0.0 && after > 0.0 {
+            Geometry::Normal(given) => {
+                let (normal, _) = normalized(given).ok_or_else(|| no_direction("normal"))?;
+                let (speed, sign) = self.speed(Some(normal));
+                let (after, loss) = self.parting(rule, speed)?;
+                if sign == 0.0 && after > 0.0 {
                     return Err(Error::invalid(
                         "normal",
                         "expected bodies that approach along it, but they do not move along it at all: which way \
@@ -119,22 +138,22 @@ impl Pair {
                     ));
                 }
                 // They part the other way: a sum, whatever is lost.
-                (normal.map(|part| -(along + after.copysign(along)) * part), loss)
+                (normal.map(|part| -(speed.value() + after).copysign(sign) * part), loss)
             }
             Geometry::Direction(direction) => {
                 let (direction, _) = normalized(direction).ok_or_else(|| no_direction("direction"))?;
-                let speed = normalized(relative).map_or(0.0, |(_, speed)| speed);
-                let (after, loss) = self.parting(rule, speed)?;
+                let (after, loss) = self.parting(rule, self.speed(None).0)?;
                 (core::array::from_fn(|c| after * direction[c] - relative[c]), loss)
             }
         };
         let [first, second] = shares(self.masses);
+        let reduced = reduced_mass(self.masses);
         let outcome = Outcome {
             velocities: [
                 core::array::from_fn(|c| self.velocities[0][c] + second * change[c]),
                 core::array::from_fn(|c| self.velocities[1][c] - first * change[c]),
             ],
-            impulse: change.map(|part| reduced * part),
+            impulse: change.map(|part| reduced * part + 0.0), // -0 is 0
             energy_loss,
         };
         let numbers = outcome.velocities.as_flattened().iter().chain(&outcome.impulse);
@@ -146,36 +165,59 @@ impl Pair {
             "expected numbers whose results are within float64; choose other units",
         ))
     }
+    /// The relative speed, or that along a vector of length 1 and the sense of it.
+    ///
+    /// The square in double-double, of a vector whose length is not trusted either: what a Q-value leaves of it at the
+    /// threshold is a difference.
+    fn speed(&self, normal: Option<Vector>) -> (Speed, f64) {
+        let velocities = self.velocities.as_flattened();
+        let unit = exponent(velocities.iter().fold(0.0_f64, |most, part| most.max(part.abs())));
+        let [first, second] = self.velocities;
+        let relative: [DoubleDouble; 3] =
+            core::array::from_fn(|c| DoubleDouble::sum(scale(first[c], -unit), -scale(second[c], -unit)));
+        let product = |a: [DoubleDouble; 3], b: [DoubleDouble; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+        let Some(normal) = normal.map(|normal| normal.map(DoubleDouble::from)) else {
+            return (Speed { squared: product(relative, relative), unit }, 1.0);
+        };
+        let along = product(relative, normal);
+        (Speed { squared: along * along / product(normal, normal), unit }, along.high())
+    }
     /// The speed with which they part and the energy that is lost, of the speed with which they meet.
-    fn parting(&self, rule: Rule, speed: f64) -> Result<(f64, f64)> {
-        let reduced = reduced_mass(self.masses);
-        let there = 0.5 * reduced * speed * speed;
+    fn parting(&self, rule: Rule, speed: Speed) -> Result<(f64, f64)> {
+        let (small, large) = (self.masses[0].min(self.masses[1]), self.masses[0].max(self.masses[1]));
+        let (light, heavy) = (exponent(small), exponent(large));
+        let [lighter, heavier] = [scale(small, -light), scale(large, -heavy)].map(DoubleDouble::from);
+        let one = DoubleDouble::from(1.0);
+        let reduced = lighter / (one + scaled(lighter / heavier, light - heavy));
+        // ½μu², in units of 2^unit.
+        let (half, unit) = ((reduced * speed.squared).scale(0.5), light + 2 * speed.unit);
+        let there = scale(half.to_f64(), unit);
         match rule {
             Rule::Restitution(part) if (0.0..=1.0).contains(&part) => {
-                Ok((part * speed, there * ((1.0 - part) * (1.0 + part))))
+                Ok((part * speed.value(), there * ((1.0 - part) * (1.0 + part))))
             }
             Rule::Restitution(part) => Err(Error::invalid(
                 "coefficient",
                 format!("expected a number from 0 to 1, got {}", number(part)),
             )),
+            Rule::Released(released) if half.high() == 0.0 && released >= 0.0 => {
+                Ok(((2.0 * released / reduced_mass(self.masses)).sqrt(), 0.0 - released))
+            }
             Rule::Released(released) => {
-                let left = there + released;
-                if left < -FORGIVEN * there || (there == 0.0 && released < 0.0) {
+                let taken = exponent(released);
+                let part = scaled(DoubleDouble::from(scale(released, -taken)) / half, taken - unit);
+                let left = (one + part).to_f64();
+                if half.high() == 0.0 || left < -FORGIVEN {
                     return Err(Error::invalid(
                         "q_value",
                         format!(
-                            "expected at least the threshold, -{}, minus the energy of their relative motion, got {}",
-                            number(there),
+                            "expected at least the threshold, {}, minus the energy of their relative motion, got {}",
+                            number(0.0 - there),
                             number(released)
                         ),
                     ));
                 }
-                let after = if there > 0.0 {
-                    speed * (1.0 + released / there).max(0.0).sqrt()
-                } else {
-                    (2.0 * released / reduced).sqrt()
-                };
-                Ok((after, -released))
+                Ok((speed.value() * left.max(0.0).sqrt(), 0.0 - released))
             }
         }
     }
