@@ -56,7 +56,6 @@ def test_smooth_spheres(m1: float, m2: float, seed: int, coefficient: float) -> 
     for before, now in ((v1, after.velocity1), (v2, after.velocity2)):
         across = (now - before) - along(now - before, n)[:, None] * n
         assert np.abs(across).max() < size
-    assert (c.impulse(m1, m2, v1, v2, normal=n * -3.0, coefficient=coefficient) == after.impulse).mean() > 0.1
     assert c.impulse(m1, m2, v1, v2, normal=n * -3.0, coefficient=coefficient) == pytest.approx(
         after.impulse, rel=1e-13, abs=size * min(m1, m2)
     )
