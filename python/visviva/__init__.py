@@ -80,6 +80,7 @@ _HOME = {
 }
 _ROOMS = (
     "audit",
+    "collisions",
     "datasets",
     "drag",
     "errors",
@@ -151,6 +152,7 @@ __all__ = [
     "UnknownKeyword",
     "WorkPrecision",
     "audit",
+    "collisions",
     "datasets",
     "drag",
     "errors",
@@ -173,6 +175,7 @@ __all__ = [
 if TYPE_CHECKING:
     from visviva import (
         audit,
+        collisions,
         datasets,
         drag,
         errors,

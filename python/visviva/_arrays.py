@@ -14,7 +14,17 @@ from numpy.typing import NDArray
 from visviva._text import article
 from visviva.errors import InvalidInput
 
-__all__ = ["Shape", "Sizes", "float_array", "in_range", "mass_array", "number", "positive", "whole_number"]
+__all__ = [
+    "Shape",
+    "Sizes",
+    "float_array",
+    "in_range",
+    "mass_array",
+    "number",
+    "positive",
+    "positive_array",
+    "whole_number",
+]
 
 Shape: TypeAlias = tuple[int | str | None, ...]
 """Lengths of the axes: a number, a name that stands for one length in all arguments of a call, or None for any."""
@@ -185,6 +195,26 @@ def positive(name: str, value: object, what: str = "number") -> float:
     if not checked > 0.0:
         raise InvalidInput(name, f"expected a positive {what}, got {checked!r}")
     return checked
+
+
+def positive_array(name: str, value: object) -> NDArray[np.float64]:
+    """Check an array of any shape that must be above 0; see `float_array`.
+
+    Examples
+    --------
+    >>> from visviva._arrays import positive_array
+    >>> positive_array("mass_ratio", [1.0, 0.0])
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: mass_ratio: expected a positive number, got 0.0 at mass_ratio[1]
+    """
+    array = float_array(name, value, None)
+    wrong = ~(array > 0.0)
+    if wrong.any():
+        first = array[wrong][0]
+        at = "" if array.ndim == 0 else f" at {_first(name, array, wrong).partition(' ')[0]}"
+        raise InvalidInput(name, f"expected a positive number, got {first}{at}")
+    return array
 
 
 _Values = TypeVar("_Values", float, NDArray[np.float64])

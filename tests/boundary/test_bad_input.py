@@ -163,6 +163,11 @@ mc(tally=iter([]))                                  | tally       | different na
 mc(b_max=1e300)                                     | b_max       | = 0.625, E .* got 1e\+300
 mc(tally={"cm_angle": [1, 0]})                      | cm_angle    | strictly increasing
 vv.scattering.lab_angle(1.0, mass_ratio=0)          | mass_ratio  | positive number, got 0
+vv.scattering.lab_angle(1.0, mass_ratio=0.25, q_value=-1, beam_energy=1.2) | beam_energy | the threshold, 1.25, .*got 1.2
+vv.scattering.kinematic_factor(1.0, mass_ratio=2.0) | lab_angle   | in \[0, 0.5235987755982989\], got 1.0
+vv.collisions.elastic(1, -2, [1, 0, 0], [0, 0, 0], normal=[1, 0, 0]) | mass2 | positive number, got -2.0
+vv.collisions.restitution(1, 2, [1, 0, 0], [0, 0, 0], coefficient=2, normal=[1, 0, 0]) | coefficient | from 0 to 1, got 2.0
+vv.collisions.inelastic(1, 1, [1, 0, 0], [0, 0, 0], q_value=-1, direction=[1, 0, 0]) | q_value | the threshold, -0.25, .*got -1.0
 vv.scattering.rutherford_cross_section(coulomb, energy=1, angle=1, frame="LAB") | frame | did you mean 'lab'
 vv.scattering.rutherford_angle(coulomb, energy=0, impact_parameter=1) | energy | positive number, got 0
 vv.orbits.elements(0.0, [1, 0, 0], [0, 1, 0])       | mu          | mu = 0

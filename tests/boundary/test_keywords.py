@@ -61,6 +61,8 @@ def test_the_walk_finds_the_public_names() -> None:
         "potentials.Yukawa.__init__",
         "potentials.Yukawa.value",
         "scattering.monte_carlo",
+        "scattering.kinematic_factor",
+        "collisions.restitution",
         "orbits.state",
         "problems.kepler",
         "datasets.outer_solar_system",

@@ -42,6 +42,8 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     theta1 = vv.scattering.lab_angle(psi, mass_ratio=m1 / m2)
     theta2 = vv.scattering.recoil_angle(psi)
     share = vv.scattering.energy_transfer(psi, mass_ratio=m1 / m2)
+    close(vv.scattering.opening_angle(psi, mass_ratio=m1 / m2), expected["opening"])
+    close(vv.scattering.energy_kept(psi, mass_ratio=m1 / m2), expected["E1_over_E0"])
     close([theta1, theta2, theta1 + theta2], [expected[k] for k in ("theta1", "theta2", "opening")], scale=1.0)
     close([1.0 - share, share], [expected["E1_over_E0"], expected["E2_over_E0"]])
     u1, u2 = u * np.sqrt(1.0 - share), u * np.sqrt(share * m1 / m2)
@@ -57,6 +59,47 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
             assert bool(np.isfinite(first)) == reached
 
 
+@golden("G8.23-inelastic")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    """In space, and by the angles and energies of the kinematics."""
+    m1, m2, u, q, psi = (given[name] for name in ("m1", "m2", "u", "Q", "psi"))
+    direction = [np.cos(psi), np.sin(psi), 0.0]
+    beam, rest = [u, 0.0, 0.0], [0.0, 0.0, 0.0]
+    after = vv.collisions.inelastic(m1, m2, beam, rest, q_value=q, direction=direction)
+    center, relative = vv.collisions.to_relative(m1, m2, after.velocity1, after.velocity2)
+    close(center, [expected["V"], 0.0, 0.0], scale=1.0)
+    speed = np.linalg.norm(relative)
+    close([speed * m2 / (m1 + m2), speed * m1 / (m1 + m2)], [expected["v1_zm"], expected["v2_zm"]])
+    close([np.linalg.norm(after.velocity1), np.linalg.norm(after.velocity2)], [expected["u1"], expected["u2"]])
+    collision = {"mass_ratio": m1 / m2, "q_value": q, "beam_energy": m1 * u**2 / 2.0}
+    theta1, theta2 = vv.scattering.lab_angle(psi, **collision), vv.scattering.recoil_angle(psi, **collision)
+    close([theta1, theta2], [expected["theta1"], expected["theta2"]])
+    kept, taken = vv.scattering.energy_kept(psi, **collision), vv.scattering.energy_transfer(psi, **collision)
+    close([u * np.sqrt(kept), u * np.sqrt(taken * m1 / m2)], [expected["u1"], expected["u2"]])
+    # All that there is: they stick.
+    stuck = vv.collisions.inelastic(m1, m2, beam, rest, q_value=expected["Q_min"], direction=direction)
+    close(stuck.velocity1, stuck.velocity2)
+    with pytest.raises(vv.InvalidInput, match="threshold"):
+        vv.collisions.inelastic(m1, m2, beam, rest, q_value=1.000001 * expected["Q_min"], direction=direction)
+
+
+@golden("G8.24-restitution")
+@golden("G8.24-head-on")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    beta = given.get("beta", 0.0)
+    normal = [np.cos(beta), -np.sin(beta), 0.0]
+    beam, rest = [given["u"], 0.0, 0.0], [0.0, 0.0, 0.0]
+    after = vv.collisions.restitution(given["m1"], given["m2"], beam, rest, coefficient=given["eps"], normal=normal)
+    if beta:
+        close(after.velocity1[:2], expected["u1"])
+        close(after.velocity2[:2], expected["u2"])
+        close(np.linalg.norm(after.impulse), expected["impulse"])
+        close(np.linalg.norm(after.velocity2 - after.velocity1) / given["u"], expected["literal_ratio"])
+    else:
+        close([after.velocity1[0], after.velocity2[0]], [expected["u1"], expected["u2"]])
+    close(-after.energy_loss, expected["Q"])
+
+
 @golden("G8.46-lab-zm-gamma<1")
 @golden("G8.46-lab-zm-gamma=1")
 @golden("G8.46-lab-zm-gamma>1")
@@ -65,16 +108,19 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     ratio, theta = given["gamma"], given["theta1"]
     first, second = vv.scattering.cm_angle(theta, mass_ratio=ratio)
     close(first, expected["psi_plus"])
+    close(vv.scattering.lab_jacobian(first, mass_ratio=ratio), expected["jacobian_plus"])
     beam = {"potential": vv.potentials.Coulomb(1.0), "energy": 1.0}
     parts = [vv.scattering.rutherford_cross_section(angle=first, **beam) * expected["jacobian_plus"]]
     if "psi_minus" in expected:
         close(second, expected["psi_minus"])
+        close(vv.scattering.lab_jacobian(second, mass_ratio=ratio), expected["jacobian_minus_abs"])
         parts.append(vv.scattering.rutherford_cross_section(angle=second, **beam) * expected["jacobian_minus_abs"])
     else:
         assert np.isnan(second)
     seen = vv.scattering.rutherford_cross_section(angle=theta, frame="lab", mass_ratio=ratio, **beam)
     close(seen, sum(parts))
     if "theta1_max" in expected:
+        close(vv.scattering.greatest_lab_angle(mass_ratio=ratio), expected["theta1_max"])
         edge = expected["theta1_max"]
         assert np.isfinite(vv.scattering.cm_angle(edge * (1.0 - 1e-12), mass_ratio=ratio)).all()
         assert np.isnan(vv.scattering.cm_angle(edge * (1.0 + 1e-12), mass_ratio=ratio)).all()
@@ -112,6 +158,9 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     share = vv.scattering.energy_transfer(np.arccos(nodes), mass_ratio=ratio)
     close([most, 1.0 - most], [expected["max_fraction"], expected["E1_min_fraction"]])
     close(weights @ share / 2.0, expected["mean_fraction"])
+    of = vv.scattering.moderation(mass_ratio=ratio)
+    close([of.mean_transfer, of.least_kept], [expected["mean_fraction"], expected["E1_min_fraction"]])
+    close(of.mean_logarithmic_decrement, expected["mean_log_decrement"])
     close(-weights @ np.log(1.0 - share) / 2.0, expected["mean_log_decrement"])
 
 

@@ -1,8 +1,8 @@
 """Scattering of a beam: closed forms, two-body kinematics, Monte Carlo.
 
 Angles are in radians. ``energy`` is that of relative motion, ½μu²; ``beam_energy`` is the projectile's in the
-laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile over target. The functions of one array
-keep its shape.
+laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile over target. Arguments of the kinematics
+broadcast against each other; the functions of one array keep its shape.
 """
 
 from visviva.scattering._cross_sections import (
@@ -14,7 +14,26 @@ from visviva.scattering._cross_sections import (
     transport_cross_section,
 )
 from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
-from visviva.scattering._kinematics import cm_angle, energy_transfer, lab_angle, recoil_angle
+from visviva.scattering._energies import (
+    Moderation,
+    energy_kept,
+    energy_transfer,
+    greatest_lab_angle,
+    greatest_recoil_angle,
+    kinematic_factor,
+    moderation,
+    threshold_energy,
+    two_branch_energy,
+)
+from visviva.scattering._kinematics import (
+    cm_angle,
+    cm_angle_from_recoil,
+    lab_angle,
+    lab_jacobian,
+    opening_angle,
+    recoil_angle,
+    recoil_jacobian,
+)
 from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._rutherford import (
     rutherford_angle,
@@ -31,31 +50,43 @@ __all__ = [
     "Deflection",
     "DeflectionStatus",
     "Glory",
+    "Moderation",
     "MonteCarlo",
     "Orbit",
     "Rainbow",
     "Tally",
     "capture_cross_section",
     "cm_angle",
+    "cm_angle_from_recoil",
     "collision_integral",
     "cross_section",
     "deflect",
     "deflection_angle",
+    "energy_kept",
     "energy_transfer",
     "glories",
+    "greatest_lab_angle",
+    "greatest_recoil_angle",
     "impact_parameter",
+    "kinematic_factor",
     "lab_angle",
+    "lab_jacobian",
+    "moderation",
     "monte_carlo",
     "nuclear_stopping",
+    "opening_angle",
     "orbiting",
     "rainbows",
     "recoil_angle",
+    "recoil_jacobian",
     "rutherford_angle",
     "rutherford_closest_approach",
     "rutherford_cross_section",
     "rutherford_impact_parameter",
+    "threshold_energy",
     "total_cross_section",
     "transport_cross_section",
+    "two_branch_energy",
 ]
 
 

@@ -65,12 +65,18 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::closed_forms::{rutherford_half_distance, scattering_function, solid_angles};
     #[pymodule_export]
+    use crate::scattering::collisions::{
+        collided, contact_time, line_of_centers, reduced_mass, relative_split,
+    };
+    #[pymodule_export]
     use crate::scattering::cross_sections::{
         beyond_angle, collision_integrals, differential_cross_section, scattering_branches, scattering_range,
         scattering_structure, transport_cross_sections,
     };
     #[pymodule_export]
     use crate::scattering::deflection::deflections;
+    #[pymodule_export]
+    use crate::scattering::kinematics::{kinematics, moderation, special_energy};
     #[pymodule_export]
     use crate::scattering::monte_carlo::monte_carlo;
     #[pymodule_export]

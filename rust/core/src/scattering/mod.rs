@@ -1,9 +1,12 @@
-//! Scattering: two-body kinematics, Rutherford's closed forms, and the Monte Carlo.
+//! Scattering: two-body kinematics and collisions in space, Rutherford's closed forms, and the Monte Carlo.
 
+pub mod contact;
 pub mod cross_sections;
 pub mod deflection;
 pub mod histogram;
+pub mod impact;
 pub mod kinematics;
+pub mod moderation;
 pub mod monte_carlo;
 mod reach;
 pub mod rutherford;

@@ -1,10 +1,10 @@
-//! Two-body kinematics and Rutherford's formulas over arrays.
+//! Rutherford's formulas over arrays.
 
 use crate::arrays::{copied, moved};
 use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
-use visviva_core::scattering::kinematics::{Collision, HalfAngle, solid_angle};
+use visviva_core::scattering::kinematics::{Collision, solid_angle};
 use visviva_core::scattering::rutherford;
 use visviva_core::{Error, Result};
 
@@ -18,7 +18,7 @@ pub(crate) fn rutherford_half_distance(k: f64, energy: f64) -> f64 {
 
 /// A function of one array, by name, with up to two fixed numbers: see `visviva.scattering`.
 ///
-/// `half_distance` is κ = k/2E for Rutherford's formulas, else unused; `mass_ratio` is m₁/m₂.
+/// `half_distance` is κ = k/2E; `mass_ratio` is m₁/m₂.
 #[pyfunction]
 pub(crate) fn scattering_function<'py>(
     py: Python<'py>,
@@ -34,19 +34,7 @@ pub(crate) fn scattering_function<'py>(
 
 fn evaluate(name: &str, half_distance: f64, mass_ratio: f64, values: &[f64]) -> Result<Vec<f64>> {
     let collision = Collision::new(mass_ratio, 1.0)?;
-    let branch = |branch: Option<(f64, f64)>| branch.map_or(f64::NAN, |(angle, _)| angle);
     let function: &dyn Fn(f64) -> f64 = match name {
-        "lab_angle" => &|angle| collision.lab_angle(HalfAngle::of(angle)),
-        "recoil_angle" => &|angle| HalfAngle::of(angle).recoil_angle(),
-        "energy_transfer" => &|angle| collision.transferred(HalfAngle::of(angle)),
-        "cm_angle" => &|angle| {
-            let [first, _] = collision.branches(angle);
-            branch(first)
-        },
-        "second_cm_angle" => &|angle| {
-            let [_, second] = collision.branches(angle);
-            branch(second)
-        },
         "rutherford_deflection" => &|b| rutherford::deflection(half_distance, b),
         "rutherford_closest_approach" => &|b| rutherford::closest_approach(half_distance, b),
         "rutherford_impact_parameter" => &|angle| rutherford::impact_parameter(half_distance, angle),

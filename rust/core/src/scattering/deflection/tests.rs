@@ -1,2 +1,1 @@
 //! Deflections against published digits and closed forms.
-use super::*;

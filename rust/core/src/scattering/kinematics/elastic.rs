@@ -1,49 +1,10 @@
-//! Elastic two-body kinematics: a projectile of mass m₁ on a target of mass m₂ at rest.
-//!
-//! The one idea: a collision is given by sine and cosine of half the scattering angle ψ of the
-//! centre-of-mass frame. Everything else is algebra that keeps relative precision at both ends, head-on
-//! and forward, and both branches of m₁ > m₂ come by themselves.
-//! Source: Goldstein, Poole & Safko, *Classical Mechanics* (3rd ed.), §3.11; Landau & Lifshitz,
-//! *Mechanics*, §17.
+//! Elastic collisions.
 
-use crate::numerics::angles::{atan2, sin_cos};
+use super::{Circle, HalfAngle};
+use crate::numerics::angles::sin_cos;
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::words::number;
 use crate::{Error, Result};
-
-/// Half the scattering angle ψ in [0, π], as its sine and cosine up to a common factor.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct HalfAngle {
-    sine: f64,
-    cosine: f64,
-}
-
-impl HalfAngle {
-    /// Of the scattering angle ψ.
-    pub fn of(cm_angle: f64) -> Self {
-        let (sine, cosine) = sin_cos(0.5 * cm_angle);
-        Self { sine, cosine }
-    }
-    /// Of cot(ψ/2).
-    pub fn from_cotangent(cotangent: f64) -> Self {
-        Self { sine: 1.0, cosine: cotangent }
-    }
-    /// cot(ψ/2).
-    pub fn cotangent(self) -> f64 {
-        self.cosine / self.sine
-    }
-    /// The scattering angle ψ.
-    pub fn cm_angle(self) -> f64 {
-        2.0 * atan2(self.sine, self.cosine)
-    }
-    /// The laboratory angle of the target, (π - ψ)/2, in [0, π/2].
-    pub fn recoil_angle(self) -> f64 {
-        atan2(self.cosine, self.sine)
-    }
-    fn squares(self) -> (f64, f64) {
-        (self.sine * self.sine, self.cosine * self.cosine)
-    }
-}
 
 /// The masses of projectile and target, scaled by a power of two so that the larger is in [1, 2).
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -91,33 +52,43 @@ impl Collision {
     fn asymmetry(self) -> f64 {
         (self.projectile - self.target) / (self.projectile + self.target)
     }
+    /// The velocities of the projectile, in units of u/(m₁+m₂): V is m₁ and its speed in the frame m₂.
+    pub fn circle(self) -> Circle {
+        let Self { projectile, target } = self;
+        Circle { frame: projectile, own: target, slow: projectile - target, fast: projectile + target }
+    }
+    /// The velocities of the target, as fast in the frame as the frame itself.
+    pub fn recoil_circle(self) -> Circle {
+        Circle { frame: 1.0, own: 1.0, slow: 0.0, fast: 2.0 }
+    }
     /// The laboratory angle of the projectile, in [0, π].
     ///
     /// From tan θ₁ = sin ψ/(m₁/m₂ + cos ψ) = 2 m₂ sc/((m₁+m₂) c² + (m₁-m₂) s²).
     pub fn lab_angle(self, half: HalfAngle) -> f64 {
-        if self.projectile == self.target {
-            return atan2(half.sine, half.cosine); // ψ/2, where the general form is 0/0 head-on
-        }
-        let (square, complement) = half.squares();
-        let sum = self.projectile + self.target;
-        let forward = sum * complement + (self.projectile - self.target) * square;
-        atan2(2.0 * self.target * (half.sine * half.cosine), forward)
+        self.circle().lab_angle(half)
     }
     /// cot(ψ/2) at the greatest laboratory angle, if that is not head-on (m₁ > m₂).
     pub fn turning_point(self) -> Option<f64> {
         Some(self.asymmetry()).filter(|excess| *excess > 0.0).map(f64::sqrt)
     }
+    /// The part of the beam energy that a target hit head-on takes: 4 m₁m₂/(m₁+m₂)².
+    pub fn greatest_transfer(self) -> f64 {
+        let sum = self.projectile + self.target;
+        4.0 * (self.projectile / sum) * (self.target / sum)
+    }
     /// The part of the beam energy that goes to the target: 4 m₁m₂/(m₁+m₂)² sin²(ψ/2).
     pub fn transferred(self, half: HalfAngle) -> f64 {
         let (square, complement) = half.squares();
-        let sum = self.projectile + self.target;
-        4.0 * (self.projectile / sum) * (self.target / sum) * (square / (square + complement))
+        self.greatest_transfer() * (square / (square + complement))
+    }
+    /// The part of the beam energy that the projectile keeps head-on, ((m₁-m₂)/(m₁+m₂))².
+    pub fn kept_head_on(self) -> f64 {
+        self.asymmetry() * self.asymmetry()
     }
     /// The part of the beam energy that the projectile keeps, without subtracting from 1.
     pub fn kept(self, half: HalfAngle) -> f64 {
         let (square, complement) = half.squares();
-        let head_on = self.asymmetry() * self.asymmetry();
-        (head_on * square + complement) / (square + complement)
+        (self.kept_head_on() * square + complement) / (square + complement)
     }
     /// The centre-of-mass angles that lead to a laboratory angle in [0, π], each with the jacobian
     /// |dΩ/dΩ_lab|; the second exists for m₁ > m₂ only.
@@ -125,43 +96,12 @@ impl Collision {
     /// ψ± = θ₁ ± asin(γ sin θ₁) (+ π for the second), γ = m₁/m₂; jacobian (γ cos θ₁ ± S)²/S with
     /// S = √(1 - γ² sin² θ₁). Both are infinite at the greatest angle; no branch beyond it.
     pub fn branches(self, lab_angle: f64) -> [Option<(f64, f64)>; 2] {
-        let (sine, cosine) = sin_cos(lab_angle);
-        let ratio = self.projectile / self.target;
-        let (reach, along) = (ratio * sine, ratio * cosine);
-        if reach > 1.0 || (ratio > 1.0 && cosine < 0.0) {
-            return [None, None];
-        }
-        // γ² - 1 = (γ - 1)(γ + 1) = (γ cos θ₁)² - S², from the exact difference of the masses.
-        let (difference, sum) = ((self.projectile - self.target) / self.target, ratio + 1.0);
-        // S by the form whose terms cancel least.
-        let root = if ratio == 1.0 {
-            cosine.abs()
-        } else if along.abs() < 1.0 {
-            (along * along - difference * sum).max(0.0).sqrt()
-        } else {
-            ((1.0 - reach) * (1.0 + reach)).sqrt()
-        };
-        let jacobian = |projected: f64| projected * projected / root;
-        // The direction in the centre-of-mass frame has components (λ cos θ₁ - γ, λ sin θ₁), where
-        // λ = γ cos θ₁ ± S is the laboratory speed in units of the frame's own.
-        let angle = |speed: f64, along: f64| atan2(speed * sine, along);
-        // λ₊λ₋ = γ² - 1: the one that would cancel comes from the other.
-        let fast = if along < 0.0 { -difference * (sum / (root - along)) } else { along + root };
-        let first = (fast >= 0.0 && !(ratio == 1.0 && cosine < 0.0))
-            .then(|| (angle(fast, cosine * root - reach * sine), jacobian(fast)));
-        let slow = difference * (sum / fast);
-        let second = (ratio > 1.0).then(|| (angle(slow, -cosine * root - reach * sine), jacobian(slow)));
-        [first, second]
+        self.circle().branches(lab_angle)
     }
     /// The jacobian |dΩ/dΩ_recoil| = 4 cos θ₂.
     pub fn recoil_jacobian(recoil_angle: f64) -> f64 {
         4.0 * sin_cos(recoil_angle).1
     }
-}
-
-/// The solid angle between the cones of two angles from an axis, without subtracting cosines.
-pub fn solid_angle(from: f64, to: f64) -> f64 {
-    4.0 * core::f64::consts::PI * sin_cos(0.5 * (from + to)).0 * sin_cos(0.5 * (to - from)).0
 }
 
 #[cfg(test)]
