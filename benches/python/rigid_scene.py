@@ -1,8 +1,8 @@
 """Rigid bodies in a scene, stepped: what a step costs, alone and by the hundred thousand, and what 10⁷ of them leave.
 
 Costs of steps are differences between a long and a short run, so that what every run takes once is not counted; against
-other codes whole runs are timed, ours with the least work that leaves no larger an error than theirs; bars are of what a
-run does that names no method. References have 34 digits (see `rigid.py` and `tests/rigid`).
+other codes whole runs are timed, ours with the least work that leaves no larger an error than theirs; bars are of what
+a run does that names no method. References have 34 digits (see `rigid.py` and `tests/rigid`).
 """
 
 from __future__ import annotations
