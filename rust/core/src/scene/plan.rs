@@ -15,6 +15,7 @@ mod units;
 pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
+pub(in crate::scene) use turning::with_method;
 pub use turning::{Turning, steps_bodies};
 
 use super::Scene;
@@ -134,7 +135,7 @@ impl Plan {
     pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
         ticker.tick()?;
-        let with_step = turning::with_method(scene, request);
+        let with_step = with_method(scene, request);
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);

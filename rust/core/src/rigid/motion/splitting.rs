@@ -144,6 +144,27 @@ impl Stepper<Lanes> for BodySplitting {
         Ok(1)
     }
 
+    fn memory(&mut self, _: u64, each: &mut dyn FnMut(&mut [Lanes])) {
+        self.fresh = self.moves.last().is_some_and(|last| last.kick.is_some() && last.drift.is_none());
+        if !self.fresh {
+            return;
+        }
+        // Torques where a block has the numbers of bodies, if there are any.
+        let Pulls { arrangement, a, torque, .. } = &mut self.pulls;
+        let mut block = a.clone();
+        block.resize(arrangement.at(arrangement.bodies.len()), Lanes::zero());
+        let bodies = block.len() - a.len();
+        for (to, from) in block[a.len()..].chunks_mut(4).zip(torque.chunks(3)) {
+            to[..3].copy_from_slice(from);
+        }
+        each(&mut block);
+        let (points, turning) = block.split_at(block.len() - bodies);
+        a.copy_from_slice(points);
+        for (from, to) in turning.chunks(4).zip(torque.chunks_mut(3)) {
+            to.copy_from_slice(&from[..3]);
+        }
+    }
+
     fn settle(&mut self, state: &mut State<Lanes>) {
         settle_held(&self.pulls.arrangement, state);
     }

@@ -6,7 +6,7 @@ use super::Plan;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::{Method, Scheme};
-use crate::registry::{self, BODY_METHODS, METHODS};
+use crate::registry;
 use crate::rigid::motion::bodies::RigidBodies;
 use crate::rigid::motion::flows::Free;
 use crate::rigid::motion::loads::Load;
@@ -72,7 +72,7 @@ const fn best(velocities: bool) -> &'static str {
 }
 
 /// The request with the method that bodies that turn are stepped with, where it names a step and leaves the method open.
-pub(super) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
+pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
     let bodies = scene.rigid.as_ref()?;
     let _ = request.dt.filter(|_| request.method == "auto")?;
     let forces = super::own::acting(scene, &scene.forces);
@@ -95,8 +95,9 @@ pub(super) fn check(
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let looking = looking(bodies, forces);
     if automatic || !serves(method, looking.is_some()) {
-        let all = METHODS.iter().copied().chain(BODY_METHODS.iter().map(|(method, _)| *method));
-        let names = all.filter(|method| serves(method, looking.is_some())).map(|method| method.name);
+        let names = registry::methods_for(true)
+            .filter(|method| serves(method, looking.is_some()))
+            .map(|method| method.name);
         let best = best(looking.is_some());
         let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
         let message = format!(

@@ -4,7 +4,7 @@ use super::super::Scene;
 use super::super::collisions;
 use super::super::continuation::Continuation;
 use super::super::integrate::Report;
-use super::super::plan::Plan;
+use super::super::plan::{Plan, with_method};
 use super::super::request::Request;
 use super::patterns::{Pattern, patterns};
 use super::{Kept, Part};
@@ -49,6 +49,8 @@ pub(super) struct Begun {
 impl Begun {
     /// Plans a run.
     pub(super) fn of(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
+        let named = with_method(scene, request);
+        let request = named.as_ref().unwrap_or(request);
         if let (Some(start), Some(from)) = (Continuation::start(scene, request), &scene.continuation) {
             // What is wrong with the request is told of the scene as it is.
             let _ = request.check(scene)?;
