@@ -49,6 +49,8 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     if plan.closed_form:
         result, seconds = stretch(tried, 1.0)
         return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
+    if asked["method"] == "auto" and asked["dt"] is None and plan.method != "dop853":
+        return None  # parts of the run, of which a stretch has as many: its steps tell nothing of the whole
     if plan.evaluations_per_step * plan.pairs_per_evaluation > _PAIRS or not bodies or not copies:
         return None
     span = abs(float(asked["times"][-1]) - asked["t0"])

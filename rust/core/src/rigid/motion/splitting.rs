@@ -26,16 +26,19 @@ pub(super) struct Pulls {
     pub(super) a: Vec<Lanes>,
     /// Empty where there are none.
     pub(super) torque: Vec<Lanes>,
+    /// The time at which that of nodes begins.
+    since: Lanes,
 }
 
 impl Pulls {
-    pub(super) fn new(arrangement: Arrangement, loads: Loads) -> Self {
+    pub(super) fn new(arrangement: Arrangement, loads: Loads, since: f64) -> Self {
         let torques = if loads.is_empty() { 0 } else { 3 * arrangement.bodies.len() };
         let a = vec![Lanes::zero(); arrangement.points()];
-        Self { a, torque: vec![Lanes::zero(); torques], arrangement, loads }
+        let torque = vec![Lanes::zero(); torques];
+        Self { a, torque, arrangement, loads, since: Lanes::splat(since) }
     }
 
-    /// Evaluates them at a time since the start.
+    /// Evaluates them at a time.
     pub(super) fn evaluate(
         &mut self,
         time: &Lanes,
@@ -43,7 +46,7 @@ impl Pulls {
         system: &mut dyn System<Lanes>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let points = self.arrangement.points();
+        let (time, points) = (&(self.since + *time), self.arrangement.points());
         system.acceleration(time, &state.q()[..points], &state.v()[..points], &mut self.a, ticker)?;
         if !self.loads.is_empty() {
             self.torque.fill(Lanes::zero());
@@ -78,13 +81,13 @@ pub struct BodySplitting {
 
 impl BodySplitting {
     /// The method `table` with step `h`.
-    pub fn new(table: &'static Splitting, h: f64, (arrangement, loads): (Arrangement, Loads)) -> Self {
+    pub(super) fn new(table: &'static Splitting, h: f64, pulls: Pulls) -> Self {
         let mut step = Self {
             table,
             h,
             moves: Vec::new(),
             nodes: Nodes::always(h),
-            pulls: Pulls::new(arrangement, loads),
+            pulls,
             fresh: false,
             room: Room::default(),
         };
