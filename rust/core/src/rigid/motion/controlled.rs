@@ -7,6 +7,7 @@
 use super::acting::Loads;
 use super::bodies::{Arrangement, LaneBody};
 use super::uncontrolled;
+use super::vectors::turned_back;
 use crate::error::Result;
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
@@ -134,8 +135,9 @@ impl Controlled {
     fn turn(&self, state: &State<Lanes>, past: f64, lane: usize) -> f64 {
         let of = |(body, of): (usize, &LaneBody)| {
             let at = self.arrangement.at(body);
-            let momentum = length([0, 1, 2].map(|c| state.v()[at + c].0[lane]));
-            of.inverse.iter().map(|inverse| (momentum * inverse.0[lane] * past).abs()).fold(0.0, Real::max)
+            let q = core::array::from_fn(|c| state.q()[at + c].0[lane]);
+            let momentum = turned_back(q, [0, 1, 2].map(|c| state.v()[at + c].0[lane]));
+            length([0, 1, 2].map(|c| of.inverse[c].0[lane] * momentum[c] * past))
         };
         self.arrangement.bodies.iter().enumerate().map(of).fold(0.0, Real::max)
     }
