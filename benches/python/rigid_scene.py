@@ -1,24 +1,27 @@
 """Rigid bodies in a scene, stepped: what a step costs, alone and by the hundred thousand, and what 10⁷ of them leave.
 
 Costs of steps are differences between a long and a short run, so that what every run takes once is not counted; against
-SciPy and MuJoCo whole runs are timed. References have 34 digits (see `rigid.py` and `tests/rigid`).
+other codes whole runs are timed, ours with the least work that leaves no larger an error than theirs; bars are of what
+a run does that names no method. References have 34 digits (see `rigid.py` and `tests/rigid`).
 """
 
 from __future__ import annotations
 
-from importlib.util import find_spec
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from _harness import Row, at_most, faster, minima, report
+from _rigid_peers import END, MOMENTS, MOMENTUM, TOP_END, TOP_GRAVITY, TOP_MASS, TOP_SPIN, free_bodies, tops
 
 import visviva as vv
-from rigid import MOMENTS, MOMENTUM, mujoco_attitude, off, scipy_attitude
+from rigid import off
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
 SPIN = MOMENTUM / MOMENTS
+BARS = {"SciPy DOP853 1e-09": 50.0, "SciPy DOP853 1e-12": 200.0}
 TOP_CENTER = np.array([-0.1504168227456418, -0.7241655916368957, -0.6730222695604441])
 COPIES, STEPS = 100_000, 1000
 LONG = 10_000_000
@@ -31,10 +34,8 @@ def free() -> vv.Scene:
 def top() -> vv.Scene:
     """Of Brüls, Cardona & Arnold (2012)."""
     inertia = np.diag([0.234375, 0.46875, 0.234375])
-    body = vv.RigidBody(
-        15.0, inertia=inertia, position=[0, 1, 0], angular_velocity=[0.0, 150.0, -4.61538], pivot=[0, -1, 0]
-    )
-    return vv.Scene(body, vv.UniformField([0.0, 0.0, -9.81]))
+    body = vv.RigidBody(TOP_MASS, inertia=inertia, position=[0, 1, 0], angular_velocity=TOP_SPIN, pivot=[0, -1, 0])
+    return vv.Scene(body, vv.UniformField([0.0, 0.0, -TOP_GRAVITY]))
 
 
 def rows() -> Iterator[Row]:
@@ -65,34 +66,71 @@ def steps() -> Iterator[Row]:
             yield Row(what, f"{rate:.2f}", note, "", "≥ 2.5" if barred else "", rate >= 2.5 if barred else None)
 
 
+@dataclass(frozen=True)
+class Run:
+    """How a scene is run, and what that leaves and takes."""
+
+    name: str
+    how: dict[str, Any]
+    error: float
+    seconds: float
+
+
+def ladder(
+    scene: vv.Scene, t: float, methods: tuple[str, ...], error: Callable[[Any], float], steps: tuple[int, int]
+) -> list[Run]:
+    """Runs by methods in ever more steps."""
+    found = []
+    for method in methods:
+        for count in sorted({round(n) for n in np.geomspace(*steps, 40)}):
+            how = {"method": method, "dt": t / count}
+            (seconds,) = minima(lambda how=how: scene.run(t=t, **how), repeats=3)
+            found.append(Run(f"{count} steps of {method}", how, error(scene.run(t=t, **how)), seconds))
+    return found
+
+
+def at_equal_error(
+    what: str, scene: vv.Scene, t: float, runs: list[Run], peer: tuple[Callable[[], object], float], bar: float | None
+) -> Iterator[Row]:
+    """The peer beside the least work that leaves no larger an error; nothing where none of these runs does."""
+    theirs, largest = peer
+    good = [run for run in runs if run.error <= largest]
+    if good:
+        run = min(good, key=lambda run: run.seconds)
+        ours, seconds = minima(lambda: scene.run(t=t, **run.how), theirs)
+        sides = (f"{ours * 1e6:.0f} µs, error {run.error:.0e}", f"{seconds * 1e3:.2f} ms, error {largest:.0e}")
+        yield faster(f"{what}: {run.name}", *sides, seconds / ours, bar)
+
+
 def against_others() -> Iterator[Row]:
     scene = free()
-    for rtol, bar, how in (
-        (1e-9, 50.0, {"method": "moser_veselov10", "dt": 0.1}),
-        (1e-12, 200.0, {"method": "moser_veselov10", "dt": 0.05}),
-        (1e-12, 200.0, {}),
-    ):
-        peer = scipy_attitude(rtol)
-        ours, theirs = minima(lambda how=how: scene.run(t=100.0, **how), peer)
-        here, there = off(scene.run(t=100.0, **how).orientation[-1, 0]), off(peer())
-        name = how.get("method", "closed form")
-        sides = (f"{ours * 1e6:.0f} µs, error {here:.0e}", f"{theirs * 1e3:.1f} ms, error {there:.0e}")
-        yield faster(f"free body to t = 100 by {name}, against SciPy DOP853 {rtol:g}", *sides, theirs / ours, bar)
-    if find_spec("mujoco"):
-        peer = mujoco_attitude(1e-3)
-        ours, theirs = minima(lambda: scene.run(t=100.0, method="moser_veselov10", dt=0.05), peer)
-        sides = (f"{ours * 1e6:.0f} µs", f"{theirs * 1e3:.1f} ms, error {off(peer()):.0e}")
-        yield faster("the same, against MuJoCo RK4, h = 1e-3", *sides, theirs / ours, None)
+
+    def error(out: Any) -> float:
+        return off(out.orientation[-1, 0])
+
+    stepped = ladder(scene, END, ("moser_veselov8", "moser_veselov10"), error, (200, 8000))
+    exact = [Run("closed form", {}, error(scene.run(t=END)), 0.0)]
+    for name, peer in free_bodies():
+        what = f"free body to t = {END:g}, against {name}"
+        for runs, bar in ((stepped, None), (exact, BARS.get(name))):
+            yield from at_equal_error(what, scene, END, runs, (peer, off(peer())), bar)
 
 
 def heavy_top() -> Iterator[Row]:
     scene, how = top(), {"method": "kahan_li8", "dt": 1 / 32}
+
+    def error(center: np.ndarray) -> float:
+        return float(np.abs(center - TOP_CENTER).max())
+
     seconds = 64 * per_step(scene, 64, **how)
-    error = np.abs(scene.run(t=2.0, **how).position[-1, 0] - TOP_CENTER).max()
-    note = f"center {error:.0e} off; MuJoCo RK4 0.95 s for 3e-12"
+    note = f"center {error(scene.run(t=TOP_END, **how).position[-1, 0]):.0e} off"
     yield at_most(
         "Brüls–Cardona top, 2 s in 64 steps of kahan_li8, inside one run", seconds * 1e6, 150.0, " µs", note, ".0f"
     )
+    runs = ladder(scene, TOP_END, ("kahan_li8",), lambda out: error(out.position[-1, 0]), (20, 400))
+    for name, peer in tops():
+        theirs = error(vv.rigid.rotate(peer(), np.array([0.0, 1.0, 0.0])))
+        yield from at_equal_error(f"the top, a whole run, against {name}", scene, TOP_END, runs, (peer, theirs), None)
 
 
 def many() -> Iterator[Row]:

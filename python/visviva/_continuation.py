@@ -8,16 +8,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeVar
 
+import numpy as np
+
 if TYPE_CHECKING:
     from visviva import _core
     from visviva.runnable import Runnable
 
-__all__ = ["SHARED", "attached", "left_behind", "of_copies"]
+__all__ = ["ARRAYS", "SHARED", "attached", "left_behind", "of_copies", "turning"]
 
 _Start = TypeVar("_Start", bound="Runnable[Any]")
 
 # What all copies have in common, and what a run says of it.
 SHARED = ("form", "method", "dt", "t0")
+# What each copy has of its own.
+ARRAYS = ("position", "velocity", "orientation", "angular_velocity", "held")
 
 
 def left_behind(start: _core._Scene, result: dict[str, Any]) -> _core._Continuation | None:
@@ -32,26 +36,29 @@ def left_behind(start: _core._Scene, result: dict[str, Any]) -> _core._Continuat
     before = start["continuation"] if shared["goes_on"] else None
     begun: Any = start if before is None else before
     position, velocity = (last.get(f"begun_{name}", begun[name]) for name in ("position", "velocity"))
-    return {
-        "form": shared["form"],
-        "method": shared["method"],
-        "dt": shared["dt"],
-        "t0": shared["t0"],
-        "node": int(nodes[0]),
-        "position": position,
-        "velocity": velocity,
-        "held": last["held"],
-    }
+    turned = turning(begun if before is not None else start["rigid"], len(position))
+    kept: Any = {name: shared[name] for name in SHARED} | {"node": int(nodes[0]), "position": position}
+    kept |= {"velocity": velocity, **turned, "held": last["held"]}
+    continuation: _core._Continuation = kept
+    return continuation
+
+
+def turning(begun: Any, copies: int) -> dict[str, Any]:
+    """How the rigid bodies of so many copies were turned and turning, of which there may be none."""
+    widths = {"orientation": 4, "angular_velocity": 3}
+    return {name: np.zeros((copies, 0, width)) if begun is None else begun[name] for name, width in widths.items()}
 
 
 def of_copies(continuation: _core._Continuation | None, rows: slice) -> _core._Continuation | None:
     """That of some of the copies."""
     if continuation is None:
         return None
-    chosen = continuation.copy()
-    chosen["position"], chosen["velocity"] = continuation["position"][rows], continuation["velocity"][rows]
-    chosen["held"] = continuation["held"][rows]
-    return chosen
+    arrays: Any = continuation
+    chosen: Any = continuation.copy()
+    for name in ARRAYS:
+        chosen[name] = arrays[name][rows]
+    kept: _core._Continuation = chosen
+    return kept
 
 
 def attached(scene: _Start, continuation: _core._Continuation | None) -> _Start:

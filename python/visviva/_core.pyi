@@ -43,6 +43,8 @@ class _Continuation(TypedDict):
     node: int
     position: NDArray[np.float64]
     velocity: NDArray[np.float64]
+    orientation: NDArray[np.float64]
+    angular_velocity: NDArray[np.float64]
     held: NDArray[np.float64]
 
 class _Request(_Scene):

@@ -94,6 +94,10 @@ _START: dict[str, tuple[str, tuple[str | int, ...]]] = {
     "final/start_position": ("f8", ("B", "N", 3)),
     "final/start_velocity": ("f8", ("B", "N", 3)),
 }
+_START_TURNED: dict[str, tuple[str, tuple[str | int, ...]]] = {
+    "final/start_orientation": ("f8", ("B", "start R", 4)),
+    "final/start_angular_velocity": ("f8", ("B", "start R", 3)),
+}
 _SHARED: dict[str, type | tuple[type, ...]] = {"form": int, "method": str, "dt": (int, float), "t0": (int, float)}
 # The keys that files of version 1 have always had; those of a later version are not asked for.
 _HEADER: dict[str, type | tuple[type, ...]] = {
@@ -231,6 +235,8 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
             raise Damaged("the file has a node before the first")
     if "start_continuation" in header:
         _check_all(_START, arrays, lengths)
+        if _START_TURNED.keys() & arrays.keys():
+            _check_all(_START_TURNED, arrays, lengths)
         if header["start_continuation"]["node"] < 0:
             raise Damaged("the file has a node before the first")
     if any(name.startswith("events/") for name in arrays):

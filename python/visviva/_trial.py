@@ -36,18 +36,21 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     numbers = sum(3 * bodies if name in ("position", "velocity") else _NUMBERS.get(name, 3) for name in asked["record"])
     memory = 8 * copies * rows * numbers
     few = tuple(asked[name][:_COPIES] for name in ("mass", "position", "velocity"))
-    own = asked["own_forces"]
+    own, rigid = asked["own_forces"], asked["rigid"]
     tried = cast(
         "_core._Request",
         dict(asked)
         | dict(zip(("mass", "position", "velocity"), few, strict=True))
         | {"events": [], "record": [], "end_only": True, "max_steps": None, "continuation": None}
-        | {"own_forces": None if own is None else (own[0], own[1][:_COPIES])},
+        | {"own_forces": None if own is None else (own[0], own[1][:_COPIES])}
+        | {"rigid": None if rigid is None else {name: _first(value) for name, value in rigid.items()}},
     )
     scale = copies / max(1, len(few[0]))
     if plan.closed_form:
         result, seconds = stretch(tried, 1.0)
         return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
+    if asked["method"] == "auto" and asked["dt"] is None and plan.method != "dop853":
+        return None  # parts of the run, of which a stretch has as many: its steps tell nothing of the whole
     if plan.evaluations_per_step * plan.pairs_per_evaluation > _PAIRS or not bodies or not copies:
         return None
     span = abs(float(asked["times"][-1]) - asked["t0"])
@@ -72,6 +75,11 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         steps, exact = copies * math.floor(span / abs(step) * (1.0 + 1e-12)), True
         ratio = steps / stats["steps"] if stats["steps"] else scale
     return Cost(steps, round(stats["evaluations"] * ratio), memory, seconds * ratio, exact=exact)
+
+
+def _first(value: object) -> object:
+    """What the few copies have of an array of all."""
+    return value[:_COPIES] if isinstance(value, np.ndarray) else value
 
 
 def stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dict[str, Any], float]:

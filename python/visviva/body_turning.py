@@ -8,7 +8,8 @@ import numpy as np
 
 from visviva._keywords import frozen, known_keywords
 from visviva.errors import InvalidInput
-from visviva.rigid._orientation import quaternion_product, rotate, rotate_back
+from visviva.rigid._orientation import quaternion_product, rotate_back
+from visviva.rigid._rotation import Rotation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -21,7 +22,7 @@ __all__ = ["BodyTurning"]
 
 @known_keywords
 @frozen
-class BodyTurning:
+class BodyTurning(Rotation):
     """How a rigid body turns along a run. Made by ``out["name"].turning``.
 
     Attributes
@@ -51,12 +52,13 @@ class BodyTurning:
     (True, 'polhode')
     """
 
-    __slots__ = ("_motion", "angular_velocity", "moments", "orientation", "t")
+    __slots__ = ("_motion", "angular_velocity", "body_angular_momentum", "moments", "orientation", "t")
 
     t: NDArray[np.float64]
     moments: NDArray[np.float64]
     orientation: NDArray[np.float64]
     angular_velocity: NDArray[np.float64]
+    body_angular_momentum: NDArray[np.float64]
     _motion: BodyMotion
 
     def __init__(self, motion: BodyMotion) -> None:
@@ -68,12 +70,14 @@ class BodyTurning:
         if rigid is None or place < 0:
             raise InvalidInput("body", f"expected a rigid body, but {motion.name} is a particle")
         axes = rigid.axes[place]
+        spin = rotate_back(axes, run.angular_velocity[:, place])
         values = {
             "_motion": motion,
             "t": motion.t,
             "moments": rigid.principal_moments[place],
             "orientation": quaternion_product(run.orientation[:, place], axes),
-            "angular_velocity": rotate_back(axes, run.angular_velocity[:, place]),
+            "angular_velocity": spin,
+            "body_angular_momentum": rigid.principal_moments[place] * spin,
         }
         for name, value in values.items():
             if isinstance(value, np.ndarray):
@@ -85,28 +89,6 @@ class BodyTurning:
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._motion,)
-
-    @property
-    def body_angular_momentum(self) -> NDArray[np.float64]:
-        """Along the principal axes, (T, 3)."""
-        return self.moments * self.angular_velocity
-
-    @property
-    def angular_momentum(self) -> NDArray[np.float64]:
-        """In space, (T, 3)."""
-        return rotate(self.orientation, self.body_angular_momentum)
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """½ ω·I ω, (T,)."""
-        value: NDArray[np.float64] = 0.5 * (self.body_angular_momentum * self.angular_velocity).sum(axis=-1)
-        return value
-
-    @property
-    def casimir(self) -> NDArray[np.float64]:
-        """|L|², (T,)."""
-        value: NDArray[np.float64] = (self.body_angular_momentum**2).sum(axis=-1)
-        return value
 
     def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
         """Draw how the body turns, as `visviva.rigid.FreeRotation.plot` does.

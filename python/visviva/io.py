@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 import visviva
-from visviva._continuation import SHARED, attached
+from visviva._continuation import ARRAYS, SHARED, attached, turning
 from visviva._keywords import known_keywords
 from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva._turning import restored, saved
@@ -169,7 +169,10 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
         result["collisions"] = {}
     before: Any = header.get("start_continuation")
     if before is not None:
-        before |= {name: arrays.pop(f"final/start_{name}") for name in ("position", "velocity", "held")}
+        # Files of before rigid bodies went on have none.
+        before |= turning(None, len(arrays["mass"]))
+        there = [name for name in ARRAYS if f"final/start_{name}" in arrays]
+        before |= {name: arrays.pop(f"final/start_{name}") for name in there}
     for name, array in arrays.items():
         group, _, member = name.partition("/")
         if member and group != "rigid":

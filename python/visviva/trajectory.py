@@ -142,8 +142,7 @@ class Trajectory(Recorded):
         After fixed steps that ended on a node it keeps, out of sight, what the method holds there: the digits beyond
         float64 and the past of a multistep method. Run on with the same method and `dt`, it goes on to the bits of one
         long run; ``plan`` says so. Anything made from it (``rescaled``, ``with_state``, a `Scene` of its parts) is a
-        new scene, and so is it to any other method or step, and with rigid bodies that torques turn. More than 2^25
-        numbers, of huge ensembles, are not kept.
+        new scene, and so is it to any other method or step. More than 2^25 numbers, of huge ensembles, are not kept.
 
         Examples
         --------

@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva.rigid._arguments import rows
-from visviva.rigid._orientation import rotate
+from visviva.rigid._rotation import Rotation
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class FreeRotation:
+class FreeRotation(Rotation):
     """The states of a free rotation; what :func:`free_rotation` returns.
 
     Of a single time, arrays have no axis over the times. All are read-only.
@@ -44,23 +44,6 @@ class FreeRotation:
     angular_velocity: NDArray[np.float64]
     orientation: NDArray[np.float64]
     body_angular_momentum: NDArray[np.float64]
-
-    @property
-    def angular_momentum(self) -> NDArray[np.float64]:
-        """The angular momentum in space, (T, 3): at every time the same, but for rounding."""
-        return rotate(self.orientation, self.body_angular_momentum)
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """The kinetic energy, (T,): at every time the same, but for rounding."""
-        value: NDArray[np.float64] = 0.5 * (self.body_angular_momentum * self.angular_velocity).sum(axis=-1)
-        return value
-
-    @property
-    def casimir(self) -> NDArray[np.float64]:
-        """|L|² of the angular momentum in the body, (T,), a Casimir function: the same whatever the moments are."""
-        value: NDArray[np.float64] = (self.body_angular_momentum**2).sum(axis=-1)
-        return value
 
     def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
         """Draw the motion, as a matplotlib Figure.

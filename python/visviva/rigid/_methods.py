@@ -17,6 +17,10 @@ def methods() -> list[Method]:
     ``moser_veselov`` methods are for rigid bodies alone: in their drifts bodies turn by a discrete motion that keeps
     energy and angular momentum. Their order is that of a body that nothing turns; with torques it is 2.
 
+    Without a method and a step, a run is cut into 64 equal parts (the steps that it tells), each of which is done by
+    ``kahan_li8`` (``rk4`` where something looks at velocities) in ever shorter steps until it stays the same to `rtol`,
+    or to what rounding leaves; a copy that comes to no agreement ends as not finite. Events want a step.
+
     Returns
     -------
     list of Method

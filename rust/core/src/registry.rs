@@ -67,6 +67,12 @@ pub fn method(name: &str) -> Option<&'static Method> {
 /// Those for rigid bodies alone, with the order of the discrete motion that is their drift.
 pub use crate::rigid::motion::methods::METHODS as BODY_METHODS;
 
+/// The methods for scenes, those with rigid bodies among them or without.
+pub fn methods_for(rigid: bool) -> impl Iterator<Item = &'static Method> + Clone {
+    let bodies = if rigid { &BODY_METHODS[..] } else { &[] };
+    METHODS.iter().copied().chain(bodies.iter().map(|(method, _)| *method))
+}
+
 /// Names of SciPy's `solve_ivp`, and ours.
 static SCIPY: [(&str, &str); 3] =
     [("RK23", "bogacki_shampine32"), ("RK45", "dormand_prince54"), ("DOP853", "dop853")];

@@ -7,7 +7,7 @@
 use super::Scene;
 use super::plan::Plan;
 use super::request::Request;
-use super::unit::{Prepared, Unit};
+use super::unit::{Prepared, Turned, Unit};
 use crate::error::Result;
 use crate::memory;
 use crate::numerics::real::Real;
@@ -40,6 +40,8 @@ pub struct Continuation {
     pub position: Vec<[f64; 3]>,
     /// The velocities there.
     pub velocity: Vec<[f64; 3]>,
+    /// The orientations of rigid bodies there, and their angular velocities.
+    pub turned: Vec<Turned>,
     /// The node that has been reached.
     pub node: u64,
     /// What is held there, of each copy.
@@ -52,7 +54,7 @@ pub struct Held {
     /// Blocks of each copy.
     pub blocks: usize,
     /// Points in a block: of each particle, then of the massive ones as they are integrated beside massless ones, where
-    /// these are apart.
+    /// these are apart, or two for each rigid body that is turned.
     pub slots: usize,
     /// The points, three numbers each.
     pub numbers: Vec<f64>,
@@ -77,22 +79,41 @@ fn beside(plan: &Plan) -> usize {
     if plan.passive_apart() { plan.active.len() } else { 0 }
 }
 
+/// Points in a block of a copy.
+fn slots(plan: &Plan, particles: usize) -> usize {
+    let turned = if plan.turning.steps() { plan.rigid } else { 0 };
+    particles + beside(plan) + 2 * turned
+}
+
 /// The places of the bodies of a unit in a block of its copy.
 struct Places<'a> {
     unit: &'a Unit,
     particles: usize,
     /// How many of them have places beside massless ones.
     beside: usize,
+    /// The places among the rigid ones of those that are turned.
+    turned: Vec<usize>,
 }
 
 impl<'a> Places<'a> {
     fn new(plan: &Plan, particles: usize, unit: &'a Unit) -> Self {
         let beside = if unit.bodies.len() > unit.active { beside(plan) } else { 0 };
-        Self { unit, particles, beside }
+        let rigid = |&body: &usize| plan.rigid_place(body).filter(|_| plan.turning.steps());
+        Self { unit, particles, beside, turned: unit.bodies.iter().filter_map(rigid).collect() }
+    }
+
+    /// How many there are.
+    fn count(&self) -> usize {
+        self.unit.bodies.len() + 2 * self.turned.len()
     }
 
     fn of(&self, slot: usize) -> usize {
-        if slot < self.beside { self.particles + slot } else { self.unit.bodies[slot] }
+        match slot.checked_sub(self.unit.bodies.len()) {
+            // Bodies that are turned have no massless ones apart.
+            Some(half) => self.particles + 2 * self.turned[half / 2] + half % 2,
+            None if slot < self.beside => self.particles + slot,
+            None => self.unit.bodies[slot],
+        }
     }
 }
 
@@ -120,7 +141,7 @@ impl Held {
         method: &Method,
         plans: impl Iterator<Item = &'p Plan>,
     ) -> Result<Option<Self>> {
-        let slots = scene.particles + plans.map(beside).max().unwrap_or(0);
+        let slots = plans.map(|plan| slots(plan, scene.particles)).max().unwrap_or(scene.particles);
         let blocks = blocks(method);
         let len = [scene.copies, slots, blocks].into_iter().try_fold(3_usize, usize::checked_mul);
         let Some(len) = len.filter(|&len| len <= MOST) else { return Ok(None) };
@@ -138,7 +159,7 @@ impl Held {
     /// Takes in what a unit of a copy holds.
     pub fn put(&mut self, plan: &Plan, particles: usize, (copy, unit): (usize, &Unit), held: &UnitHeld) {
         let places = Places::new(plan, particles, unit);
-        for (block, points) in held.points.chunks(unit.bodies.len().max(1)).enumerate() {
+        for (block, points) in held.points.chunks(places.count().max(1)).enumerate() {
             for (slot, point) in points.iter().enumerate() {
                 let at = self.at(copy, block, places.of(slot));
                 self.numbers[at..at + 3].copy_from_slice(point);
@@ -151,7 +172,8 @@ impl Continuation {
     /// The scene from which to plan, if the run goes on with the steps that led to this scene.
     pub fn start(scene: &Scene, request: &Request) -> Option<Scene> {
         let from = scene.continuation.as_ref()?;
-        let (method, dt) = (registry::method(&request.method)?, request.dt?);
+        let mut methods = registry::methods_for(scene.rigid.is_some());
+        let (method, dt) = (methods.find(|method| method.name == request.method)?, request.dt?);
         if request.time_transformation.is_some() {
             return None;
         }
@@ -167,6 +189,7 @@ impl Continuation {
             && [&from.position, &from.velocity, &scene.position, &scene.velocity]
                 .iter()
                 .all(|of| of.len() == points)
+            && from.turned.len() == scene.rigid.as_ref().map_or(0, |bodies| bodies.orientation.len())
             && from.place(scene.t0) == Place { node: from.node, past: None };
         fits.then(|| Scene {
             copies: scene.copies,
@@ -175,7 +198,7 @@ impl Continuation {
             position: from.position.clone(),
             velocity: from.velocity.clone(),
             radius: scene.radius.clone(),
-            rigid: None,
+            rigid: scene.rigid.clone().map(|bodies| bodies.at(&from.turned)),
             forces: scene.forces.clone(),
             own_forces: scene.own_forces.clone(),
             t0: from.t0,
@@ -210,19 +233,25 @@ impl Continuation {
         ticker: &mut Ticker<'_>,
     ) -> bool {
         let elapsed = scene.t0 - self.t0;
-        let fits = self.held.slots >= scene.particles + beside(plan);
+        let fits = self.held.slots >= slots(plan, scene.particles);
         fits && plan.unit_list().into_iter().filter(|unit| !unit.recorded.is_empty()).all(|unit| {
             let copy = members.map_or(unit.copy, |members| members[unit.copy]);
             let Ok(unit) = Prepared::new(plan, start, unit, ticker) else { return false };
-            unit.unit.recorded.clone().all(|slot| {
-                let [q, q_rest, v, v_rest] = core::array::from_fn(|block| {
-                    self.point(plan, scene.particles, (copy, &unit.unit), block, slot)
-                });
-                let entry = unit.entry([q, q_rest], [v, v_rest], elapsed);
-                let body = unit.unit.bodies[slot];
-                entry.position == scene.positions(copy)[body]
-                    && entry.velocity == scene.velocities(copy)[body]
-            })
+            let point = |block, slot| self.point(plan, scene.particles, (copy, &unit.unit), block, slot);
+            let turned = |half: usize, place: usize| {
+                let first = unit.unit.bodies.len() + 2 * place;
+                let ([x, y, z], [w, ..]) = (point(half, first), point(half, first + 1));
+                [x, y, z, w]
+            };
+            unit.turns_agree(scene, copy, |place| [turned(0, place), turned(2, place)])
+                && unit.unit.recorded.clone().all(|slot| {
+                    let [q, q_rest, v, v_rest] = core::array::from_fn(|block| point(block, slot));
+                    let entry = unit.entry([q, q_rest], [v, v_rest], elapsed);
+                    let body = unit.unit.bodies[slot];
+                    // The velocity of a body that is held follows from its turning.
+                    entry.position == scene.positions(copy)[body]
+                        && (entry.velocity == scene.velocities(copy)[body] || unit.is_held(plan, scene, body))
+                })
         })
     }
 }

@@ -15,6 +15,7 @@ mod units;
 pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
+pub(in crate::scene) use turning::with_method;
 pub use turning::{Turning, steps_bodies};
 
 use super::Scene;
@@ -117,6 +118,8 @@ pub struct Plan {
     pub kinds: Vec<usize>,
     /// How rigid bodies turn.
     pub turning: Turning,
+    /// What the steps of a part of the run may be off, where they are chosen for bodies that torques turn.
+    pub tolerance: Option<f64>,
     /// How many rigid bodies each copy has.
     pub rigid: usize,
     /// Of what make each of them is.
@@ -134,7 +137,8 @@ impl Plan {
     pub fn new(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
         scene.validate()?;
         ticker.tick()?;
-        let with_step = turning::with_method(scene, request);
+        let with_step = with_method(scene, request);
+        let tolerance = with_step.as_ref().filter(|_| request.dt.is_none()).map(|request| request.rtol);
         let request = with_step.as_ref().unwrap_or(request);
         let Checked { method, automatic, direction, dt, transformed } = request.check(scene)?;
         let massive = |i: &usize| (0..scene.copies).any(|copy| scene.masses(copy)[*i] > 0.0);
@@ -237,6 +241,7 @@ impl Plan {
                 transformed.is_some() || matches!(method.scheme, Scheme::Taylor(_)),
             ),
             turning,
+            tolerance,
             rigid: scene.rigid.as_ref().map_or(0, |bodies| bodies.count),
             makes: turning::makes(scene),
             copies: scene.copies,

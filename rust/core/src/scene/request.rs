@@ -147,8 +147,7 @@ impl Request {
     pub fn check(&self, scene: &Scene) -> Result<Checked> {
         let automatic = self.method == "auto";
         let name = if automatic { "dop853" } else { &self.method };
-        let bodies = scene.rigid.iter().flat_map(|_| registry::BODY_METHODS.iter().copied());
-        let all = registry::METHODS.iter().copied().chain(bodies.map(|(method, _)| method));
+        let all = registry::methods_for(scene.rigid.is_some());
         let names = core::iter::once("auto").chain(all.clone().map(|method| method.name));
         let method = all.clone().find(|method| method.name == name);
         let method = method.ok_or_else(|| unknown("method", name, names))?;

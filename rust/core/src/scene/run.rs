@@ -180,11 +180,8 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
     let mut reached = Reached::start(scene);
     // A method that chooses its steps has no nodes, and a closed form holds nothing.
     let plans = parts.iter().map(|part| part.plan);
-    let held = if plan.dt.is_some() && !plan.turning.steps() {
-        Held::room(scene, plan.method, plans)?
-    } else {
-        None
-    };
+    let equal = plan.dt.is_some() && plan.tolerance.is_none();
+    let held = if equal { Held::room(scene, plan.method, plans)? } else { None };
     let mut kept = held.map(|held| Kept { nodes: vec![u64::MAX; scene.copies], t0: plan.t0, held });
     let mut missing = Vec::new();
     let mut events = Events::default();

@@ -65,6 +65,8 @@ struct Continued<'py> {
     node: u64,
     position: Array<'py>,
     velocity: Array<'py>,
+    orientation: Array<'py>,
+    angular_velocity: Array<'py>,
     held: Array<'py>,
 }
 
@@ -74,6 +76,11 @@ impl Continued<'_> {
         let shape = [Some(copies), Some(particles), Some(3)];
         let position = points(&copied("position", &self.position, shape)?.0);
         let velocity = points(&copied("velocity", &self.velocity, shape)?.0);
+        let (orientation, [_, rigid, _]) =
+            copied("orientation", &self.orientation, [Some(copies), None, Some(4)])?;
+        let spin = [Some(copies), Some(rigid), Some(3)];
+        let spin = points(&copied("angular_velocity", &self.angular_velocity, spin)?.0);
+        let turned = orientation.as_chunks::<4>().0.iter().copied().zip(spin).collect();
         let (numbers, [_, blocks, slots, _]) =
             copied("held", &self.held, [Some(copies), None, None, Some(3)])?;
         let Self { form, method, dt, t0, node, .. } = self;
@@ -84,6 +91,7 @@ impl Continued<'_> {
             t0,
             position,
             velocity,
+            turned,
             node,
             held: Held { blocks, slots, numbers },
         })

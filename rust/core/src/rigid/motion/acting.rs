@@ -55,13 +55,14 @@ enum Acting {
 }
 
 /// All loads on some systems.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Loads {
     acting: Vec<Acting>,
     functions: Vec<Function>,
 }
 
 /// A torque that the caller computes of a body, in each of so many lanes.
+#[derive(Clone)]
 struct Function {
     body: usize,
     lanes: usize,

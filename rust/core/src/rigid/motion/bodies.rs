@@ -58,6 +58,13 @@ impl RigidBodies {
         }
     }
 
+    /// The same bodies, turned so and with these angular velocities.
+    #[must_use]
+    pub fn at(self, turned: &[(Quaternion, [f64; 3])]) -> Self {
+        let (orientation, angular_velocity) = turned.iter().copied().unzip();
+        Self { orientation, angular_velocity, ..self }
+    }
+
     /// The orientation of the principal axes of a body, and its angular velocity along them.
     pub fn principal(&self, at: usize) -> (Quaternion, [f64; 3]) {
         Self::to_principal(self.axes[at], self.orientation[at], self.angular_velocity[at])

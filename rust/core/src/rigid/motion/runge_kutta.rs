@@ -3,7 +3,6 @@
 //! The one idea (Munthe-Kaas, BIT 38 (1998) 92): stages are rotation vectors u, u' = dexp⁻¹(u) ω, from the orientation at the
 //! node, which is then turned by exp(u): no stage leaves the rotations, and the tableau keeps its order.
 
-use super::acting::Loads;
 use super::bodies::{Arrangement, LaneBody};
 use super::flows::{hold, settle_held, twist};
 use super::splitting::Pulls;
@@ -36,18 +35,13 @@ pub struct BodyRungeKutta {
 
 impl BodyRungeKutta {
     /// The method `tableau` with step `h`, for states like that one.
-    pub fn new(
-        tableau: &'static Tableau,
-        h: f64,
-        (arrangement, loads): (Arrangement, Loads),
-        state: &State<Lanes>,
-    ) -> Self {
+    pub(super) fn new(tableau: &'static Tableau, h: f64, pulls: Pulls, state: &State<Lanes>) -> Self {
         let half = || vec![Lanes::zero(); state.q().len()];
         Self {
             tableau,
             h,
             nodes: Nodes::always(h),
-            pulls: Pulls::new(arrangement, loads),
+            pulls,
             rates: tableau.b.iter().map(|_| [half(), half()]).collect(),
             at: state.clone(),
             sums: [half(), half()],

@@ -26,16 +26,19 @@ pub(super) struct Pulls {
     pub(super) a: Vec<Lanes>,
     /// Empty where there are none.
     pub(super) torque: Vec<Lanes>,
+    /// The time at which that of nodes begins.
+    since: Lanes,
 }
 
 impl Pulls {
-    pub(super) fn new(arrangement: Arrangement, loads: Loads) -> Self {
+    pub(super) fn new(arrangement: Arrangement, loads: Loads, since: f64) -> Self {
         let torques = if loads.is_empty() { 0 } else { 3 * arrangement.bodies.len() };
         let a = vec![Lanes::zero(); arrangement.points()];
-        Self { a, torque: vec![Lanes::zero(); torques], arrangement, loads }
+        let torque = vec![Lanes::zero(); torques];
+        Self { a, torque, arrangement, loads, since: Lanes::splat(since) }
     }
 
-    /// Evaluates them at a time since the start.
+    /// Evaluates them at a time.
     pub(super) fn evaluate(
         &mut self,
         time: &Lanes,
@@ -43,7 +46,7 @@ impl Pulls {
         system: &mut dyn System<Lanes>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        let points = self.arrangement.points();
+        let (time, points) = (&(self.since + *time), self.arrangement.points());
         system.acceleration(time, &state.q()[..points], &state.v()[..points], &mut self.a, ticker)?;
         if !self.loads.is_empty() {
             self.torque.fill(Lanes::zero());
@@ -78,13 +81,13 @@ pub struct BodySplitting {
 
 impl BodySplitting {
     /// The method `table` with step `h`.
-    pub fn new(table: &'static Splitting, h: f64, (arrangement, loads): (Arrangement, Loads)) -> Self {
+    pub(super) fn new(table: &'static Splitting, h: f64, pulls: Pulls) -> Self {
         let mut step = Self {
             table,
             h,
             moves: Vec::new(),
             nodes: Nodes::always(h),
-            pulls: Pulls::new(arrangement, loads),
+            pulls,
             fresh: false,
             room: Room::default(),
         };
@@ -142,6 +145,27 @@ impl Stepper<Lanes> for BodySplitting {
     ) -> Result<u64> {
         self.advance(node, state, system, ticker)?;
         Ok(1)
+    }
+
+    fn memory(&mut self, _: u64, each: &mut dyn FnMut(&mut [Lanes])) {
+        self.fresh = self.moves.last().is_some_and(|last| last.kick.is_some() && last.drift.is_none());
+        if !self.fresh {
+            return;
+        }
+        // Torques where a block has the numbers of bodies, if there are any.
+        let Pulls { arrangement, a, torque, .. } = &mut self.pulls;
+        let mut block = a.clone();
+        block.resize(arrangement.at(arrangement.bodies.len()), Lanes::zero());
+        let bodies = block.len() - a.len();
+        for (to, from) in block[a.len()..].chunks_mut(4).zip(torque.chunks(3)) {
+            to[..3].copy_from_slice(from);
+        }
+        each(&mut block);
+        let (points, turning) = block.split_at(block.len() - bodies);
+        a.copy_from_slice(points);
+        for (from, to) in turning.chunks(4).zip(torque.chunks_mut(3)) {
+            to.copy_from_slice(&from[..3]);
+        }
     }
 
     fn settle(&mut self, state: &mut State<Lanes>) {

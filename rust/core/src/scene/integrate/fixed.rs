@@ -64,7 +64,7 @@ fn lockstep(
         let state = prepared[0].blank_state(units.len());
         let h = scale(dt, -plan.units.time);
         let stepper = match rigid {
-            Some(assembly) => body_stepper(plan.method, h, assembly, &state)?,
+            Some(assembly) => body_stepper(plan.method, (h, plan.tolerance), assembly, &state)?,
             None => stepper(plan.method, h, &dynamics, &state)?,
         };
         *room = Some((shape, state, stepper));

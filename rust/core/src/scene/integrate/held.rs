@@ -35,9 +35,9 @@ pub(super) fn take_up(
         for lane in 0..units.len().next_multiple_of(plan.layout.units()) {
             let unit = &units[lane.min(units.len() - 1)];
             let copy = members.map_or(unit.unit.copy, |members| members[unit.unit.copy]);
-            for slot in 0..unit.unit.bodies.len() {
+            for slot in 0..unit.held() {
                 let point = from.point(plan, job.scene.particles, (copy, &unit.unit), block, slot);
-                unit.lay(slot, numbers, lane, point);
+                unit.lay_held(slot, numbers, lane, point);
             }
         }
         block += 1;
@@ -53,16 +53,16 @@ pub(super) fn leave(
     state: &mut State<Lanes>,
     stepper: &mut dyn Stepper<Lanes>,
 ) {
-    for report in reports.iter_mut() {
+    for (unit, report) in units.iter().zip(reports.iter_mut()) {
         if matches!(report.ending, Ending::Finished | Ending::TooManySteps | Ending::Interrupted) {
-            let points = Vec::with_capacity(blocks_of(method) * report.unit.bodies.len());
-            report.held = Some(UnitHeld { node, points });
+            report.held =
+                Some(UnitHeld { node, points: Vec::with_capacity(blocks_of(method) * unit.held()) });
         }
     }
     blocks(node, state, stepper, &mut |numbers| {
         for (lane, (unit, report)) in units.iter().zip(reports.iter_mut()).enumerate() {
             if let Some(held) = &mut report.held {
-                held.points.extend((0..unit.unit.bodies.len()).map(|slot| unit.pick(slot, numbers, lane)));
+                held.points.extend((0..unit.held()).map(|slot| unit.pick_held(slot, numbers, lane)));
             }
         }
     });

@@ -3,6 +3,7 @@
 use super::super::layout::Layout;
 use super::super::request::columns;
 use super::quiet::{METHOD, Quiet};
+use super::turning::PARTS;
 use super::{Groups, Plan};
 use crate::forces::term::Coupling;
 use crate::ode::Scheme;
@@ -43,12 +44,17 @@ impl Plan {
             row("sets of forces", decision, why.to_owned());
         }
         if self.solutions.integrates() {
-            let steps = match (self.dt, self.transformed) {
-                (Some(dt), _) => format!("fixed step {dt}"),
-                (None, Some((by, dt))) => {
+            let steps = match (self.dt, self.transformed, self.tolerance) {
+                (_, _, Some(rtol)) => {
+                    format!(
+                        "{PARTS} equal parts, each in steps that are halved until it stays the same to {rtol:e}"
+                    )
+                }
+                (Some(dt), ..) => format!("fixed step {dt}"),
+                (None, Some((by, dt)), _) => {
                     format!("steps equal in the time of {}, {dt} at the start", by.name())
                 }
-                (None, None) => "steps chosen by the error estimate".to_owned(),
+                (None, None, _) => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
             if let Some((by, _)) = self.transformed {

@@ -6,7 +6,7 @@ use super::Plan;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
 use crate::ode::{Method, Scheme};
-use crate::registry::{self, BODY_METHODS, METHODS};
+use crate::registry;
 use crate::rigid::motion::bodies::RigidBodies;
 use crate::rigid::motion::flows::Free;
 use crate::rigid::motion::loads::Load;
@@ -71,14 +71,25 @@ const fn best(velocities: bool) -> &'static str {
     if velocities { "rk4" } else { "kahan_li8" }
 }
 
-/// The request with the method that bodies that turn are stepped with, where it names a step and leaves the method open.
-pub(super) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
+/// Into how many parts a run is cut whose steps are chosen.
+pub(super) const PARTS: u32 = 64;
+
+/// The request with the method that bodies that turn are stepped with, where it leaves the method open; if it names no step
+/// either, with the length of a part. Between the ends of long parts nobody sees events.
+pub(in crate::scene) fn with_method(scene: &Scene, request: &Request) -> Option<Request> {
     let bodies = scene.rigid.as_ref()?;
-    let _ = request.dt.filter(|_| request.method == "auto")?;
+    if request.method != "auto" {
+        return None;
+    }
+    let chosen =
+        request.events.is_empty() && request.time_transformation.is_none() && request.max_step.is_none();
+    let span = (request.times.last()? - scene.t0).abs();
+    let part = if span > 0.0 { span / f64::from(PARTS) } else { 1.0 };
+    let dt = request.dt.or(chosen.then_some(part))?;
     let forces = super::own::acting(scene, &scene.forces);
     let method = best(looking(bodies, &forces).is_some());
     let stepped = Turning::of(scene, registry::method(method)?, &forces).steps();
-    stepped.then(|| Request { method: method.to_owned(), ..request.clone() })
+    stepped.then(|| Request { method: method.to_owned(), dt: Some(dt), ..request.clone() })
 }
 
 /// Refuses what bodies that turn cannot be run with.
@@ -95,8 +106,9 @@ pub(super) fn check(
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let looking = looking(bodies, forces);
     if automatic || !serves(method, looking.is_some()) {
-        let all = METHODS.iter().copied().chain(BODY_METHODS.iter().map(|(method, _)| *method));
-        let names = all.filter(|method| serves(method, looking.is_some())).map(|method| method.name);
+        let names = registry::methods_for(true)
+            .filter(|method| serves(method, looking.is_some()))
+            .map(|method| method.name);
         let best = best(looking.is_some());
         let why = looking.map_or_else(String::new, |name| format!("{name} looks at velocities; "));
         let message = format!(

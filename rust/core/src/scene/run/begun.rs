@@ -4,7 +4,7 @@ use super::super::Scene;
 use super::super::collisions;
 use super::super::continuation::Continuation;
 use super::super::integrate::Report;
-use super::super::plan::Plan;
+use super::super::plan::{Plan, with_method};
 use super::super::request::Request;
 use super::patterns::{Pattern, patterns};
 use super::{Kept, Part};
@@ -49,9 +49,11 @@ pub(super) struct Begun {
 impl Begun {
     /// Plans a run.
     pub(super) fn of(scene: &Scene, request: &Request, ticker: &mut Ticker<'_>) -> Result<Self> {
-        if let (Some(start), Some(from)) = (Continuation::start(scene, request), &scene.continuation) {
+        let named = request.dt.and_then(|_| with_method(scene, request));
+        let same = named.as_ref().unwrap_or(request);
+        if let (Some(start), Some(from)) = (Continuation::start(scene, same), &scene.continuation) {
             // What is wrong with the request is told of the scene as it is.
-            let _ = request.check(scene)?;
+            let _ = same.check(scene)?;
             let mut begun = Self::planned(&start, request, ticker)?;
             begun.plans.iter_mut().chain([&mut begun.plan]).for_each(|plan| plan.from = from.node);
             begun.start = Some(start);

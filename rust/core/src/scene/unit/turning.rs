@@ -73,6 +73,72 @@ impl Prepared {
         })
     }
 
+    /// Points that are held of the unit in each block: of its bodies, and two of each that turns.
+    pub(in crate::scene) fn held(&self) -> usize {
+        self.unit.bodies.len() + 2 * self.starts.len()
+    }
+
+    /// What a block holds of a body, or of half of how one turns.
+    pub(in crate::scene) fn pick_held(&self, slot: usize, block: &[Lanes], unit_lane: usize) -> [f64; 3] {
+        let Some(half) = slot.checked_sub(self.unit.bodies.len()) else {
+            return self.pick(slot, block, unit_lane);
+        };
+        let (at, lane) = self.turning_at(half / 2, block.len(), unit_lane);
+        match half % 2 {
+            0 => [0, 1, 2].map(|c| block[at + c].0[lane]),
+            _ => [block[at + 3].0[lane], 0.0, 0.0],
+        }
+    }
+
+    /// Lays it into its place.
+    pub(in crate::scene) fn lay_held(
+        &self,
+        slot: usize,
+        block: &mut [Lanes],
+        unit_lane: usize,
+        point: [f64; 3],
+    ) {
+        let Some(half) = slot.checked_sub(self.unit.bodies.len()) else {
+            return self.lay(slot, block, unit_lane, point);
+        };
+        let (at, lane) = self.turning_at(half / 2, block.len(), unit_lane);
+        match half % 2 {
+            0 => (0..3).for_each(|c| block[at + c].0[lane] = point[c]),
+            _ => block[at + 3].0[lane] = point[0],
+        }
+    }
+
+    /// Whether orientations and momenta, as they are held, are those of a copy of a scene, whose quaternions may have been
+    /// brought to length 1 since.
+    pub(in crate::scene) fn turns_agree(
+        &self,
+        scene: &Scene,
+        copy: usize,
+        held: impl Fn(usize) -> [[f64; 4]; 2],
+    ) -> bool {
+        let Some(bodies) = &scene.rigid else { return self.starts.is_empty() };
+        self.starts.iter().enumerate().all(|(place, start)| {
+            let at = copy * bodies.count + start.at % bodies.count;
+            let [q, [x, y, z, _]] = held(place);
+            let (orientation, spin) = self.turned_to(bodies, place, q, [x, y, z]);
+            let near = |(one, other): (&f64, &f64)| (one - other).abs() <= 4.0 * f64::EPSILON;
+            orientation.iter().zip(&bodies.orientation[at]).all(near) && spin == bodies.angular_velocity[at]
+        })
+    }
+
+    /// Whether a point of a body is held.
+    pub(in crate::scene) fn is_held(&self, plan: &Plan, scene: &Scene, body: usize) -> bool {
+        let place = plan.rigid_place(body).filter(|_| !self.starts.is_empty());
+        scene.rigid.as_ref().zip(place).is_some_and(|(bodies, place)| bodies.pivoted[place])
+    }
+
+    /// The orientation and the angular velocity of a rigid body in the scene's terms, from its numbers.
+    fn turned_to(&self, bodies: &RigidBodies, place: usize, q: Quaternion, momentum: [f64; 3]) -> Turned {
+        let start = &self.starts[place];
+        let spin = start.spin(turned_back(q, momentum)).map(|part| scale(part, -self.units.time));
+        bodies.given(start.at, q, spin)
+    }
+
     /// Reads a rigid body off a state.
     fn read_turning(
         &self,
@@ -82,12 +148,9 @@ impl Prepared {
         unit_lane: usize,
     ) -> Turned {
         let (at, lane) = self.turning_at(place, state.q().len(), unit_lane);
-        let start = &self.starts[place];
         let q: Quaternion = core::array::from_fn(|c| state.q()[at + c].0[lane]);
         let momentum = [0, 1, 2].map(|c| state.v()[at + c].0[lane]);
-        let momentum = turned_back(q, momentum);
-        let spin = start.spin(momentum).map(|part| scale(part, -self.units.time));
-        bodies.given(start.at, q, spin)
+        self.turned_to(bodies, place, q, momentum)
     }
 
     /// The rigid bodies among those that are recorded, in their order.

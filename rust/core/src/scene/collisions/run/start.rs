@@ -91,6 +91,7 @@ pub(super) fn part_of(from: &Continuation, whole: &Scene, copy: usize, leg: &Leg
         method: from.method.clone(),
         position: pick(&from.position),
         velocity: pick(&from.velocity),
+        turned: Vec::new(),
         held,
         ..*from
     }

@@ -1,0 +1,89 @@
+"""Bodies that torques turn, run without a method and a step: the steps follow the tolerance."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+DOWN = vv.UniformField([0.0, 0.0, -9.81])
+# Of Brüls and Cardona's top at t = 2, to 16 digits (benches/python/rigid_scene.py).
+CENTER = [-0.1504168227456418, -0.7241655916368957, -0.6730222695604441]
+
+
+def top(spin: float = 150.0) -> vv.Scene:
+    inertia = np.diag([0.234375, 0.46875, 0.234375])
+    spins = [0.0, spin, -4.61538]
+    return vv.Scene(
+        vv.RigidBody(15.0, inertia=inertia, position=[0, 1, 0], angular_velocity=spins, pivot=[0, -1, 0]), DOWN
+    )
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+def test_a_top_is_where_it_should_be(rtol: float) -> None:
+    out = top().run(t=2.0, rtol=rtol)
+    assert np.abs(out.position[-1, 0] - CENTER).max() < 10 * rtol
+    assert out.status == vv.Status.OK
+    assert "64 equal parts" in str(out.plan)
+
+
+def test_outputs_and_backward_runs_are_those_of_small_steps() -> None:
+    for end in (2.0, -2.0):
+        t = np.linspace(0.0, end, 23)
+        chosen, small = top().run(t=t), top().run(t=t, method="kahan_li8", dt=1 / 128)
+        assert np.abs(chosen.orientation - small.orientation).max() < 1e-11
+        assert np.abs(chosen.velocity - small.velocity).max() < 1e-10
+
+
+def test_what_looks_at_velocities() -> None:
+    body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[1.0, 2.0, 3.0])
+    scene = vv.Scene(body, vv.RotationalDrag(0.1), vv.AppliedTorque([1.0, 0.0, 0.0]))
+    chosen, small = scene.run(t=5.0), scene.run(t=5.0, method="rk4", dt=5e-4)
+    assert np.abs(chosen.orientation[-1] - small.orientation[-1]).max() < 1e-8
+
+
+def test_a_passage_late_in_the_run_is_seen() -> None:
+    """What the first stretch does not know of: the steps are chosen again in each part. A sphere on an ellipse of
+    eccentricity 0.9 from its far end on, against Kepler's equation."""
+    e = 0.9
+    place, speed = [1 + e, 0.0, 0.0], [0.0, np.sqrt((1 - e) / (1 + e)), 0.0]
+    pull = vv.CentralField(vv.potentials.Coulomb(k=-1.0))
+    ball = vv.RigidBody(1.0, [1e-6, 1e-6, 1e-6], position=place, velocity=speed)
+    turned = vv.Scene(ball, vv.AppliedTorque([0.0, 0.0, 1e-7]), pull).run(t=10 * np.pi)
+    exact = vv.Scene(vv.Particles([1.0], [place], [speed]), pull).run(t=10 * np.pi)
+    assert np.abs(turned.position[-1] - exact.position[-1]).max() < 1e-8
+
+
+def test_a_pendulum_at_rest_and_one_that_swings_long() -> None:
+    for turn in ([0.0, 0.0, 0.0, 1.0], [1.0, 0.0, 0.0, 0.0], [np.sqrt(0.5), 0.0, 0.0, np.sqrt(0.5)]):
+        body = vv.RigidBody(1.0, [1.0, 1.0, 0.1], orientation=turn, pivot=[0.0, 0.0, -1.0])
+        out = vv.Scene(body, DOWN).run(t=[0.0, 1.0, 300.0])
+        assert out.status == vv.Status.OK
+        assert np.abs(out.energy - out.energy[0]).max() < 1e-10
+
+
+def test_a_copy_is_what_it_is_alone() -> None:
+    spins = np.array([[[0.0, 150.0 * (1 + i / 3), -4.6]] for i in range(11)])
+    copies = top().ensemble(angular_velocity=spins)
+    together = copies.run(t=1.0, threads=2)
+    for i in range(11):
+        assert np.array_equal(copies[i].run(t=1.0).orientation, together.orientation[i])
+
+
+def test_one_that_cannot_be_followed_does_not_end_well() -> None:
+    """A spin that no step of the run resolves; the copy beside it is as alone."""
+    body = vv.RigidBody(1.0, [1.0, 2.0, 2.5], position=[1.0, 0.0, 0.0])
+    scene = vv.Scene(body, vv.AttachedSpring(0, [0.1, 0.2, 0.3], 1.0, anchor=[0.0, 0.0, 0.0]))
+    fast = scene.ensemble(angular_velocity=[[[0.0, 0.0, 1.0]], [[1e300, 1.0, 1e300]]]).run(t=1e3)
+    assert fast.status[0] == vv.Status.OK
+    assert fast.status[1] != vv.Status.OK
+    alone = scene.ensemble(angular_velocity=[[[0.0, 0.0, 1.0]]]).run(t=1e3)
+    assert np.array_equal(fast.orientation[0], alone.orientation[0])
+
+
+def test_events_want_a_step() -> None:
+    with pytest.raises(vv.InvalidInput, match=r"moved in equal steps.*with dt"):
+        top().run(t=1.0, events=[vv.events.plane([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])])
+
+
+def test_its_cost_is_not_guessed() -> None:
+    assert top().plan(t=2.0).cost() is None
