@@ -7,21 +7,24 @@ keep its shape.
 
 from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
 from visviva.scattering._kinematics import cm_angle, energy_transfer, lab_angle, recoil_angle
-from visviva.scattering._monte_carlo import monte_carlo
+from visviva.scattering._monte_carlo import monte_carlo, scattering_events
+from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (
     rutherford_angle,
     rutherford_closest_approach,
     rutherford_cross_section,
     rutherford_impact_parameter,
 )
-from visviva.scattering._tally import Beam, CrossSection, MonteCarlo, Tally
+from visviva.scattering._tally import Beam, CrossSection, JointTally, Spectrum, Tally
 
 __all__ = [
     "Beam",
     "CrossSection",
     "Deflection",
     "DeflectionStatus",
+    "JointTally",
     "MonteCarlo",
+    "Spectrum",
     "Tally",
     "cm_angle",
     "deflect",
@@ -34,6 +37,7 @@ __all__ = [
     "rutherford_closest_approach",
     "rutherford_cross_section",
     "rutherford_impact_parameter",
+    "scattering_events",
 ]
 
 
