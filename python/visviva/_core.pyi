@@ -153,21 +153,27 @@ def potential(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]: ...
 def monte_carlo(
     *,
-    k: float,
-    beam_energy: float,
-    masses: tuple[float, float],
-    b_max: float,
+    beam: dict[str, Any],
     n_events: int,
     seed: int,
     first_event: int,
-    tallies: list[tuple[str, int | NDArray[np.float64]]],
+    tallies: list[list[tuple[str, int | NDArray[np.float64]]]],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[
     int,
     bool,
     float,
-    list[tuple[str, NDArray[np.float64], NDArray[np.uint64], int, int, NDArray[np.float64], tuple[float, float]]],
+    list[tuple[int, int, float, float]],
+    list[
+        tuple[
+            list[str],
+            list[NDArray[np.float64]],
+            NDArray[np.uint64],
+            int,
+            tuple[NDArray[np.float64], tuple[float, float]] | None,
+        ]
+    ],
 ]: ...
 def scattering_structure(
     description: dict[str, Any], energy: float
@@ -190,6 +196,15 @@ def collision_integrals(
     diameter: float,
     threads: int | None,
 ) -> NDArray[np.float64]: ...
+def scattering_events(
+    *,
+    beam: dict[str, Any],
+    n_events: int,
+    seed: int,
+    first_event: int,
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[NDArray[np.uint64], NDArray[np.float64], NDArray[np.float64]]: ...
 def deflections(
     description: dict[str, Any],
     energy: NDArray[np.float64],

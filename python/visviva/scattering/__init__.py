@@ -34,7 +34,8 @@ from visviva.scattering._kinematics import (
     recoil_angle,
     recoil_jacobian,
 )
-from visviva.scattering._monte_carlo import monte_carlo
+from visviva.scattering._monte_carlo import monte_carlo, scattering_events
+from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (
     rutherford_angle,
     rutherford_closest_approach,
@@ -42,7 +43,7 @@ from visviva.scattering._rutherford import (
     rutherford_impact_parameter,
 )
 from visviva.scattering._structure import Glory, Orbit, Rainbow, glories, impact_parameter, orbiting, rainbows
-from visviva.scattering._tally import Beam, CrossSection, MonteCarlo, Tally
+from visviva.scattering._tally import Beam, CrossSection, JointTally, Spectrum, Tally
 
 __all__ = [
     "Beam",
@@ -50,10 +51,12 @@ __all__ = [
     "Deflection",
     "DeflectionStatus",
     "Glory",
+    "JointTally",
     "Moderation",
     "MonteCarlo",
     "Orbit",
     "Rainbow",
+    "Spectrum",
     "Tally",
     "capture_cross_section",
     "cm_angle",
@@ -83,6 +86,7 @@ __all__ = [
     "rutherford_closest_approach",
     "rutherford_cross_section",
     "rutherford_impact_parameter",
+    "scattering_events",
     "threshold_energy",
     "total_cross_section",
     "transport_cross_section",

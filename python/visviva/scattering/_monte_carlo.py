@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
-from typing import TYPE_CHECKING, Any
+from dataclasses import replace
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -12,32 +13,34 @@ from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Coulomb
-from visviva.scattering._tally import Beam, MonteCarlo, Tally
+from visviva.potentials import Potential
+from visviva.scattering._result import MonteCarlo
+from visviva.scattering._spread import spread
+from visviva.scattering._tally import Beam, JointTally, Spectrum, Tally
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import NDArray
 
     from visviva._progress import Progress
-    from visviva.potentials import Potential
 
-__all__ = ["monte_carlo"]
+__all__ = ["monte_carlo", "scattering_events"]
 
 
 @known_keywords
 def monte_carlo(
     potential: Potential,
     *,
-    beam_energy: float,
+    beam_energy: float | Spectrum,
     masses: tuple[float, float],
     b_max: float,
     n_events: int,
     seed: int,
-    tally: str | Iterable[str] | Mapping[str, int | ArrayLike] = "cm_angle",
+    tally: str | Iterable[str | tuple[str, str]] | Mapping[Any, Any] = "cm_angle",
     bins: int = 180,
     threads: int | None = None,
     first_event: int = 0,
     progress: Progress = False,
+    executor: Any = None,
 ) -> MonteCarlo:
     """Scatter a parallel beam off one centre and count every event.
 
@@ -47,14 +50,19 @@ def monte_carlo(
 
     Parameters
     ----------
-    potential : Coulomb
-        V = k/r, k of either sign but not 0.
-    beam_energy : float
-        Energy of the projectile in the laboratory; the target is at rest.
+    potential : Potential
+        Any of `visviva.potentials` that goes to 0 far out. The angles of V = k/r are exact; of any other a table is
+        built, refined to 1e-9 of the angles and certified against direct quadrature to 4e-6 in sin²(ψ/2) (the run is
+        refused otherwise): its hash is in ``result.beam.tables``. Where the deflection passes through π, or through a
+        rainbow, every branch is counted; captured events are counted apart, as ``.captured``.
+    beam_energy : float or Spectrum
+        Energy of the projectile in the laboratory; the target is at rest. Several energies: a `Spectrum`; which of them
+        an event has is its draw number 1.
     masses : tuple of float
         Projectile and target.
     b_max : float
-        Radius of the disc. The smallest deflection, ``result.smallest_angle``, is 2 atan(|k| / (2 E b_max)),
+        Radius of the disc, the cut without which the total cross section is infinite for most potentials. The smallest
+        deflection of a Coulomb target, ``result.smallest_angle``, is 2 atan(|k| / (2 E b_max)),
         E = beam_energy · m₂/(m₁ + m₂): bins below it are not reached, see `Tally.reachable`.
     n_events : int
         At least 1.
@@ -64,6 +72,8 @@ def monte_carlo(
         What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
         ``{name: edges}``, where a whole number in place of edges is a number of equal bins. Angles are in radians.
+        A pair of names in place of a name counts both together: ``[("lab_angle", "energy")]``, or
+        ``{("lab_angle", "energy"): (edges, edges)}``, a `JointTally`.
     bins : int
         Number of equal bins, over all possible values, of each tally that is given by its name only; up to 65536.
     threads : int, optional
@@ -72,6 +82,9 @@ def monte_carlo(
         Index of the first event.
     progress : bool or callable
         True for a bar, or ``f(done, total)``.
+    executor : concurrent.futures.Executor or dask.distributed.Client, optional
+        Who counts: ranges of events go out, counts come home, with the bits of the run without one. Tables are built
+        by each worker and compared by their hashes. Each worker uses ``threads`` threads, or one.
 
     Returns
     -------
@@ -101,48 +114,209 @@ def monte_carlo(
     >>> bool(((part + rest)["cm_angle"].counts == whole["cm_angle"].counts).all())
     True
     """
-    if not isinstance(potential, Coulomb):
-        raise InvalidInput("potential", f"expected a Coulomb potential, got {potential!r}")
+    if not isinstance(potential, Potential):
+        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    asked = _tallies(tally, whole_number("bins", bins, 1, 2**16))
+    beam = Beam(potential, _energy(beam_energy), _pair(masses), number("b_max", b_max), np.nan)
+    return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
+
+
+@known_keywords
+def scattering_events(
+    potential: Potential,
+    *,
+    beam_energy: float | Spectrum,
+    masses: tuple[float, float],
+    b_max: float,
+    n_events: int,
+    seed: int,
+    first_event: int = 0,
+    threads: int | None = None,
+    progress: Progress = False,
+) -> dict[str, NDArray[Any]]:
+    """The very events that `monte_carlo` counts, one by one.
+
+    Parameters
+    ----------
+    potential, beam_energy, masses, b_max, seed, threads, progress
+        As of `monte_carlo`.
+    n_events, first_event : int
+        Which events.
+
+    Returns
+    -------
+    dict of ndarray
+        Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"deflection"`` (ψ,
+        signed and not folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
+        ``"impact_parameter"``.
+
+    Raises
+    ------
+    InvalidInput
+        As `monte_carlo`.
+    Interrupted
+        After Ctrl-C.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> events = vv.scattering.scattering_events(
+    ...     vv.potentials.LennardJones(1.0, 1.0), beam_energy=2.0, masses=(1.0, 1.0), b_max=3.0, n_events=3, seed=1)
+    >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
+    ([0, 1, 2], True)
+    """
+    if not isinstance(potential, Potential):
+        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    beam = Beam(potential, _energy(beam_energy), _pair(masses), number("b_max", b_max), np.nan)
+    first, count, key = _which(first_event, n_events, seed)
+    with callback(progress) as report:
+        component, deflection, values = _core.scattering_events(
+            beam=_described(beam),
+            n_events=count,
+            seed=key,
+            first_event=first,
+            threads=None if threads is None else whole_number("threads", threads, 1, 1024),
+            progress=report,
+        )
+    columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
+    return {
+        "event": np.arange(first, first + count, dtype=np.uint64),
+        "component": component,
+        "deflection": deflection,
+        **columns,
+    }
+
+
+_QUANTITIES = ("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter")
+
+
+def again(result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any) -> MonteCarlo:
+    """The next events of a result."""
+    asked: list[Axes] = []
+    for tally in result.tallies:
+        if isinstance(tally, Tally):
+            asked.append([(tally.name, tally.edges)])
+        else:
+            asked.append(list(zip(tally.name, tally.edges, strict=True)))
+    first = result.next_event
+    return _run(result.beam, asked, n_events, result.events[0][0], first, threads, progress, executor)
+
+
+def _energy(given: object) -> float | Spectrum:
+    return given if isinstance(given, Spectrum) else number("beam_energy", given)
+
+
+def _pair(masses: object) -> tuple[float, float]:
     pair = float_array("masses", masses, (2,))
+    return (float(pair[0]), float(pair[1]))
+
+
+def _which(first_event: object, n_events: object, seed: object) -> tuple[int, int, int]:
     first = whole_number("first_event", first_event, 0, 2**63 - 1)
     count = whole_number("n_events", n_events, 1, 2**63 - first)
-    key = whole_number("seed", seed, 0, 2**64 - 1)
-    request: dict[str, Any] = {
-        "k": potential.k,
-        "beam_energy": number("beam_energy", beam_energy),
-        "masses": (float(pair[0]), float(pair[1])),
-        "b_max": number("b_max", b_max),
-        "tallies": _tallies(tally, whole_number("bins", bins, 1, 2**16)),
-        "threads": None if threads is None else whole_number("threads", threads, 1, 1024),
+    return first, count, whole_number("seed", seed, 0, 2**64 - 1)
+
+
+def _described(beam: Beam) -> dict[str, Any]:
+    energy = beam.beam_energy
+    lines = (energy.energy, energy.weight) if isinstance(energy, Spectrum) else ((energy,), (1.0,))
+    return {
+        "potential": beam.potential._to_core(),
+        "energies": list(lines[0]),
+        "weights": list(lines[1]),
+        "masses": beam.masses,
+        "b_max": beam.b_max,
     }
+
+
+def _run(
+    beam: Beam,
+    asked: list[Axes],
+    n_events: object,
+    seed: object,
+    first_event: object,
+    threads: object,
+    progress: Progress,
+    executor: Any,
+) -> MonteCarlo:
+    first, count, key = _which(first_event, n_events, seed)
+    several = None if threads is None else whole_number("threads", threads, 1, 1024)
+    request: dict[str, Any] = {"beam": _described(beam), "tallies": asked, "seed": key, "threads": several}
     with callback(progress) as report:
-        counted, interrupted, smallest, columns = _core.monte_carlo(
-            **request, n_events=count, seed=key, first_event=first, progress=report
-        )
-    beam = Beam(potential, request["beam_energy"], request["masses"], request["b_max"], smallest)
-    events = ((key, first, first + counted),)
-    result = MonteCarlo(beam, events, tuple(Tally(*column, beam, events) for column in columns))
-    if interrupted:
-        raise Interrupted(f"interrupted after {counted} of {count} events", result=result)
-    return result
+        if executor is not None:
+            counted = spread(executor, request, first, count, report)
+        else:
+            counted = [_core.monte_carlo(**request, n_events=count, first_event=first, progress=report)]
+    results, at = [], first
+    for events, _, smallest, tables, columns in counted:
+        found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
+        which = ((key, at, at + events),)
+        at += events
+        results.append(MonteCarlo(found, which, tuple(_tally(*column, found, which) for column in columns)))
+    result: MonteCarlo | None = sum(results[1:], start=results[0]) if results else None
+    if at - first < count:
+        raise Interrupted(f"interrupted after {at - first} of {count} events", result=result)
+    if result is not None and counted[-1][1]:
+        raise Interrupted(f"interrupted after {count} of {count} events", result=result)
+    return result  # type: ignore[return-value]  # there is at least one event
 
 
-def _tallies(tally: object, bins: int) -> list[tuple[str, int | NDArray[np.float64]]]:
+def _tally(
+    names: list[str],
+    edges: list[NDArray[np.float64]],
+    flow: NDArray[np.uint64],
+    captured: int,
+    single: tuple[NDArray[np.float64], tuple[float, float]] | None,
+    beam: Beam,
+    events: tuple[tuple[int, int, int], ...],
+) -> Tally | JointTally:
+    if single is None:
+        return JointTally(tuple(names), tuple(edges), flow, captured, beam, events)
+    reachable, covered = single
+    under, over = int(flow[0]), int(flow[-1])
+    return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
+
+
+Axes: TypeAlias = "list[tuple[str, int | NDArray[np.float64]]]"
+
+
+def _tallies(tally: object, bins: int) -> list[Axes]:
     if isinstance(tally, str):
         tally = (tally,)
-    pairs: list[tuple[str, int | NDArray[np.float64]]]
+    pairs: list[tuple[Any, Any]]
     if isinstance(tally, Mapping):
-        pairs = [(name, _edges_or_bins(str(name), given)) for name, given in tally.items()]
+        pairs = list(tally.items())
     elif isinstance(tally, Iterable):
         # A set has no order of its own that would be the same in the next process.
-        pairs = [(name, bins) for name in (sorted(tally, key=str) if isinstance(tally, Set) else tally)]
+        pairs = [(name, None) for name in (sorted(tally, key=str) if isinstance(tally, Set) else tally)]
     else:
         raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
     names = [name for name, _ in pairs]
-    if not names or not all(isinstance(name, str) for name in names) or len(set(names)) < len(names):
-        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
+    if not names or not all(_named(name) for name in names) or len(set(names)) < len(names):
+        raise InvalidInput("tally", f"expected one or more different names, or pairs of names, got {names!r}")
+    return [_axes(name, given, bins) for name, given in pairs]
+
+
+def _named(name: object) -> bool:
+    """Whether it is the name of a quantity, or of two together."""
+    if isinstance(name, tuple):
+        return len(name) == 2 and all(isinstance(one, str) for one in name) and name[0] != name[1]
+    return isinstance(name, str)
+
+
+def _axes(name: str | tuple[str, str], given: Any, bins: int) -> Axes:
+    names = (name,) if isinstance(name, str) else name
+    if given is None:
+        each = (bins,) * len(names)
+    elif isinstance(name, str):
+        each = (given,)
+    elif not isinstance(given, tuple | list) or len(given) != len(names):
+        raise InvalidInput("tally", f"expected edges or a number of bins for each of {name}, got {given!r}")
+    else:
+        each = tuple(given)
     # Half a surrogate pair is no text to the core; what remains is refused there as an unknown name.
-    return [(name.encode(errors="replace").decode(), edges) for name, edges in pairs]
+    told = [one.encode(errors="replace").decode() for one in names]
+    return [(one, _edges_or_bins(one, edges)) for one, edges in zip(told, each, strict=True)]
 
 
 def _edges_or_bins(name: str, given: Any) -> int | NDArray[np.float64]:

@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
 from visviva import _core
+from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from numpy.typing import NDArray
 
-    from visviva.potentials import Coulomb
+    from visviva.potentials import Potential
 
-__all__ = ["Beam", "CrossSection", "MonteCarlo", "Tally"]
+__all__ = ["Beam", "CrossSection", "JointTally", "OfEvents", "Spectrum", "Tally", "is_zero"]
 
 _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
@@ -35,31 +33,75 @@ class CrossSection(NamedTuple):
 
 @known_keywords
 @dataclass(frozen=True)
+class Spectrum:
+    """Energies of a beam, each with its part of the projectiles.
+
+    Parameters
+    ----------
+    energy : array_like
+        Positive.
+    weight : array_like
+        Positive, one for each energy; only their ratios count.
+
+    Raises
+    ------
+    InvalidInput
+        For what is no such list.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> lines = vv.scattering.Spectrum([5.486, 5.443], [84.8, 13.1])
+    >>> lines.energy
+    (5.486, 5.443)
+    """
+
+    energy: tuple[float, ...]
+    weight: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("energy", "weight"):
+            values = float_array(name, getattr(self, name), (None,))
+            if not values.size or not (values > 0.0).all():
+                raise InvalidInput(name, f"expected one or more positive numbers, got {values.tolist()}")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        if len(self.energy) != len(self.weight):
+            raise InvalidInput(
+                "weight", f"expected one for each of {len(self.energy)} energies, got {len(self.weight)}"
+            )
+
+
+@known_keywords
+@dataclass(frozen=True)
 class Beam:
     """A parallel beam on a disc around one centre: what results must have in common to be added.
 
     Attributes
     ----------
-    potential : Coulomb
-        V = k/r.
-    beam_energy : float
+    potential : Potential
+        V(r).
+    beam_energy : float or Spectrum
         Of the projectile in the laboratory.
     masses : tuple of float
         Projectile and target.
     b_max : float
         Radius of the disc of impact parameters.
     smallest_angle : float
-        The deflection at the edge of the disc, in the centre-of-mass frame: no event is scattered by less.
+        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where deflections
+        fall with the impact parameter, no event is scattered by less.
+    tables : tuple of int
+        The hash of the event table of each energy, from which angles are taken; none of a Coulomb target.
     """
 
-    potential: Coulomb
-    beam_energy: float
+    potential: Potential
+    beam_energy: float | Spectrum
     masses: tuple[float, float]
     b_max: float
     smallest_angle: float
+    tables: tuple[int, ...] = ()
 
 
-class _OfEvents:
+class OfEvents:
     """What a result and each of its tallies know: the beam and which of its events."""
 
     beam: Beam
@@ -75,9 +117,9 @@ class _OfEvents:
         """Radius of the disc of impact parameters."""
         return self.beam.b_max
 
-    def _merged_events(self, other: _OfEvents) -> tuple[tuple[int, int, int], ...]:
+    def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
-        for name in ("potential", "beam_energy", "masses", "b_max"):
+        for name in ("potential", "beam_energy", "masses", "b_max", "tables"):
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
@@ -86,7 +128,7 @@ class _OfEvents:
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
+class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -101,6 +143,8 @@ class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         Events per bin.
     underflow, overflow : int
         Events below the first and above the last edge.
+    captured : int
+        Events that fell into the center and so have no such quantity.
     reachable : ndarray, shape (B,)
         For each bin the part of it (of its solid angle for angles, else of its width) whose impact parameters all
         lie on the disc: 1 for a bin that is reached whole, 0 for one that is not, between for one that the edge of
@@ -112,7 +156,7 @@ class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     events : tuple
         Which events: sorted (seed, first, end) with end excluded.
     n_events : int
-        Events in all: the sum of ``counts``, ``underflow`` and ``overflow``.
+        Events in all: the sum of ``counts``, ``underflow``, ``overflow`` and ``captured``.
     b_max : float
         Radius of the disc of impact parameters.
     """
@@ -126,6 +170,7 @@ class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     covered: tuple[float, float]
     beam: Beam
     events: tuple[tuple[int, int, int], ...]
+    captured: int = 0
 
     def __post_init__(self) -> None:
         for array in (self.edges, self.counts, self.reachable):
@@ -179,10 +224,21 @@ class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         scale[known] = np.pi * self.b_max**2 / (self.n_events * (width * self.reachable)[known])
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
+    def to_hist(self) -> Any:
+        """As a ``hist.Hist``, what is below and above too.
+
+        Raises
+        ------
+        ImportError
+            Without the package hist.
+        """
+        flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
+        return _to_hist((self.name,), (self.edges,), flow)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Tally):
             return NotImplemented
-        numbers = ("name", "underflow", "overflow", "beam", "events")
+        numbers = ("name", "underflow", "overflow", "captured", "beam", "events")
         return all(getattr(self, name) == getattr(other, name) for name in numbers) and all(
             np.array_equal(getattr(self, name), getattr(other, name)) for name in ("edges", "counts")
         )
@@ -197,106 +253,114 @@ class Tally(_OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
             counts=self.counts + other.counts,
             underflow=self.underflow + other.underflow,
             overflow=self.overflow + other.overflow,
+            captured=self.captured + other.captured,
             events=self._merged_events(other),
         )
 
     def __radd__(self, other: int) -> Tally:
         """Begin a `sum`."""
-        return self if _is_zero(other) else NotImplemented
+        return self if is_zero(other) else NotImplemented
+
+
+def _to_hist(names: tuple[str, ...], edges: tuple[NDArray[np.float64], ...], flow: NDArray[np.uint64]) -> Any:
+    try:
+        import hist
+    except ImportError as error:
+        raise ImportError("to_hist needs the package hist: pip install visviva[hist]") from error
+    axes = [hist.axis.Variable(values, name=name) for name, values in zip(names, edges, strict=True)]
+    filled = hist.Hist(*axes, storage=hist.storage.Int64())
+    filled.view(flow=True)[...] = flow
+    return filled
 
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class MonteCarlo(_OfEvents, Mapping[str, Tally]):  # noqa: PLW1641 — as its tallies
-    """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
+class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
+    """A histogram of two quantities together.
 
     Attributes
     ----------
+    name : tuple of str
+        The quantities.
+    edges : tuple of ndarray
+        Strictly increasing, of each quantity.
+    flow : ndarray of uint64, shape (B₁ + 2, B₂ + 2)
+        Events: along each axis below the first edge, the bins, and above the last edge.
+    captured : int
+        Events that fell into the center.
     beam : Beam
-        What was scattered by what: ``potential``, ``beam_energy``, ``masses``, ``b_max`` and ``smallest_angle``, which
-        are attributes of the result too.
+        What was scattered by what.
     events : tuple
         Which events: sorted (seed, first, end) with end excluded.
-    tallies : tuple of Tally
-        In the order asked for.
     """
 
+    name: tuple[str, ...]
+    edges: tuple[NDArray[np.float64], ...]
+    flow: NDArray[np.uint64]
+    captured: int
     beam: Beam
     events: tuple[tuple[int, int, int], ...]
-    tallies: tuple[Tally, ...]
+
+    def __post_init__(self) -> None:
+        for array in (*self.edges, self.flow):
+            array.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a pickle does not keep that arrays are read-only
 
     @property
-    def potential(self) -> Coulomb:
-        """V = k/r."""
-        return self.beam.potential
+    def counts(self) -> NDArray[np.uint64]:
+        """Events in the bins, shape (B₁, B₂)."""
+        return self.flow[1:-1, 1:-1]
 
-    @property
-    def beam_energy(self) -> float:
-        """Energy of the projectile in the laboratory."""
-        return self.beam.beam_energy
+    def values(self) -> NDArray[np.float64]:
+        """Counts as float64, exact up to 2⁵³."""
+        return self.counts.astype(np.float64)
 
-    @property
-    def masses(self) -> tuple[float, float]:
-        """Projectile and target."""
-        return self.beam.masses
+    def variances(self) -> NDArray[np.float64]:
+        """Variances of the counts, n·(1 − n/N), binomial."""
+        counts = self.values()
+        return counts * (1.0 - counts / self.n_events)
 
-    @property
-    def smallest_angle(self) -> float:
-        """The deflection at the edge of the disc, in the centre-of-mass frame: no event is scattered by less."""
-        return self.beam.smallest_angle
-
-    @property
-    def next_event(self) -> int:
-        """The ``first_event`` of a run that goes on after this one.
+    def to_hist(self) -> Any:
+        """As a ``hist.Hist`` with both axes, what is below and above too.
 
         Raises
         ------
-        InvalidInput
-            If the events are of several seeds.
+        ImportError
+            Without the package hist.
         """
-        if len({seed for seed, _, _ in self.events}) > 1:
-            raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
-        return self.events[-1][2]
-
-    def __getitem__(self, name: str) -> Tally:
-        for tally in self.tallies:
-            if tally.name == name:
-                return tally
-        known = ", ".join(tally.name for tally in self.tallies)
-        raise KeyError(f"no tally {name!r}; this run has {known}")
-
-    def __iter__(self) -> Iterator[str]:
-        return (tally.name for tally in self.tallies)
-
-    def __len__(self) -> int:
-        return len(self.tallies)
+        return _to_hist(self.name, self.edges, self.flow)
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, MonteCarlo):
+        if not isinstance(other, JointTally):
             return NotImplemented
-        return (self.beam, self.events, self.tallies) == (other.beam, other.events, other.tallies)
-
-    def __add__(self, other: MonteCarlo) -> MonteCarlo:
-        if not isinstance(other, MonteCarlo):
-            return NotImplemented
-        events = self._merged_events(other)
-        if list(self) != list(other):
-            raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        return replace(self, events=events, tallies=tuple(self[name] + other[name] for name in self))
-
-    def __radd__(self, other: int) -> MonteCarlo:
-        """Begin a `sum`."""
-        return self if _is_zero(other) else NotImplemented
-
-    def __repr__(self) -> str:
-        k, sizes = self.potential.k, ", ".join(f"{tally.name} ({len(tally.counts)} bins)" for tally in self.tallies)
+        numbers = ("name", "captured", "beam", "events")
         return (
-            f"<MonteCarlo: {self.n_events} events on k = {k:g}, beam energy {self.beam_energy:g}, "
-            f"masses {self.masses}, b_max {self.b_max:g}: {sizes}>"
+            all(getattr(self, name) == getattr(other, name) for name in numbers)
+            and all(np.array_equal(a, b) for a, b in zip(self.edges, other.edges, strict=True))
+            and np.array_equal(self.flow, other.flow)
         )
 
+    def __add__(self, other: JointTally) -> JointTally:
+        if not isinstance(other, JointTally):
+            return NotImplemented
+        if self.name != other.name or not all(map(np.array_equal, self.edges, other.edges)):
+            raise InvalidInput("other", f"expected a tally of {self.name} with the same edges, got one of {other.name}")
+        return replace(
+            self,
+            flow=self.flow + other.flow,
+            captured=self.captured + other.captured,
+            events=self._merged_events(other),
+        )
 
-def _is_zero(value: object) -> bool:
+    def __radd__(self, other: int) -> JointTally:
+        """Begin a `sum`."""
+        return self if is_zero(other) else NotImplemented
+
+
+def is_zero(value: object) -> bool:
     return type(value) is int and value == 0
 
 

@@ -72,15 +72,20 @@ impl Draw {
     }
 }
 
-/// Counter words 2 and 3 of the draws made here.
-const DRAW: u32 = 0;
+/// Counter word 3 of the draws made here.
 const STREAM: u32 = 0;
 
 /// Draw 0 of event `event` in stream 0: 53 random bits that depend on seed and event alone.
 #[inline]
 pub const fn draw(key: Key, event: u64) -> Draw {
+    draw_of(key, event, 0)
+}
+
+/// Any draw of an event in stream 0.
+#[inline]
+pub const fn draw_of(key: Key, event: u64, number: u32) -> Draw {
     let block = event >> 1;
-    let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, DRAW, STREAM]);
+    let [a, b, c, d] = philox(key, [block as u32, (block >> 32) as u32, number, STREAM]);
     let (low, high) = if event & 1 == 0 { (a, b) } else { (c, d) };
     Draw::of((high as u64) << 32 | low as u64)
 }
@@ -89,15 +94,15 @@ pub const fn draw(key: Key, event: u64) -> Draw {
 pub const DRAWS: usize = 2 * WIDTH;
 
 crate::tiered! {
-    /// The draws of the events from `2 * block` on, as [`draw`] gives them.
-    pub fn fill_draws[][](key: Key, block: u64, draws: &mut [[Draw; DRAWS]]) = draws_body;
+    /// The draws `number` of the events from `2 * block` on, as [`draw_of`] gives them.
+    pub fn fill_draws[][](key: Key, block: u64, number: u32, draws: &mut [[Draw; DRAWS]]) = draws_body;
 }
 
 /// Eight blocks at a time, written so that the compiler makes vectors of it: each 32-bit word stays in
 /// the low half of a 64-bit lane.
 #[expect(clippy::extra_unused_type_parameters, reason = "integers know no tier, but `tiered!` names one")]
 #[inline(always)]
-fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[Draw; DRAWS]]) {
+fn draws_body<V>(key: Key, mut block: u64, number: u32, draws: &mut [[Draw; DRAWS]]) {
     for sixteen in draws {
         let low = |x: u64| x & 0xffff_ffff;
         let mut x0 = [0_u64; WIDTH];
@@ -107,7 +112,7 @@ fn draws_body<V>(key: Key, mut block: u64, draws: &mut [[Draw; DRAWS]]) {
             x0[lane] = counter;
             x1[lane] = counter >> 32;
         }
-        let mut x2 = [u64::from(DRAW); WIDTH];
+        let mut x2 = [u64::from(number); WIDTH];
         let mut x3 = [u64::from(STREAM); WIDTH];
         for round in 0..ROUNDS {
             let [k0, k1] = round_key(key, round);
@@ -166,6 +171,7 @@ mod tests {
         let even = |words: [u32; 4]| (u64::from(words[1]) << 32 | u64::from(words[0])) >> 11;
         assert_eq!(draw(key(seed), event).number(), odd(block(0, 0)));
         assert_eq!(draw(key(seed), event - 1).number(), even(block(0, 0)));
+        assert_eq!(draw_of(key(seed), event, 1).number(), odd(block(1, 0)));
         let others = [block(0, 0), block(1, 0), block(0, 1)].map(odd);
         assert_eq!(others, KNOWN_DRAWS);
     }
@@ -177,10 +183,11 @@ mod tests {
         fn lanes_give_the_draws_of_the_scalar_cipher(
             seed: u64,
             block in prop_oneof![0..100_u64, (u64::from(u32::MAX) - 20)..(1_u64 << 33), 0..(1_u64 << 62)],
+            number in 0..5_u32,
         ) {
             let mut draws = [[Draw::default(); DRAWS]; 3];
-            fill_draws(key(seed), block, &mut draws);
-            let expected: Vec<Draw> = (0..48).map(|event| draw(key(seed), 2 * block + event)).collect();
+            fill_draws(key(seed), block, number, &mut draws);
+            let expected: Vec<Draw> = (0..48).map(|event| draw_of(key(seed), 2 * block + event, number)).collect();
             prop_assert_eq!(draws.as_flattened(), expected);
         }
     }

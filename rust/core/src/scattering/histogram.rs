@@ -1,7 +1,7 @@
 //! Histograms of a function of one draw, without evaluating the function.
 //!
-//! The one idea: a tally of a Monte Carlo event is a function of the event's 53-bit draw that rises or
-//! falls in a few monotone stretches. So the edges of the bins are carried back to the draws once, by
+//! The one idea: a tally of a Monte Carlo event, of one quantity or of two together, is a function of the event's 53-bit
+//! draw whose quantities rise or fall in monotone stretches. So the edges of the bins are carried back to the draws once, by
 //! bisection on the computed function itself, and an event costs a table look-up and an integer
 //! comparison.
 
@@ -70,68 +70,80 @@ impl Edges {
         self.0.len() - 1
     }
     /// The slot of x: 0 below, 1 + bin, or `bins + 1` above.
-    fn slot(&self, x: f64) -> usize {
+    pub(super) fn slot(&self, x: f64) -> usize {
         if x == self.0[self.bins()] { self.bins() } else { self.0.partition_point(|edge| *edge <= x) }
-    }
-}
-
-/// Counts of the bins, below the first and above the last.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct BinCounts {
-    /// For each bin.
-    pub bins: Vec<u64>,
-    /// Below the first edge.
-    pub underflow: u64,
-    /// Above the last edge.
-    pub overflow: u64,
-}
-
-impl BinCounts {
-    /// None yet, of so many bins.
-    pub fn none(bins: usize) -> Self {
-        Self { bins: vec![0; bins], underflow: 0, overflow: 0 }
-    }
-    /// Adds the counts of other events in the same bins.
-    pub fn add(&mut self, other: &Self) {
-        for (sum, count) in self.bins.iter_mut().zip(&other.bins) {
-            *sum += count;
-        }
-        self.underflow += other.underflow;
-        self.overflow += other.overflow;
     }
 }
 
 /// How many draws there are: the first number that is none.
 const DRAWS: u64 = 1 << DRAW_BITS;
-/// Counters per piece, used in turn: neighbouring events of one piece do not wait for each other.
-const BANKS: usize = 4;
 
-/// A step function of the draw: which slot of the histogram each draw falls into.
+/// Which of many intervals a draw falls into.
 #[derive(Clone, Debug)]
-pub struct Steps {
-    /// Piece p holds the draws from `starts[p]` to below `starts[p + 1]`; closed by a number above all.
+pub struct Lookup {
+    /// Interval p holds the draws from `starts[p]` to below `starts[p + 1]`; closed by a number above all.
     starts: Vec<u64>,
-    slots: Vec<usize>,
-    /// The piece of the first draw of each of 2^k equal cells.
+    /// The interval of the first draw of each of 2^k equal cells.
     cells: Vec<u32>,
     shift: u32,
 }
 
+impl Lookup {
+    /// Of intervals that begin at increasing draws, the first at 0; so many cells for each, about.
+    pub fn new(mut starts: Vec<u64>, cells_each: usize) -> Self {
+        let cells = (cells_each * starts.len()).next_power_of_two().clamp(1 << 8, 1 << 18);
+        let shift = DRAW_BITS - cells.trailing_zeros();
+        let cells = (0..cells as u64)
+            .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
+            .collect();
+        starts.push(u64::MAX);
+        Self { starts, cells, shift }
+    }
+    /// How many intervals.
+    pub fn intervals(&self) -> usize {
+        self.starts.len() - 1
+    }
+    /// The interval of a draw, below [`intervals`](Self::intervals).
+    #[inline(always)]
+    fn find(&self, draw: Draw) -> usize {
+        let draw = draw.number();
+        // SAFETY: a `Draw` has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a cell holds an
+        // interval; the last start, u64::MAX, exceeds every draw, so the search ends at an interval.
+        unsafe {
+            let mut piece = *self.cells.get_unchecked((draw >> self.shift) as usize) as usize;
+            while draw >= *self.starts.get_unchecked(piece + 1) {
+                piece += 1;
+            }
+            piece
+        }
+    }
+    /// Those of several.
+    pub fn find_all(&self, draws: &[Draw], found: &mut [u32]) {
+        for (draw, found) in draws.iter().zip(found) {
+            *found = self.find(*draw) as u32;
+        }
+    }
+}
+
+/// A step function of the draw: which slot of the histogram each draw falls into.
+#[derive(Clone, Debug)]
+pub struct Steps {
+    lookup: Lookup,
+    slots: Vec<usize>,
+}
+
 impl Steps {
-    /// For `value`, monotone in the draw on each side of `turning`.
+    /// Counters per piece, used in turn: neighbouring events of one piece do not wait for each other.
+    pub const BANKS: usize = 4;
+
+    /// For a slot of each draw that rises or falls between the `turning` ones, which increase.
     ///
     /// # Errors
     /// `Interrupted`: each of many edges takes some fifty evaluations.
-    pub fn new(
-        edges: &Edges,
-        turning: Option<u64>,
-        value: impl Fn(u64) -> f64,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Self> {
-        let turning = turning.map_or(0, |draw| draw.clamp(1, DRAWS - 1));
-        let slot = |draw: u64| edges.slot(value(draw));
+    pub fn new(turning: &[u64], slot: impl Fn(u64) -> usize, ticker: &mut Ticker<'_>) -> Result<Self> {
         let mut starts = vec![0];
-        for (from, to) in [(0, turning), (turning, DRAWS)] {
+        let ends = turning.iter().copied().chain([DRAWS]);
+        for (from, to) in [0].into_iter().chain(turning.iter().copied()).zip(ends) {
             if from < to {
                 starts.push(from);
                 steps_between(from, to - 1, &slot, &mut starts, ticker)?;
@@ -140,46 +152,36 @@ impl Steps {
         starts.sort_unstable();
         starts.dedup();
         let slots: Vec<usize> = starts.iter().map(|start| slot(*start)).collect();
-        starts.push(u64::MAX);
+        // What begins a stretch, but no other slot, is no step.
+        let mut before = None;
+        let (starts, slots): (Vec<u64>, Vec<usize>) =
+            starts.into_iter().zip(slots).filter(|(_, slot)| before.replace(*slot) != Some(*slot)).unzip();
         // Draws are uniform: with 32 cells per piece a comparison fails once in 60 events or so.
-        let cells = (32 * slots.len()).next_power_of_two().clamp(1 << 12, 1 << 18);
-        let shift = DRAW_BITS - cells.trailing_zeros();
-        let cells = (0..cells as u64)
-            .map(|cell| (starts.partition_point(|start| *start <= cell << shift) - 1) as u32)
-            .collect();
-        Ok(Self { starts, slots, cells, shift })
+        Ok(Self { lookup: Lookup::new(starts, 32), slots })
     }
     /// How many pieces.
     pub fn pieces(&self) -> usize {
         self.slots.len()
     }
     /// Room to count in.
-    pub fn counters(&self) -> Vec<[u64; BANKS]> {
-        vec![[0; BANKS]; self.pieces()]
+    pub fn counters(&self) -> Vec<[u64; Self::BANKS]> {
+        vec![[0; Self::BANKS]; self.pieces()]
     }
     /// Counts draws in counters from [`Steps::counters`].
     ///
     /// # Panics
     /// For the counters of another histogram: a defect of the caller.
     #[inline]
-    pub fn count(&self, draws: &[Draw], counters: &mut [[u64; BANKS]]) {
+    pub fn count(&self, draws: &[Draw], counters: &mut [[u64; Self::BANKS]]) {
         assert!(counters.len() == self.pieces(), "counters of another histogram");
         let mut one = |draw: Draw, bank: usize| {
-            let draw = draw.number();
-            // SAFETY: a `Draw` has 53 bits, so its cell is below 2^(53 - shift), the number of cells; a
-            // cell holds a piece; the last start, u64::MAX, exceeds every draw, so the search ends at
-            // a piece; there are as many counters as pieces.
-            unsafe {
-                let mut piece = *self.cells.get_unchecked((draw >> self.shift) as usize) as usize;
-                while draw >= *self.starts.get_unchecked(piece + 1) {
-                    piece += 1;
-                }
-                counters.get_unchecked_mut(piece)[bank] += 1;
-            }
+            let piece = self.lookup.find(draw);
+            // SAFETY: a draw is found in an interval, and there are as many counters as intervals.
+            unsafe { counters.get_unchecked_mut(piece)[bank] += 1 };
         };
-        let (fours, rest) = draws.as_chunks::<BANKS>();
+        let (fours, rest) = draws.as_chunks::<{ Self::BANKS }>();
         for four in fours {
-            for bank in 0..BANKS {
+            for bank in 0..Self::BANKS {
                 one(four[bank], bank);
             }
         }
@@ -187,18 +189,31 @@ impl Steps {
             one(*draw, 0);
         }
     }
-    /// Sums counters into the slots of the histogram.
-    pub fn collect(&self, bins: usize, counters: &[[u64; BANKS]]) -> BinCounts {
-        let mut slots = vec![0_u64; bins + 2];
+    /// Counts draws, each by the step function of its component.
+    ///
+    /// # Panics
+    /// For counters of others, or a component that there is not: a defect of the caller.
+    pub fn count_mixed(
+        steps: &[Self],
+        components: &[u32],
+        draws: &[Draw],
+        counters: &mut [Vec<[u64; Self::BANKS]>],
+    ) {
+        for (event, (draw, component)) in draws.iter().zip(components).enumerate() {
+            let (steps, counters) = (&steps[*component as usize], &mut counters[*component as usize]);
+            counters[steps.lookup.find(*draw)][event % Self::BANKS] += 1;
+        }
+    }
+    /// Adds counters to the slots of the histogram.
+    pub fn collect(&self, counters: &[[u64; Self::BANKS]], slots: &mut [u64]) {
         for (slot, banks) in self.slots.iter().zip(counters) {
             slots[*slot] += banks.iter().sum::<u64>();
         }
-        BinCounts { underflow: slots[0], overflow: slots[bins + 1], bins: slots[1..=bins].to_vec() }
     }
 }
 
 /// Adds every draw in `from + 1..=to` whose slot differs from that of the draw before, by bisection:
-/// `slot` is monotone, so where both ends agree there is no step.
+/// `slot` is that of monotone quantities, so where both ends agree there is no step.
 fn steps_between(
     from: u64,
     to: u64,
@@ -230,16 +245,20 @@ mod tests {
     use crate::parallel::Control;
     use proptest::prelude::*;
 
-    fn steps(edges: &Edges, turning: Option<u64>, value: impl Fn(u64) -> f64) -> Steps {
-        Steps::new(edges, turning, value, &mut Ticker::quiet(&Control::new(0))).unwrap()
+    fn steps(edges: &Edges, turning: &[u64], value: impl Fn(u64) -> f64) -> Steps {
+        Steps::new(turning, |draw| edges.slot(value(draw)), &mut Ticker::quiet(&Control::new(0))).unwrap()
+    }
+
+    fn slots_of(steps: &Steps, bins: usize, counters: &[[u64; Steps::BANKS]]) -> Vec<u64> {
+        let mut slots = vec![0; bins + 2];
+        steps.collect(counters, &mut slots);
+        slots
     }
 
     fn slot_of(steps: &Steps, bins: usize, draw: u64) -> usize {
         let mut counters = steps.counters();
         steps.count(&[Draw::of(draw << (64 - DRAW_BITS))], &mut counters);
-        let counts = steps.collect(bins, &counters);
-        let slots = [&[counts.underflow], counts.bins.as_slice(), &[counts.overflow]].concat();
-        slots.iter().position(|count| *count == 1).unwrap()
+        slots_of(steps, bins, &counters).iter().position(|count| *count == 1).unwrap()
     }
 
     #[test]
@@ -265,7 +284,7 @@ mod tests {
         let control = Control::new(0);
         control.cancel();
         let edges = Edges::uniform(100, 0.0, 1.0).unwrap();
-        let outcome = Steps::new(&edges, None, |draw| draw as f64, &mut Ticker::quiet(&control));
+        let outcome = Steps::new(&[], |draw| edges.slot(draw as f64), &mut Ticker::quiet(&control));
         assert!(matches!(outcome, Err(Error::Interrupted)));
     }
 
@@ -273,10 +292,13 @@ mod tests {
     #[test]
     fn nothing_is_counted_outside_the_counters() {
         let edges = Edges::uniform(2, 0.0, 1.0).unwrap();
-        let steps = steps(&edges, None, |draw| draw as f64 / DRAWS as f64);
+        let steps = steps(&edges, &[], |draw| draw as f64 / DRAWS as f64);
         let mut counters = steps.counters();
         steps.count(&[Draw::of(u64::MAX), Draw::of(0)], &mut counters);
-        assert_eq!((Draw::of(u64::MAX).number(), steps.collect(2, &counters).bins), (DRAWS - 1, vec![1, 1]));
+        assert_eq!(
+            (Draw::of(u64::MAX).number(), slots_of(&steps, 2, &counters)),
+            (DRAWS - 1, vec![0, 1, 1, 0])
+        );
         let short = std::panic::catch_unwind(|| steps.count(&[Draw::of(0)], &mut steps.counters()[1..]));
         assert!(short.is_err());
     }
@@ -295,16 +317,22 @@ mod tests {
             let edges = Edges::new("bins", edges).unwrap();
             let unit = |draw: u64| draw as f64 / DRAWS as f64;
             type Function = Box<dyn Fn(u64) -> f64>;
-            let functions: [(Option<u64>, Function); 3] = [
-                (None, Box::new(move |draw| unit(draw).sqrt())),
-                (None, Box::new(move |draw| 1.0 - unit(draw) * unit(draw))),
-                (Some(DRAWS / 4), Box::new(move |draw| {
+            let functions: [(&[u64], Function); 4] = [
+                (&[], Box::new(move |draw| unit(draw).sqrt())),
+                (&[], Box::new(move |draw| 1.0 - unit(draw) * unit(draw))),
+                (&[DRAWS / 4], Box::new(move |draw| {
                     if draw <= DRAWS / 4 { 3.9 * unit(draw) } else { 1.3 * (1.0 - unit(draw)) }
+                })),
+                // Up, down, up again, and a jump.
+                (&[DRAWS / 4, DRAWS / 2, DRAWS / 4 * 3], Box::new(move |draw| {
+                    let part = unit(draw % (DRAWS / 2));
+                    let jump = if draw >= DRAWS / 4 * 3 { 0.2 } else { 0.0 };
+                    if part <= 0.25 { 3.2 * part - jump } else { 1.6 - 3.2 * part - jump }
                 })),
             ];
             for (turning, value) in functions {
                 let steps = steps(&edges, turning, &value);
-                let sides = steps.starts[1..steps.pieces()].iter().flat_map(|start| [start - 1, *start]);
+                let sides = steps.lookup.starts[1..steps.pieces()].iter().flat_map(|start| [start - 1, *start]);
                 for draw in draws.iter().copied().chain(sides).chain([0, DRAWS - 1]) {
                     prop_assert_eq!(slot_of(&steps, edges.bins(), draw), edges.slot(value(draw)));
                 }

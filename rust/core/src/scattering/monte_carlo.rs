@@ -1,218 +1,35 @@
-//! Monte Carlo of a beam on a Coulomb target.
+//! Monte Carlo of a beam on one target.
 //!
 //! The one idea: an event is its impact parameter, b² uniform over a disc, and b is one Philox draw of
 //! the event's index; counts are integers. So a histogram depends on the seed and on which events were
-//! run, not on how they were divided, and ranges of events add.
+//! run, not on how they were divided, and ranges of events add. A beam of several energies is a mixture of beams,
+//! and which one an event belongs to is its next draw.
 //!
 //! Nothing is computed that no tally needs: the azimuth is not drawn, and no angle is evaluated per
 //! event (see [`histogram`](super::histogram)).
 //!
-//! What an event may use: of the numbers of [`philox`](crate::numerics::philox) draw 0 of stream 0, one per
-//! event, is b² / b_max². Whatever else an event will need one day (azimuth, foil, detector) takes draws 1, 2, …
-//! and leaves draw 0 as it is, so that counts that were published stay what they are.
+//! What an event uses of the numbers of [`philox`](crate::numerics::philox), all in stream 0, one per event each:
+//! - draw 0 is b² / b_max²;
+//! - draw 1 is the component of the mixture, in the order given; a beam of one energy does not look at it.
+//!
+//! Whatever else an event will need one day (azimuth, foil, detector) takes draws 2, 3, … and leaves these as they are,
+//! so that counts that were published stay what they are.
 
-use super::histogram::{BinCounts, Edges, Steps};
-use super::kinematics::{Collision, HalfAngle};
-use super::reach::Limits;
-use super::rutherford::half_distance;
-use crate::numerics::philox::{DRAW_BITS, DRAWS, Draw, fill_draws, key};
+mod beam;
+mod listed;
+mod mixture;
+mod quantity;
+
+pub use beam::Beam;
+pub use listed::{Event, events};
+pub use mixture::{Mixture, Tally};
+pub use quantity::Quantity;
+
+use super::histogram::{Lookup, Steps};
+use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
-use crate::words::{number, unknown};
 use crate::{Error, Result};
-use core::f64::consts::{FRAC_PI_2, PI};
 use core::ops::Range;
-
-/// What is tallied.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Quantity {
-    /// The scattering angle in the centre-of-mass frame, |ψ| in [0, π].
-    CmAngle,
-    /// The laboratory angle of the projectile, in [0, π].
-    LabAngle,
-    /// The laboratory angle of the target, in [0, π/2].
-    RecoilAngle,
-    /// The energy of the projectile afterwards.
-    Energy,
-    /// The energy of the target afterwards.
-    RecoilEnergy,
-    /// The impact parameter.
-    ImpactParameter,
-}
-
-impl Quantity {
-    /// All of them, with their names.
-    pub const ALL: [(&'static str, Self); 6] = [
-        ("cm_angle", Self::CmAngle),
-        ("lab_angle", Self::LabAngle),
-        ("recoil_angle", Self::RecoilAngle),
-        ("energy", Self::Energy),
-        ("recoil_energy", Self::RecoilEnergy),
-        ("impact_parameter", Self::ImpactParameter),
-    ];
-    /// By name.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `tally`.
-    pub fn named(name: &str) -> Result<Self> {
-        Self::ALL
-            .iter()
-            .find(|(known, _)| *known == name)
-            .map(|(_, quantity)| *quantity)
-            .ok_or_else(|| unknown("tally", name, Self::ALL.iter().map(|(known, _)| *known)))
-    }
-    /// Its name.
-    pub fn name(self) -> &'static str {
-        Self::ALL.iter().find(|(_, quantity)| *quantity == self).map_or("", |(name, _)| name)
-    }
-}
-
-/// A parallel beam on a disc around a Coulomb centre that is free to recoil.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Beam {
-    collision: Collision,
-    energy: f64,
-    b_max: f64,
-    /// b_max/|κ|: the largest t.
-    reach: f64,
-}
-
-impl Beam {
-    /// V = k/r; `energy` is the projectile's in the laboratory, `masses` projectile and target.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming what is not positive and finite, or `b_max` if the distance k/2E is not
-    /// within 150 decades of it.
-    pub fn new(k: f64, energy: f64, masses: (f64, f64), b_max: f64) -> Result<Self> {
-        if !(k.is_finite() && k != 0.0) {
-            return Err(Error::invalid(
-                "potential",
-                format!("expected a finite k other than 0, got k = {}", number(k)),
-            ));
-        }
-        for (name, value) in [("beam_energy", energy), ("b_max", b_max)] {
-            if !(value > 0.0 && value.is_finite()) {
-                return Err(Error::invalid(
-                    name,
-                    format!("expected a positive finite number, got {}", number(value)),
-                ));
-            }
-        }
-        let collision = Collision::new(masses.0, masses.1)?;
-        let half_distance = half_distance(k, energy * collision.relative_share()).abs();
-        let reach = b_max / half_distance;
-        if !(1e-150..=1e150).contains(&reach) {
-            return Err(Error::invalid(
-                "b_max",
-                format!(
-                    "expected a length within 150 decades of |k|/(2 E) = {}, E the energy of \
-                     relative motion, got {}",
-                    number(half_distance),
-                    number(b_max)
-                ),
-            ));
-        }
-        Ok(Self { collision, energy, b_max, reach })
-    }
-    /// The value of a quantity when b² is the fraction `share` of b_max².
-    pub fn value(&self, quantity: Quantity, share: f64) -> f64 {
-        let root = share.sqrt();
-        let half = HalfAngle::from_cotangent(self.reach * root);
-        match quantity {
-            Quantity::CmAngle => half.cm_angle(),
-            Quantity::LabAngle => self.collision.lab_angle(half),
-            Quantity::RecoilAngle => half.recoil_angle(),
-            Quantity::Energy => self.energy * self.collision.kept(half),
-            Quantity::RecoilEnergy => self.energy * self.collision.transferred(half),
-            Quantity::ImpactParameter => self.b_max * root,
-        }
-    }
-    /// The numbers that edges of a quantity may be, and what they are called.
-    pub(super) fn limits(&self, quantity: Quantity) -> Limits {
-        match quantity {
-            Quantity::CmAngle | Quantity::LabAngle => Limits::angles("π", PI),
-            Quantity::RecoilAngle => Limits::angles("π/2", FRAC_PI_2),
-            Quantity::Energy | Quantity::RecoilEnergy => Limits::upto("beam_energy", self.energy),
-            // Beyond the disc no bin could count anything.
-            Quantity::ImpactParameter => Limits::upto("b_max", self.b_max),
-        }
-    }
-    /// Given edges of a quantity.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming the quantity, for what are no edges and for edges that it can never reach.
-    pub fn edges(&self, quantity: Quantity, edges: Vec<f64>) -> Result<Edges> {
-        let edges = Edges::new(quantity.name(), edges)?;
-        self.limits(quantity).check(quantity.name(), edges.values())?;
-        Ok(edges)
-    }
-    /// `bins` equal bins over all values a quantity can have.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `bins`, or what makes the greatest value too small to divide.
-    pub fn uniform_edges(&self, quantity: Quantity, bins: usize) -> Result<Edges> {
-        let (blamed, high) = match quantity {
-            Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
-            Quantity::RecoilAngle => ("bins", FRAC_PI_2),
-            Quantity::Energy => ("beam_energy", self.energy),
-            Quantity::RecoilEnergy => {
-                ("masses", self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
-            }
-            Quantity::ImpactParameter => ("b_max", self.b_max),
-        };
-        if high / (bins as f64) < f64::MIN_POSITIVE {
-            return Err(Error::invalid(
-                blamed,
-                format!(
-                    "expected a greatest {} that can be divided into bins, got {}; choose larger units, or \
-                     leave this tally out",
-                    quantity.name(),
-                    number(high)
-                ),
-            ));
-        }
-        Edges::uniform(bins, 0.0, high)
-    }
-    /// The deflection at the edge of the disc: no event is scattered by less.
-    pub fn smallest_angle(&self) -> f64 {
-        self.value(Quantity::CmAngle, 1.0)
-    }
-    /// The values of a quantity that no impact parameter beyond the disc leads to: what this beam counts there
-    /// is all that there is.
-    pub fn covered(&self, quantity: Quantity) -> (f64, f64) {
-        let edge = self.value(quantity, 1.0);
-        match quantity {
-            Quantity::CmAngle => (edge, PI),
-            // Of a heavy projectile the angle first grows with b: a disc that ends before its greatest covers nothing
-            // below that.
-            Quantity::LabAngle => {
-                let greatest = self.collision.turning_point().filter(|turning| *turning > self.reach);
-                let from = |t| self.collision.lab_angle(HalfAngle::from_cotangent(t));
-                (greatest.map_or(edge, from), PI)
-            }
-            Quantity::RecoilAngle => (0.0, edge),
-            Quantity::Energy => (0.0, edge),
-            Quantity::RecoilEnergy => (edge, self.energy),
-            Quantity::ImpactParameter => (0.0, self.b_max),
-        }
-    }
-    /// Whether two impact parameters lead to one value: a heavy projectile's laboratory angle.
-    pub fn two_branches(&self, quantity: Quantity) -> bool {
-        quantity == Quantity::LabAngle && self.collision.turning_point().is_some()
-    }
-    /// The step function of the draw that a tally is.
-    fn steps(&self, quantity: Quantity, edges: &Edges, ticker: &mut Ticker<'_>) -> Result<Steps> {
-        let turning = (quantity == Quantity::LabAngle)
-            .then(|| self.collision.turning_point())
-            .flatten()
-            .map(|t| (t / self.reach) * (t / self.reach))
-            .filter(|share| *share < 1.0)
-            .map(|share| (share * UNIT.recip()) as u64);
-        Steps::new(edges, turning, |draw| self.value(quantity, draw as f64 * UNIT), ticker)
-    }
-}
-
-/// A draw as a fraction: 2^-53.
-const UNIT: f64 = 1.0 / (1_u64 << DRAW_BITS) as f64;
 
 /// Events drawn at a time: their draws stay in the first-level cache.
 const BATCH: usize = 512;
@@ -231,8 +48,24 @@ const CHUNKS_PER_THREAD: u64 = 32;
 pub struct Counted {
     /// How many events, from the first on and without a gap: all of them unless the run was cancelled.
     pub events: u64,
-    /// One histogram per tally.
-    pub counts: Vec<BinCounts>,
+    /// One histogram per tally: its slots, see [`Tally::slots`].
+    pub counts: Vec<Vec<u64>>,
+}
+
+/// The index after the last of so many events.
+///
+/// # Errors
+/// `InvalidInput` if there is no event or the indices pass 2^63.
+fn end_of(first_event: u64, n_events: u64) -> Result<u64> {
+    if n_events == 0 {
+        return Err(Error::invalid("n_events", "expected at least 1 event, got 0"));
+    }
+    first_event.checked_add(n_events).filter(|end| *end <= 1 << 63).ok_or_else(|| {
+        Error::invalid(
+            "first_event",
+            format!("expected first_event + n_events up to 2**63, got {first_event} + {n_events}"),
+        )
+    })
 }
 
 /// Runs the events `first_event..first_event + n_events` and gives one histogram per tally.
@@ -243,28 +76,23 @@ pub struct Counted {
 /// # Errors
 /// `InvalidInput` if there is no event or the indices pass 2^63; `Interrupted` if nothing was counted yet.
 pub fn monte_carlo(
-    beam: &Beam,
-    tallies: &[(Quantity, Edges)],
+    mixture: &Mixture,
+    tallies: &[Tally],
     seed: u64,
     first_event: u64,
     n_events: u64,
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Counted> {
-    if n_events == 0 {
-        return Err(Error::invalid("n_events", "expected at least 1 event, got 0"));
-    }
-    let Some(end) = first_event.checked_add(n_events).filter(|end| *end <= 1 << 63) else {
-        return Err(Error::invalid(
-            "first_event",
-            format!("expected first_event + n_events up to 2**63, got {first_event} + {n_events}"),
-        ));
+    let end = end_of(first_event, n_events)?;
+    let program = Program {
+        component: mixture.lookup(),
+        steps: tallies
+            .iter()
+            .map(|tally| mixture.beams().map(|beam| tally.steps(beam, ticker)).collect())
+            .collect::<Result<_>>()?,
     };
-    let steps: Vec<Steps> = tallies
-        .iter()
-        .map(|(quantity, edges)| beam.steps(*quantity, edges, ticker))
-        .collect::<Result<_>>()?;
-    let counts = tallies.iter().map(|(_, edges)| BinCounts::none(edges.bins())).collect();
+    let counts = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
     let mut first = first_event;
@@ -273,15 +101,13 @@ pub fn monte_carlo(
         let chunks = events.div_ceil(EVENTS_PER_CHUNK).min(CHUNKS_PER_THREAD * threads as u64);
         let bound = |chunk: usize| first + (u128::from(events) * chunk as u128 / u128::from(chunks)) as u64;
         let parts = for_chunks(threads, chunks as usize, ticker, |chunk, ticker| {
-            Ok(count_events(&steps, tallies, seed, bound(chunk)..bound(chunk + 1), ticker))
+            Ok(program.count(seed, bound(chunk)..bound(chunk + 1), ticker))
         })?;
-        for (chunk, part) in parts.into_iter().enumerate() {
-            for (sum, counts) in counted.counts.iter_mut().zip(&part.counts) {
-                sum.add(counts);
-            }
-            counted.events += part.events;
+        for (chunk, (events, counters)) in parts.into_iter().enumerate() {
+            program.collect(&counters, &mut counted.counts);
+            counted.events += events;
             // Behind the first chunk that is not whole nothing is adjacent any more.
-            if part.events < bound(chunk + 1) - bound(chunk) {
+            if events < bound(chunk + 1) - bound(chunk) {
                 return if counted.events == 0 { Err(Error::Interrupted) } else { Ok(counted) };
             }
         }
@@ -290,41 +116,65 @@ pub fn monte_carlo(
     Ok(counted)
 }
 
-/// Counts events in their order until they end or the run is cancelled.
-fn count_events(
-    steps: &[Steps],
-    tallies: &[(Quantity, Edges)],
-    seed: u64,
-    events: Range<u64>,
-    ticker: &mut Ticker<'_>,
-) -> Counted {
-    if ticker.tick().is_err() {
-        return Counted { events: 0, counts: Vec::new() };
-    }
-    let mut counters: Vec<_> = steps.iter().map(Steps::counters).collect();
-    let mut event = events.start;
-    while event < events.end && ticker.tick().is_ok() {
-        let stop = events.end.min(event + EVENTS_PER_TICK);
-        ticker.advance(stop - event);
-        while event < stop {
-            let mut draws = [[Draw::default(); DRAWS]; BATCH / DRAWS];
-            fill_draws(key(seed), event >> 1, &mut draws);
-            // A block serves two events: an odd beginning leaves out its first.
-            let skipped = (event & 1) as usize;
-            let length = (stop - event).min((BATCH - skipped) as u64);
-            let used = &draws.as_flattened()[skipped..skipped + length as usize];
-            for (steps, counters) in steps.iter().zip(&mut counters) {
-                steps.count(used, counters);
-            }
-            event += length;
+/// Draws of a batch, sixteen events to each.
+type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
+
+/// What counting looks up.
+struct Program {
+    /// Which component of the mixture a draw is, if there are several.
+    component: Option<Lookup>,
+    /// Of each tally, for each component.
+    steps: Vec<Vec<Steps>>,
+}
+
+/// Of each tally, for each component.
+type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
+
+impl Program {
+    /// Counts events in their order until they end or the run is cancelled.
+    fn count(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> (u64, Counters) {
+        if ticker.tick().is_err() {
+            return (0, Vec::new());
         }
+        let of_tally = |steps: &Vec<Steps>| steps.iter().map(Steps::counters).collect();
+        let mut counters: Counters = self.steps.iter().map(of_tally).collect();
+        let mut event = events.start;
+        while event < events.end && ticker.tick().is_ok() {
+            let stop = events.end.min(event + EVENTS_PER_TICK);
+            ticker.control().count(stop - event);
+            while event < stop {
+                let mut draws: Batch = Default::default();
+                fill_draws(key(seed), event >> 1, 0, &mut draws);
+                // A block serves two events: an odd beginning leaves out its first.
+                let skipped = (event & 1) as usize;
+                let length = (stop - event).min((BATCH - skipped) as u64);
+                let used = skipped..skipped + length as usize;
+                let shares = &draws.as_flattened()[used.clone()];
+                if let Some(component) = &self.component {
+                    let mut draws: Batch = Default::default();
+                    fill_draws(key(seed), event >> 1, 1, &mut draws);
+                    let mut components = [0; BATCH];
+                    component.find_all(&draws.as_flattened()[used], &mut components);
+                    for (steps, counters) in self.steps.iter().zip(&mut counters) {
+                        Steps::count_mixed(steps, &components, shares, counters);
+                    }
+                } else {
+                    for (steps, counters) in self.steps.iter().flatten().zip(counters.iter_mut().flatten()) {
+                        steps.count(shares, counters);
+                    }
+                }
+                event += length;
+            }
+        }
+        (event - events.start, counters)
     }
-    let collected = |((_, edges), (steps, counters)): (&(_, Edges), (&Steps, &Vec<_>))| {
-        steps.collect(edges.bins(), counters)
-    };
-    Counted {
-        events: event - events.start,
-        counts: tallies.iter().zip(steps.iter().zip(&counters)).map(collected).collect(),
+    /// Adds what was counted to the slots of each tally.
+    fn collect(&self, counters: &Counters, counts: &mut [Vec<u64>]) {
+        for ((steps, counters), counts) in self.steps.iter().zip(counters).zip(counts) {
+            for (steps, counters) in steps.iter().zip(counters) {
+                steps.collect(counters, counts);
+            }
+        }
     }
 }
 

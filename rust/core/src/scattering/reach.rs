@@ -82,7 +82,9 @@ impl Beam {
             };
             // A bin that is cut, or that ends where b = ∞ leads, is never whole, however narrow what is missing.
             let cut = from < low || to > high || self.ends_forward(quantity, from, to);
-            if cut { part.min(1.0_f64.next_down()) } else { part }
+            let part = if cut { part.min(1.0_f64.next_down()) } else { part };
+            // Below the covered values there are events of the disc too, unless the angle falls with b.
+            if self.table().is_some() && quantity != Quantity::ImpactParameter { part.floor() } else { part }
         };
         edges.windows(2).map(part).collect()
     }

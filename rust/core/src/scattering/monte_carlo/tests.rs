@@ -1,15 +1,21 @@
 use super::*;
-use crate::numerics::philox::draw;
+use crate::numerics::philox::{draw, draw_of};
 use crate::parallel::Control;
+use crate::scattering::histogram::Edges;
+use crate::scattering::kinematics::HalfAngle;
+use core::f64::consts::{FRAC_PI_2, PI};
 use proptest::prelude::*;
 
-fn all(beam: &Beam, bins: usize) -> Vec<(Quantity, Edges)> {
-    Quantity::ALL.iter().map(|(_, q)| (*q, beam.uniform_edges(*q, bins).unwrap())).collect()
+fn all(beam: &Beam, bins: usize) -> Vec<Tally> {
+    let one = |q: Quantity| Tally::new(vec![(q, beam.uniform_edges(q, bins).unwrap())]).unwrap();
+    Quantity::ALL.iter().map(|(_, q)| one(*q)).collect()
 }
 
-fn run(beam: &Beam, tallies: &[(Quantity, Edges)], first: u64, count: u64, threads: usize) -> Vec<BinCounts> {
+fn run(beam: &Beam, tallies: &[Tally], first: u64, count: u64, threads: usize) -> Vec<Vec<u64>> {
     let control = Control::new(count);
-    monte_carlo(beam, tallies, 7, first, count, threads, &mut Ticker::quiet(&control)).unwrap().counts
+    monte_carlo(&Mixture::of(beam.clone()), tallies, 7, first, count, threads, &mut Ticker::quiet(&control))
+        .unwrap()
+        .counts
 }
 
 proptest! {
@@ -25,24 +31,25 @@ proptest! {
         repulsive: bool,
     ) {
         let k = if repulsive { 1.0 } else { -1.0 };
-        let beam = Beam::new(k, 1.0, (2.0_f64.powf(log_ratio), 1.0), reach).unwrap();
+        let beam = Beam::coulomb(k, 1.0, (2.0_f64.powf(log_ratio), 1.0), reach).unwrap();
         let tallies = all(&beam, 37);
         let whole = run(&beam, &tallies, first, count, 1);
         let middle = ((count as f64 * part) as u64).max(1);
         let left = run(&beam, &tallies, first, middle, 2);
-        for (index, (quantity, edges)) in tallies.iter().enumerate() {
-            let mut expected = vec![0; 37];
+        for (index, tally) in tallies.iter().enumerate() {
+            let (quantity, edges) = &tally.axes()[0];
+            // Below, above and captured: none.
+            let mut expected = vec![0; 37 + 3];
             for event in first..first + count {
-                let x = beam.value(*quantity, draw(key(7), event).number() as f64 * UNIT);
+                let x = beam.value(*quantity, draw(key(7), event).number() as f64 * beam::UNIT).unwrap();
                 let edges = edges.values();
                 let bin = edges.partition_point(|edge| *edge <= x).min(37);
-                expected[bin - 1] += 1;
+                expected[bin] += 1;
             }
-            prop_assert_eq!(&whole[index].bins, &expected);
-            prop_assert_eq!((whole[index].underflow, whole[index].overflow), (0, 0));
+            prop_assert_eq!(&whole[index], &expected);
             if middle < count {
                 let right = run(&beam, &tallies, first + middle, count - middle, 3);
-                let sum: Vec<u64> = left[index].bins.iter().zip(&right[index].bins).map(|(a, b)| a + b).collect();
+                let sum: Vec<u64> = left[index].iter().zip(&right[index]).map(|(a, b)| a + b).collect();
                 prop_assert_eq!(sum, expected);
             }
         }
@@ -51,23 +58,23 @@ proptest! {
 
 #[test]
 fn chunks_and_threads_do_not_matter() {
-    let beam = Beam::new(1.0, 1.0, (4.0, 1.0), 3.0).unwrap();
+    let beam = Beam::coulomb(1.0, 1.0, (4.0, 1.0), 3.0).unwrap();
     let tallies = all(&beam, 180);
     let one = run(&beam, &tallies, 12_345, 3_000_001, 1);
     for threads in [2, 3] {
         assert_eq!(run(&beam, &tallies, 12_345, 3_000_001, threads), one);
     }
-    assert!(one.iter().all(|counts| counts.bins.iter().sum::<u64>() == 3_000_001));
+    assert!(one.iter().all(|counts| counts.iter().sum::<u64>() == 3_000_001));
 }
 
 /// P(ψ > ψ₀) = (κ cot(ψ₀/2)/b_max)²: with ψ₀ = 90° and b_max = 2κ a quarter of the events.
 #[test]
 fn a_quarter_is_scattered_backwards() {
-    let beam = Beam::new(1.0, 0.5, (1.0, 1e300), 2.0).unwrap();
+    let beam = Beam::coulomb(1.0, 0.5, (1.0, 1e300), 2.0).unwrap();
     let edges = Edges::new("bins", vec![0.0, FRAC_PI_2, PI]).unwrap();
     let n = 4_000_000_u64;
-    let counts = run(&beam, &[(Quantity::CmAngle, edges)], 0, n, 2);
-    let deviation = counts[0].bins[1] as f64 - 0.25 * n as f64;
+    let counts = run(&beam, &[Tally::new(vec![(Quantity::CmAngle, edges)]).unwrap()], 0, n, 2);
+    let deviation = counts[0][2] as f64 - 0.25 * n as f64;
     // Four standard deviations of a binomial count; the seed is fixed.
     assert!(deviation.abs() < 4.0 * (n as f64 * 0.25 * 0.75).sqrt(), "{deviation}");
 }
@@ -75,30 +82,42 @@ fn a_quarter_is_scattered_backwards() {
 /// A run that is stopped gives a whole number of events without a gap, and what is left adds up to the whole.
 #[test]
 fn a_cancelled_run_keeps_what_it_counted() {
-    let beam = Beam::new(1.0, 1.0, (4.0, 1.0), 3.0).unwrap();
+    let beam = Beam::coulomb(1.0, 1.0, (4.0, 1.0), 3.0).unwrap();
     let tallies = all(&beam, 50);
     for threads in 1..=3 {
         let control = Control::new(0);
         let mut monitor = |_: u64, _: u64| false; // called first after 50 ms
         let ticker = &mut Ticker::new(&control, &mut monitor);
-        let kept = monte_carlo(&beam, &tallies, 7, 11, 1 << 40, threads, ticker).unwrap();
+        let kept =
+            monte_carlo(&Mixture::of(beam.clone()), &tallies, 7, 11, 1 << 40, threads, ticker).unwrap();
         assert!(kept.events > 0 && kept.events < 1 << 40, "{}", kept.events);
         assert_eq!(kept.counts, run(&beam, &tallies, 11, kept.events, 2));
     }
     let control = Control::new(0);
     control.cancel();
-    let nothing = monte_carlo(&beam, &tallies, 7, 0, 1000, 2, &mut Ticker::quiet(&control));
+    let nothing =
+        monte_carlo(&Mixture::of(beam.clone()), &tallies, 7, 0, 1000, 2, &mut Ticker::quiet(&control));
     assert_eq!(nothing, Err(Error::Interrupted));
 }
 
 /// The last event there is has the index 2^63 - 1.
 #[test]
 fn the_last_events_are_counted() {
-    let beam = Beam::new(1.0, 1.0, (1.0, 1.0), 3.0).unwrap();
+    let beam = Beam::coulomb(1.0, 1.0, (1.0, 1.0), 3.0).unwrap();
     let tallies = all(&beam, 5);
     let control = Control::new(0);
-    let last = |n: u64| monte_carlo(&beam, &tallies, 7, (1 << 63) - 10, n, 1, &mut Ticker::quiet(&control));
-    assert_eq!(last(10).unwrap().counts[0].bins.iter().sum::<u64>(), 10);
+    let last = |n: u64| {
+        monte_carlo(
+            &Mixture::of(beam.clone()),
+            &tallies,
+            7,
+            (1 << 63) - 10,
+            n,
+            1,
+            &mut Ticker::quiet(&control),
+        )
+    };
+    assert_eq!(last(10).unwrap().counts[0].iter().sum::<u64>(), 10);
     assert!(matches!(last(11), Err(Error::InvalidInput { argument, .. }) if argument == "first_event"));
 }
 
@@ -114,8 +133,10 @@ fn covered_values_and_reachable_bins() {
         ((2.0, 1.0), 2.0, None),
         ((2.0, 1.0), 0.5, None),
     ] {
-        let beam = Beam::new(1.0, 1.0, masses, b_max).unwrap();
-        let half = HalfAngle::from_cotangent(beam.reach);
+        let beam = Beam::coulomb(1.0, 1.0, masses, b_max).unwrap();
+        // b_max / κ, κ = 1/2E.
+        let half: HalfAngle = beam.edge();
+        assert!((half.cotangent() - b_max * 2.0 * masses.1 / (masses.0 + masses.1)).abs() < 1e-15);
         assert_eq!(beam.covered(Quantity::CmAngle), (half.cm_angle(), PI));
         assert_eq!(beam.smallest_angle(), half.cm_angle());
         let covered = beam.covered(Quantity::LabAngle).0;
@@ -150,7 +171,7 @@ fn covered_values_and_reachable_bins() {
         }
         assert!(beam.reachable(Quantity::CmAngle, &[0.0, quarter, PI])[0] < 1.0);
         // The forward direction is never whole, however wide the disc.
-        let wide = Beam::new(1.0, 1.0, masses, 1e100).unwrap();
+        let wide = Beam::coulomb(1.0, 1.0, masses, 1e100).unwrap();
         for (_, quantity) in Quantity::ALL.into_iter().filter(|(name, _)| *name != "impact_parameter") {
             let parts = wide.reachable(quantity, wide.uniform_edges(quantity, 4).unwrap().values());
             let forward = if matches!(quantity, Quantity::RecoilAngle | Quantity::Energy) { 3 } else { 0 };
@@ -163,7 +184,7 @@ fn covered_values_and_reachable_bins() {
 
 #[test]
 fn edges_out_of_range_are_refused_with_the_cure() {
-    let beam = Beam::new(1.0, 1.5, (1.0, 4.0), 3.0).unwrap();
+    let beam = Beam::coulomb(1.0, 1.5, (1.0, 4.0), 3.0).unwrap();
     let text = |quantity: Quantity, edges: &[f64]| match beam.edges(quantity, edges.to_vec()) {
         Err(error) => error.to_string(),
         Ok(_) => String::new(),
@@ -192,16 +213,87 @@ fn bad_beams_are_refused_by_name() {
         Err(Error::InvalidInput { argument, .. }) => argument,
         other => panic!("{other:?}"),
     };
-    assert_eq!(name(Beam::new(0.0, 1.0, (1.0, 1.0), 1.0)), "potential");
-    assert_eq!(name(Beam::new(1.0, -1.0, (1.0, 1.0), 1.0)), "beam_energy");
-    assert_eq!(name(Beam::new(1.0, 1.0, (1.0, 0.0), 1.0)), "masses");
-    assert_eq!(name(Beam::new(1.0, 1.0, (1.0, 1.0), f64::NAN)), "b_max");
-    assert_eq!(name(Beam::new(1.0, 1e-300, (1.0, 1.0), 1.0)), "b_max");
-    assert_eq!(name(Beam::new(1.0, 1.0, (1e300, 1e-300), 1.0)), "masses");
-    assert_eq!(name(Beam::new(1.0, 1.0, (1e-300, 1e300), 1.0)), "masses");
-    let light = Beam::new(1.0, 1e-100, (1e-250, 1.0), 1e99).unwrap();
+    assert_eq!(name(Beam::coulomb(0.0, 1.0, (1.0, 1.0), 1.0)), "potential");
+    assert_eq!(name(Beam::coulomb(1.0, -1.0, (1.0, 1.0), 1.0)), "beam_energy");
+    assert_eq!(name(Beam::coulomb(1.0, 1.0, (1.0, 0.0), 1.0)), "masses");
+    assert_eq!(name(Beam::coulomb(1.0, 1.0, (1.0, 1.0), f64::NAN)), "b_max");
+    assert_eq!(name(Beam::coulomb(1.0, 1e-300, (1.0, 1.0), 1.0)), "b_max");
+    assert_eq!(name(Beam::coulomb(1.0, 1.0, (1e300, 1e-300), 1.0)), "masses");
+    assert_eq!(name(Beam::coulomb(1.0, 1.0, (1e-300, 1e300), 1.0)), "masses");
+    let light = Beam::coulomb(1.0, 1e-100, (1e-250, 1.0), 1e99).unwrap();
     assert!(matches!(
         light.uniform_edges(Quantity::RecoilEnergy, 10),
         Err(Error::InvalidInput { argument, .. }) if argument == "masses"
     ));
+}
+
+/// Two energies in parts 1 : 3. Each event is that of its own beam, draw 1 telling which, and a tally of two quantities
+/// has the counts of each when the other is summed over.
+#[test]
+fn a_mixture_counts_every_event_in_its_own_beam() {
+    let beams: Vec<Beam> =
+        [1.0, 2.0].map(|energy| Beam::coulomb(1.0, energy, (3.0, 1.0), 3.0).unwrap()).into();
+    let mixture = Mixture::new(beams.clone(), &[1.0, 3.0]).unwrap();
+    let axis = |quantity: Quantity, bins| {
+        (quantity, mixture.fastest().unwrap().uniform_edges(quantity, bins).unwrap())
+    };
+    let (angle, energy) = (axis(Quantity::LabAngle, 19), axis(Quantity::Energy, 7));
+    let tallies = [vec![angle.clone()], vec![energy.clone()], vec![angle.clone(), energy.clone()]]
+        .map(|axes| Tally::new(axes).unwrap());
+    let count = |first, n, threads| {
+        monte_carlo(&mixture, &tallies, 7, first, n, threads, &mut Ticker::quiet(&Control::new(0)))
+            .unwrap()
+            .counts
+    };
+    let whole = count(5, 20_001, 1);
+    assert_eq!(whole, count(5, 20_001, 3));
+    let listed = events(&mixture, 7, 5, 20_001, &mut Ticker::quiet(&Control::new(0))).unwrap();
+    let mut expected: Vec<Vec<u64>> = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
+    for (index, event) in listed.iter().enumerate() {
+        let draw = |number| draw_of(key(7), 5 + index as u64, number).number() as f64 * beam::UNIT;
+        assert_eq!(event.component, u64::from(draw(1) >= 0.25));
+        let beam = &beams[event.component as usize];
+        assert_eq!(Some(event.values[1]), beam.value(Quantity::LabAngle, draw(0)));
+        let (a, e) = (angle.1.slot(event.values[1]), energy.1.slot(event.values[3]));
+        expected[0][a] += 1;
+        expected[1][e] += 1;
+        expected[2][a * 9 + e] += 1;
+    }
+    assert_eq!(whole, expected);
+    assert!(
+        Mixture::new(beams.clone(), &[1.0, 0.0]).is_err() && Mixture::new(beams, &[1.0, f64::NAN]).is_err()
+    );
+}
+
+/// Lennard-Jones with a rainbow, glories, whole turns and, at half the depth, orbiting: every event counted is in the bin
+/// of its value, at each quantity; langevin's captured ones are counted apart.
+#[test]
+fn rainbows_turns_and_captured_ones_are_counted() {
+    use crate::potentials::parameters::Value;
+    let potential = |name, numbers: [f64; 2]| {
+        (crate::registry::potential(name).unwrap().make)(&numbers.map(Value::Number)).unwrap()
+    };
+    let control = Control::new(0);
+    let ticker = &mut Ticker::quiet(&control);
+    for (potential, energy) in [
+        (potential("lennard_jones", [1.0, 1.0]), 4.0),
+        (potential("lennard_jones", [1.0, 1.0]), 1.0),
+        (potential("power_law", [-1.0, 4.0]), 1.0),
+    ] {
+        let beam = Beam::new(&potential, energy, (1.0, 1.0), 3.0, 1, ticker).unwrap();
+        let counts = run(&beam, &all(&beam, 41), 0, 30_000, 2);
+        for (tally, counts) in all(&beam, 41).iter().zip(&counts) {
+            let (quantity, edges) = &tally.axes()[0];
+            let mut expected = vec![0_u64; tally.slots()];
+            for event in 0..30_000 {
+                let share = draw_of(key(7), event, 0).number() as f64 * beam::UNIT;
+                expected[beam.value(*quantity, share).map_or(43, |value| edges.slot(value))] += 1;
+            }
+            assert_eq!(counts, &expected, "{quantity:?}");
+        }
+        let captured = counts[0][43];
+        // Langevin's cross section is 2π√(C/E) of π b_max²: E = 1/2.
+        let part = if energy == 1.0 && counts[0][43] > 0 { 2.0 * 2.0_f64.sqrt() / 9.0 } else { 0.0 };
+        assert!((captured as f64 / 30_000.0 - part).abs() < 0.012, "{captured}"); // four standard deviations
+    }
 }

@@ -1,0 +1,269 @@
+"""The result of a scattering Monte Carlo: its tallies by name, which add up, go on, and are kept in files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.potentials import potential_from_core
+from visviva.scattering._tally import Beam, JointTally, OfEvents, Spectrum, Tally, is_zero
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from os import PathLike
+
+    from visviva._progress import Progress
+    from visviva.potentials import Potential
+
+__all__ = ["MonteCarlo"]
+
+_FORMAT, _VERSION = "visviva scattering", 1
+
+
+@known_keywords
+@dataclass(frozen=True, eq=False)
+class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its tallies
+    """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
+
+    Attributes
+    ----------
+    beam : Beam
+        What was scattered by what: ``potential``, ``beam_energy``, ``masses``, ``b_max`` and ``smallest_angle``, which
+        are attributes of the result too.
+    events : tuple
+        Which events: sorted (seed, first, end) with end excluded.
+    tallies : tuple of Tally or JointTally
+        In the order asked for; one of two quantities has the tuple of their names as its name.
+    """
+
+    beam: Beam
+    events: tuple[tuple[int, int, int], ...]
+    tallies: tuple[Tally | JointTally, ...]
+
+    @property
+    def potential(self) -> Potential:
+        """V(r)."""
+        return self.beam.potential
+
+    @property
+    def beam_energy(self) -> float | Spectrum:
+        """Energy of the projectile in the laboratory."""
+        return self.beam.beam_energy
+
+    @property
+    def masses(self) -> tuple[float, float]:
+        """Projectile and target."""
+        return self.beam.masses
+
+    @property
+    def smallest_angle(self) -> float:
+        """The deflection at the edge of the disc, in the centre-of-mass frame: see `Beam`."""
+        return self.beam.smallest_angle
+
+    @property
+    def next_event(self) -> int:
+        """The ``first_event`` of a run that goes on after this one.
+
+        Raises
+        ------
+        InvalidInput
+            If the events are of several seeds.
+        """
+        if len({seed for seed, _, _ in self.events}) > 1:
+            raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
+        return self.events[-1][2]
+
+    def __getitem__(self, name: str | tuple[str, ...]) -> Any:
+        for tally in self.tallies:
+            if tally.name == name:
+                return tally
+        known = ", ".join(str(tally.name) for tally in self.tallies)
+        raise KeyError(f"no tally {name!r}; this run has {known}")
+
+    def __iter__(self) -> Iterator[Any]:
+        return (tally.name for tally in self.tallies)
+
+    def __len__(self) -> int:
+        return len(self.tallies)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, MonteCarlo):
+            return NotImplemented
+        return (self.beam, self.events, self.tallies) == (other.beam, other.events, other.tallies)
+
+    def __add__(self, other: MonteCarlo) -> MonteCarlo:
+        if not isinstance(other, MonteCarlo):
+            return NotImplemented
+        events = self._merged_events(other)
+        if list(self) != list(other):
+            raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
+        return replace(self, events=events, tallies=tuple(self[name] + other[name] for name in self))
+
+    def __radd__(self, other: int) -> MonteCarlo:
+        """Begin a `sum`."""
+        return self if is_zero(other) else NotImplemented
+
+    def __repr__(self) -> str:
+        sizes = ", ".join(f"{tally.name} ({tally.counts.size} bins)" for tally in self.tallies)
+        energy = self.beam_energy
+        what = f"{len(energy.energy)} beam energies" if isinstance(energy, Spectrum) else f"beam energy {energy:g}"
+        return (
+            f"<MonteCarlo: {self.n_events} events on {self.potential!r}, {what}, "
+            f"masses {self.masses}, b_max {self.b_max:g}: {sizes}>"
+        )
+
+    @known_keywords
+    def resume(
+        self, n_events: int, *, threads: int | None = None, progress: Progress = False, executor: Any = None
+    ) -> MonteCarlo:
+        """This result and the next ``n_events``: the same bits as one run of them all.
+
+        Parameters
+        ----------
+        n_events : int
+            How many more, from `next_event` on.
+        threads, progress, executor
+            As of `monte_carlo`.
+
+        Raises
+        ------
+        InvalidInput
+            As `next_event` and `monte_carlo`.
+        Interrupted
+            As `monte_carlo`: its ``.result`` begins with this one.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> beam = dict(beam_energy=1.0, masses=(1.0, 4.0), b_max=2.0, seed=1)
+        >>> part = vv.scattering.monte_carlo(vv.potentials.Yukawa(1.0, 1.0), n_events=600, **beam)
+        >>> part.resume(400) == vv.scattering.monte_carlo(vv.potentials.Yukawa(1.0, 1.0), n_events=1000, **beam)
+        True
+        """
+        from visviva.errors import Interrupted
+        from visviva.scattering._monte_carlo import again
+
+        try:
+            return self + again(self, n_events, threads, progress, executor)
+        except Interrupted as stopped:
+            stopped.result = self if stopped.result is None else self + stopped.result
+            raise
+
+    @known_keywords
+    def save(self, path: str | PathLike[str]) -> None:
+        """Write the result to a ``.npz`` file; `load` reads it.
+
+        Parameters
+        ----------
+        path : path-like
+            Written exactly as given.
+        """
+        beam = self.beam
+        energy = beam.beam_energy
+        lines = energy if isinstance(energy, Spectrum) else None
+        header = {
+            "format": _FORMAT,
+            "version": _VERSION,
+            "potential": beam.potential._to_core(),
+            "beam_energy": None if lines else energy,
+            "spectrum": [lines.energy, lines.weight] if lines else None,
+            "masses": beam.masses,
+            "b_max": beam.b_max,
+            "smallest_angle": beam.smallest_angle,
+            "tables": beam.tables,
+            "events": self.events,
+            "tallies": [_told(tally) for tally in self.tallies],
+        }
+        arrays: dict[str, Any] = {}
+        for index, tally in enumerate(self.tallies):
+            if isinstance(tally, Tally):
+                arrays |= {f"{index}/{name}": getattr(tally, name) for name in ("edges", "counts", "reachable")}
+            else:
+                arrays[f"{index}/flow"] = tally.flow
+                arrays |= {f"{index}/edges{axis}": edges for axis, edges in enumerate(tally.edges)}
+        text = json.dumps(header, default=lambda value: value.tolist()).encode()
+        with open(path, "wb") as file:
+            np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
+
+    @staticmethod
+    def load(path: str | PathLike[str]) -> MonteCarlo:
+        """Read a file that `save` wrote.
+
+        Parameters
+        ----------
+        path : path-like
+
+        Raises
+        ------
+        InvalidInput
+            If the file is no such file, is damaged, or was written by a later version.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, visviva as vv
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "counts.npz"
+        >>> result = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> result.save(path)
+        >>> vv.scattering.MonteCarlo.load(path) == result
+        True
+        """
+        with open(path, "rb") as stream:
+            try:
+                with np.load(stream, allow_pickle=False) as file:
+                    return _restored({name: file[name] for name in file.files})
+            except MemoryError:
+                raise
+            except Exception as error:  # NumPy, zipfile and json raise what they please
+                raise InvalidInput(
+                    "path", f"expected counts that visviva saved, but {str(path)!r} has none: {error}"
+                ) from error
+
+
+def _told(tally: Tally | JointTally) -> dict[str, Any]:
+    if isinstance(tally, JointTally):
+        return {"name": tally.name, "captured": tally.captured}
+    return {name: getattr(tally, name) for name in ("name", "underflow", "overflow", "covered", "captured")}
+
+
+def _restored(arrays: dict[str, Any]) -> MonteCarlo:
+    header = json.loads(arrays["header"].tobytes())
+    if header["format"] != _FORMAT or header["version"] > _VERSION:
+        raise ValueError(f"it holds a {header['format']!r} of version {header['version']}")
+    lines = header["spectrum"]
+    beam = Beam(
+        potential_from_core(header["potential"]),
+        header["beam_energy"] if lines is None else Spectrum(*lines),
+        (header["masses"][0], header["masses"][1]),
+        header["b_max"],
+        header["smallest_angle"],
+        tuple(header["tables"]),
+    )
+    events = tuple((seed, first, end) for seed, first, end in header["events"])
+    tallies: list[Tally | JointTally] = []
+    for index, told in enumerate(header["tallies"]):
+        if isinstance(told["name"], str):
+            edges, counts, reachable = (arrays[f"{index}/{name}"] for name in ("edges", "counts", "reachable"))
+            covered = (told["covered"][0], told["covered"][1])
+            flows = (told["underflow"], told["overflow"])
+            tally = Tally(told["name"], edges, counts, *flows, reachable, covered, beam, events, told["captured"])
+            total = int(counts.sum()) + sum(flows) + tally.captured
+            if len(edges) != len(counts) + 1 or len(reachable) != len(counts):
+                raise ValueError("its edges and counts do not fit")
+        else:
+            several = tuple(arrays[f"{index}/edges{axis}"] for axis in range(len(told["name"])))
+            flow = arrays[f"{index}/flow"]
+            tally = JointTally(tuple(told["name"]), several, flow, told["captured"], beam, events)
+            total = int(flow.sum()) + tally.captured
+            if flow.shape != tuple(len(edges) + 1 for edges in several):
+                raise ValueError("its edges and counts do not fit")
+        if total != tally.n_events:
+            raise ValueError(f"its counts are those of {total} events, not of {tally.n_events}")
+        tallies.append(tally)
+    return MonteCarlo(beam, events, tuple(tallies))

@@ -1,0 +1,323 @@
+//! A parallel beam on a disc around one target: what an impact parameter leads to.
+
+use super::quantity::Quantity;
+use crate::numerics::philox::DRAW_BITS;
+use crate::parallel::Ticker;
+use crate::potentials::Potential;
+use crate::scattering::deflection::{Deflector, Status, TOLERANCE};
+use crate::scattering::event_table::EventTable;
+use crate::scattering::histogram::Edges;
+use crate::scattering::kinematics::{Collision, HalfAngle};
+use crate::scattering::reach::Limits;
+use crate::scattering::rutherford::half_distance;
+use crate::words::number;
+use crate::{Error, Result};
+use core::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
+
+/// A draw as a fraction: 2^-53.
+pub(super) const UNIT: f64 = 1.0 / (1_u64 << DRAW_BITS) as f64;
+/// Impact parameters beyond the disc that are tried, out to a thousand of its radii.
+const BEYOND: i32 = 240;
+/// Points of a piece of a table among which turning points are looked for.
+const TRIED: u64 = 8;
+
+/// What a projectile meets.
+#[derive(Clone, Debug, PartialEq)]
+enum Target {
+    /// V = k/r: b_max/|κ|, the largest cot(ψ/2), and whether ψ is negative.
+    Coulomb { reach: f64, attracts: bool },
+    /// Anything else: its table, and the largest |ψ| in [0, π] beyond the disc.
+    Table(Arc<EventTable>, f64),
+}
+
+/// A parallel beam on a disc around a centre that is free to recoil.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beam {
+    pub(super) collision: Collision,
+    energy: f64,
+    pub(super) b_max: f64,
+    target: Target,
+}
+
+impl Beam {
+    /// On any potential; `energy` is the projectile's in the laboratory, `masses` projectile and target. Of V = k/r as
+    /// [`coulomb`](Self::coulomb), of any other the table is built.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming what is not positive and finite, and as [`EventTable::build`]; `Interrupted`.
+    pub fn new(
+        potential: &Arc<dyn Potential>,
+        energy: f64,
+        masses: (f64, f64),
+        b_max: f64,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        if let Some(k) = potential.inverse_distance_strength() {
+            return Self::coulomb(k, energy, masses, b_max);
+        }
+        let collision = checked(energy, masses, b_max)?;
+        let relative = energy * collision.relative_share();
+        if relative <= 0.0 || relative.is_nan() {
+            return Err(Error::invalid(
+                "masses",
+                "expected a target that takes part in the motion, got too light a one",
+            ));
+        }
+        let deflector = Deflector::new(potential, TOLERANCE)?;
+        let table = EventTable::build(&deflector, relative, b_max, threads, ticker)?;
+        let beyond = largest_beyond(&deflector, relative, b_max, threads, ticker)?;
+        Ok(Self { collision, energy, b_max, target: Target::Table(Arc::new(table), beyond) })
+    }
+    /// On V = k/r.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming what is not positive and finite, or `b_max` if the distance k/2E is not
+    /// within 150 decades of it.
+    pub fn coulomb(k: f64, energy: f64, masses: (f64, f64), b_max: f64) -> Result<Self> {
+        if !(k.is_finite() && k != 0.0) {
+            return Err(Error::invalid(
+                "potential",
+                format!("expected a finite k other than 0, got k = {}", number(k)),
+            ));
+        }
+        let collision = checked(energy, masses, b_max)?;
+        let half_distance = half_distance(k, energy * collision.relative_share()).abs();
+        let reach = b_max / half_distance;
+        if !(1e-150..=1e150).contains(&reach) {
+            return Err(Error::invalid(
+                "b_max",
+                format!(
+                    "expected a length within 150 decades of |k|/(2 E) = {}, E the energy of \
+                     relative motion, got {}",
+                    number(half_distance),
+                    number(b_max)
+                ),
+            ));
+        }
+        Ok(Self { collision, energy, b_max, target: Target::Coulomb { reach, attracts: k < 0.0 } })
+    }
+    /// Of the projectile, in the laboratory.
+    pub fn energy(&self) -> f64 {
+        self.energy
+    }
+    /// ψ where b² is the fraction `share` of b_max²: signed and not folded; nothing if captured.
+    pub(super) fn deflection(&self, share: f64) -> Option<f64> {
+        let part = share.sqrt();
+        match &self.target {
+            Target::Coulomb { reach, attracts } => {
+                let size = HalfAngle::from_cotangent(reach * part).cm_angle();
+                Some(if *attracts { -size } else { size })
+            }
+            Target::Table(table, _) => table.angle(part),
+        }
+    }
+    /// The table of a target that is no Coulomb center.
+    pub fn table(&self) -> Option<&EventTable> {
+        match &self.target {
+            Target::Coulomb { .. } => None,
+            Target::Table(table, _) => Some(table),
+        }
+    }
+    /// Half the angle where b is this part of b_max; nothing if captured.
+    fn half_angle(&self, part: f64) -> Option<HalfAngle> {
+        match &self.target {
+            Target::Coulomb { reach, .. } => Some(HalfAngle::from_cotangent(reach * part)),
+            Target::Table(table, _) => table.angle(part).map(|angle| HalfAngle::of(folded(angle))),
+        }
+    }
+    /// Of half an angle.
+    fn value_of(&self, quantity: Quantity, half: HalfAngle) -> f64 {
+        match quantity {
+            Quantity::CmAngle => half.cm_angle(),
+            Quantity::LabAngle => self.collision.lab_angle(half),
+            Quantity::RecoilAngle => half.recoil_angle(),
+            Quantity::Energy => self.energy * self.collision.kept(half),
+            Quantity::RecoilEnergy => self.energy * self.collision.transferred(half),
+            Quantity::ImpactParameter => f64::NAN,
+        }
+    }
+    /// The value of a quantity when b² is the fraction `share` of b_max²; nothing of a captured one but where it came.
+    pub fn value(&self, quantity: Quantity, share: f64) -> Option<f64> {
+        let root = share.sqrt();
+        if quantity == Quantity::ImpactParameter {
+            return Some(self.b_max * root);
+        }
+        self.half_angle(root).map(|half| self.value_of(quantity, half))
+    }
+    /// The numbers that edges of a quantity may be, and what they are called.
+    pub(in crate::scattering) fn limits(&self, quantity: Quantity) -> Limits {
+        match quantity {
+            Quantity::CmAngle | Quantity::LabAngle => Limits::angles("π", PI),
+            Quantity::RecoilAngle => Limits::angles("π/2", FRAC_PI_2),
+            Quantity::Energy | Quantity::RecoilEnergy => Limits::upto("beam_energy", self.energy),
+            // Beyond the disc no bin could count anything.
+            Quantity::ImpactParameter => Limits::upto("b_max", self.b_max),
+        }
+    }
+    /// Given edges of a quantity.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming the quantity, for what are no edges and for edges that it can never reach.
+    pub fn edges(&self, quantity: Quantity, edges: Vec<f64>) -> Result<Edges> {
+        let edges = Edges::new(quantity.name(), edges)?;
+        self.limits(quantity).check(quantity.name(), edges.values())?;
+        Ok(edges)
+    }
+    /// `bins` equal bins over all values a quantity can have.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `bins`, or what makes the greatest value too small to divide.
+    pub fn uniform_edges(&self, quantity: Quantity, bins: usize) -> Result<Edges> {
+        let (blamed, high) = match quantity {
+            Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
+            Quantity::RecoilAngle => ("bins", FRAC_PI_2),
+            Quantity::Energy => ("beam_energy", self.energy),
+            Quantity::RecoilEnergy => {
+                ("masses", self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
+            }
+            Quantity::ImpactParameter => ("b_max", self.b_max),
+        };
+        if high / (bins as f64) < f64::MIN_POSITIVE {
+            return Err(Error::invalid(
+                blamed,
+                format!(
+                    "expected a greatest {} that can be divided into bins, got {}; choose larger units, or \
+                     leave this tally out",
+                    quantity.name(),
+                    number(high)
+                ),
+            ));
+        }
+        Edges::uniform(bins, 0.0, high)
+    }
+    /// Half of an angle that no impact parameter beyond the disc exceeds.
+    pub(super) fn edge(&self) -> HalfAngle {
+        match &self.target {
+            Target::Coulomb { reach, .. } => HalfAngle::from_cotangent(*reach),
+            Target::Table(_, beyond) => HalfAngle::of(*beyond),
+        }
+    }
+    /// The deflection at the edge of the disc, or the greatest beyond: of V = k/r no event is scattered by less.
+    pub fn smallest_angle(&self) -> f64 {
+        self.edge().cm_angle()
+    }
+    /// The values of a quantity that no impact parameter beyond the disc leads to: what this beam counts there
+    /// is all that there is.
+    pub fn covered(&self, quantity: Quantity) -> (f64, f64) {
+        let half = self.edge();
+        let edge = self.value_of(quantity, half);
+        match quantity {
+            Quantity::CmAngle => (edge, PI),
+            // Of a heavy projectile the angle first grows with b: a disc that ends before its greatest covers nothing
+            // below that.
+            Quantity::LabAngle => {
+                let reach = half.cotangent();
+                let greatest = self.collision.turning_point().filter(|turning| *turning > reach);
+                let from = |t| self.collision.lab_angle(HalfAngle::from_cotangent(t));
+                (greatest.map_or(edge, from), PI)
+            }
+            Quantity::RecoilAngle | Quantity::Energy => (0.0, edge),
+            Quantity::RecoilEnergy => (edge, self.energy),
+            Quantity::ImpactParameter => (0.0, self.b_max),
+        }
+    }
+    /// Whether two impact parameters lead to one value: a heavy projectile's laboratory angle.
+    pub fn two_branches(&self, quantity: Quantity) -> bool {
+        quantity == Quantity::LabAngle && self.collision.turning_point().is_some()
+    }
+    /// The draws between which a quantity rises or falls: those at which it may turn.
+    pub(super) fn turning_draws(&self, quantity: Quantity) -> Vec<u64> {
+        match &self.target {
+            Target::Coulomb { reach, .. } => (quantity == Quantity::LabAngle)
+                .then(|| self.collision.turning_point())
+                .flatten()
+                .map(|t| (t / reach) * (t / reach))
+                .filter(|share| *share < 1.0)
+                .map(|share| (share * UNIT.recip()) as u64)
+                .into_iter()
+                .collect(),
+            Target::Table(..) if quantity == Quantity::ImpactParameter => Vec::new(),
+            Target::Table(table, _) => self.turns(quantity, table),
+        }
+    }
+    /// Those of a table: the ends of its pieces, and within a piece where what is tried rises and falls.
+    fn turns(&self, quantity: Quantity, table: &EventTable) -> Vec<u64> {
+        let at = |draw: u64| self.value(quantity, draw as f64 * UNIT);
+        let draws: Vec<u64> = table.starts().iter().map(|part| (part * part / UNIT) as u64).collect();
+        let mut turns = draws.clone();
+        for pair in draws.windows(2).filter(|pair| pair[1] - pair[0] > TRIED) {
+            let width = pair[1] - pair[0];
+            let tried: Vec<u64> = (0..=TRIED)
+                .map(|i| pair[0] + (u128::from(width) * u128::from(i) / u128::from(TRIED)) as u64)
+                .collect();
+            for three in tried.windows(3) {
+                let [Some(first), Some(middle), Some(last)] = [at(three[0]), at(three[1]), at(three[2])]
+                else {
+                    continue;
+                };
+                if (middle - first) * (last - middle) < 0.0 {
+                    turns.push(extremum(&at, three[0], three[2], middle > first));
+                }
+            }
+        }
+        turns
+    }
+}
+
+/// Where a function with one maximum (or minimum) between two draws has it.
+fn extremum(at: &impl Fn(u64) -> Option<f64>, from: u64, to: u64, maximum: bool) -> u64 {
+    let (mut from, mut to) = (from, to);
+    let sign = if maximum { 1.0 } else { -1.0 };
+    let value = |draw| at(draw).map_or(f64::NEG_INFINITY, |value| sign * value);
+    while to - from > 2 {
+        let third = (to - from) / 3;
+        let (left, right) = (from + third, to - third);
+        if value(left) < value(right) { from = left } else { to = right }
+    }
+    from + 1
+}
+
+/// |ψ| of a signed angle with any number of whole turns, in [0, π].
+pub(super) fn folded(angle: f64) -> f64 {
+    let size = angle.abs();
+    if size <= PI {
+        return size;
+    }
+    let rest = size % (2.0 * PI);
+    if rest > PI { 2.0 * PI - rest } else { rest }
+}
+
+fn checked(energy: f64, masses: (f64, f64), b_max: f64) -> Result<Collision> {
+    for (name, value) in [("beam_energy", energy), ("b_max", b_max)] {
+        if !(value > 0.0 && value.is_finite()) {
+            return Err(Error::invalid(
+                name,
+                format!("expected a positive finite number, got {}", number(value)),
+            ));
+        }
+    }
+    Collision::new(masses.0, masses.1)
+}
+
+/// The largest |ψ| of impact parameters beyond the disc, at most π: a little more where it is not at the disc's edge, as
+/// it lies between points that were tried.
+fn largest_beyond(
+    deflector: &Deflector,
+    energy: f64,
+    b_max: f64,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<f64> {
+    // Steps of 1.0002 at first, of 1.06 at the end.
+    let part = |i: i32| 1.0 + (f64::from(i) / f64::from(BEYOND)).powi(3) * 999.0;
+    let b: Vec<f64> = (0..=BEYOND).map(|i| b_max * part(i)).filter(|b| b.is_finite()).collect();
+    let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
+    let size = |found: &crate::scattering::deflection::Deflection| {
+        if found.status == Status::Captured { PI } else { found.angle.abs() }
+    };
+    let edge = found.first().map_or(PI, size);
+    let largest = found.iter().map(size).fold(0.0, f64::max);
+    Ok(if largest <= edge { edge.min(PI) } else { (1.05 * largest).min(PI) })
+}

@@ -1,0 +1,133 @@
+//! Beams of several energies side by side, and what is counted of their events.
+
+use super::beam::{Beam, UNIT};
+use super::quantity::Quantity;
+use crate::numerics::philox::DRAW_BITS;
+use crate::parallel::Ticker;
+use crate::scattering::histogram::{Edges, Lookup, Steps};
+use crate::words::number;
+use crate::{Error, Result};
+
+/// Beams, each with its part of the events.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Mixture {
+    /// Each with the first draw that is its own.
+    components: Vec<(u64, Beam)>,
+}
+
+impl Mixture {
+    /// All events of one beam.
+    pub fn of(beam: Beam) -> Self {
+        Self { components: vec![(0, beam)] }
+    }
+    /// Beams in parts as their weights: draws are divided at the rounded running sums of the weights.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `weights` that are not positive or add up to nothing that is a number, or of which one is so
+    /// small a part that no draw is its own.
+    pub fn new(beams: Vec<Beam>, weights: &[f64]) -> Result<Self> {
+        let total: f64 = weights.iter().sum();
+        if beams.is_empty() || beams.len() != weights.len() || !total.is_finite() {
+            return Err(Error::invalid("weights", "expected a finite weight for each energy"));
+        }
+        let (mut sum, mut components) = (0.0, Vec::with_capacity(beams.len()));
+        for (beam, weight) in beams.into_iter().zip(weights) {
+            let start = (sum / total / UNIT) as u64;
+            sum += weight;
+            if weight.is_nan() || *weight <= 0.0 || (sum / total / UNIT) as u64 <= start {
+                let message =
+                    format!("expected positive weights, each at least 1e-15 of all, got {}", number(*weight));
+                return Err(Error::invalid("weights", message));
+            }
+            components.push((start, beam));
+        }
+        Ok(Self { components })
+    }
+    /// The beams, in order.
+    pub fn beams(&self) -> impl Iterator<Item = &Beam> {
+        self.components.iter().map(|(_, beam)| beam)
+    }
+    /// The beam of the highest energy.
+    pub fn fastest(&self) -> Option<&Beam> {
+        self.beams().max_by(|a, b| a.energy().total_cmp(&b.energy()))
+    }
+    /// The least of the beams' smallest deflections.
+    pub fn smallest_angle(&self) -> f64 {
+        self.beams().map(Beam::smallest_angle).fold(f64::INFINITY, f64::min)
+    }
+    /// As [`Beam::reachable`] and [`Beam::covered`]: of several beams what is of all of them, whole bins only.
+    pub fn reachable(&self, quantity: Quantity, edges: &[f64]) -> (Vec<f64>, (f64, f64)) {
+        let mut beams = self.beams();
+        let Some(first) = beams.next() else { return (Vec::new(), (0.0, 0.0)) };
+        let (mut parts, mut covered) = (first.reachable(quantity, edges), first.covered(quantity));
+        for beam in beams {
+            for (part, other) in parts.iter_mut().zip(beam.reachable(quantity, edges)) {
+                *part = part.min(other).floor();
+            }
+            let other = beam.covered(quantity);
+            covered = (covered.0.max(other.0), covered.1.min(other.1));
+        }
+        (parts, covered)
+    }
+    /// Which component a draw is, if there are several.
+    pub(super) fn lookup(&self) -> Option<Lookup> {
+        let starts: Vec<u64> = self.components.iter().map(|(start, _)| *start).collect();
+        (starts.len() > 1).then(|| Lookup::new(starts, 16))
+    }
+    /// The component of a draw.
+    pub(super) fn component(&self, draw: u64) -> Option<(usize, &Beam)> {
+        let index = self.components.partition_point(|(start, _)| *start <= draw).checked_sub(1)?;
+        self.components.get(index).map(|(_, beam)| (index, beam))
+    }
+}
+
+/// A histogram of one quantity, or of two together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Tally {
+    axes: Vec<(Quantity, Edges)>,
+}
+
+impl Tally {
+    /// Of those quantities.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `tally` for none, more than two, or more bins than 2^24.
+    pub fn new(axes: Vec<(Quantity, Edges)>) -> Result<Self> {
+        let slots = axes.iter().fold(1_usize, |slots, (_, edges)| slots.saturating_mul(edges.bins() + 2));
+        if !(1..=2).contains(&axes.len()) || slots > 1 << 24 {
+            let message = format!(
+                "expected one or two quantities and at most 2**24 bins, got {} and {slots}",
+                axes.len()
+            );
+            return Err(Error::invalid("tally", message));
+        }
+        Ok(Self { axes })
+    }
+    /// Its quantities and their edges.
+    pub fn axes(&self) -> &[(Quantity, Edges)] {
+        &self.axes
+    }
+    /// How many numbers it has: of each axis what is below, the bins, and what is above, the last axis fastest; and at
+    /// the end what was captured.
+    pub fn slots(&self) -> usize {
+        self.axes.iter().map(|(_, edges)| edges.bins() + 2).product::<usize>() + 1
+    }
+    /// The slot of an event.
+    fn slot(&self, beam: &Beam, share: f64) -> usize {
+        let mut slot = 0;
+        for (quantity, edges) in &self.axes {
+            let Some(value) = beam.value(*quantity, share) else { return self.slots() - 1 };
+            slot = slot * (edges.bins() + 2) + edges.slot(value);
+        }
+        slot
+    }
+    /// The step function of the draw that it is.
+    pub(super) fn steps(&self, beam: &Beam, ticker: &mut Ticker<'_>) -> Result<Steps> {
+        let mut turns: Vec<u64> =
+            self.axes.iter().flat_map(|(quantity, _)| beam.turning_draws(*quantity)).collect();
+        turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
+        turns.sort_unstable();
+        turns.dedup();
+        Steps::new(&turns, |draw| self.slot(beam, draw as f64 * UNIT), ticker)
+    }
+}
