@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,9 +19,13 @@ from visviva.scattering._spread import spread
 from visviva.scattering._tally import Beam, JointTally, Spectrum, Tally
 
 if TYPE_CHECKING:
+    from typing import TypeAlias
+
     from numpy.typing import NDArray
 
     from visviva._progress import Progress
+
+    Axes: TypeAlias = list[tuple[str, int | NDArray[np.float64]]]
 
 __all__ = ["monte_carlo", "scattering_events"]
 
@@ -252,7 +256,7 @@ def _run(
         found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
         which = ((key, at, at + events),)
         at += events
-        results.append(MonteCarlo(found, which, tuple(_tally(*column, found, which) for column in columns)))
+        results.append(MonteCarlo(found, which, tuple(_tally(column, found, which) for column in columns)))
     result: MonteCarlo | None = sum(results[1:], start=results[0]) if results else None
     if at - first < count:
         raise Interrupted(f"interrupted after {at - first} of {count} events", result=result)
@@ -261,23 +265,13 @@ def _run(
     return result  # type: ignore[return-value]  # there is at least one event
 
 
-def _tally(
-    names: list[str],
-    edges: list[NDArray[np.float64]],
-    flow: NDArray[np.uint64],
-    captured: int,
-    single: tuple[NDArray[np.float64], tuple[float, float]] | None,
-    beam: Beam,
-    events: tuple[tuple[int, int, int], ...],
-) -> Tally | JointTally:
+def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:
+    names, edges, flow, captured, single = column
     if single is None:
         return JointTally(tuple(names), tuple(edges), flow, captured, beam, events)
     reachable, covered = single
     under, over = int(flow[0]), int(flow[-1])
     return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
-
-
-Axes: TypeAlias = "list[tuple[str, int | NDArray[np.float64]]]"
 
 
 def _tallies(tally: object, bins: int) -> list[Axes]:
