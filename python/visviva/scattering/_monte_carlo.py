@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -19,15 +19,14 @@ from visviva.scattering._spread import spread
 from visviva.scattering._tally import Beam, JointTally, Spectrum, Tally
 
 if TYPE_CHECKING:
-    from typing import TypeAlias
-
     from numpy.typing import NDArray
 
     from visviva._progress import Progress
 
-    Axes: TypeAlias = list[tuple[str, int | NDArray[np.float64]]]
-
 __all__ = ["monte_carlo", "scattering_events"]
+
+# Names of quantities, each with a number of bins or edges.
+Axes: TypeAlias = list[tuple[str, Any]]
 
 
 @known_keywords
@@ -287,7 +286,7 @@ def _tallies(tally: object, bins: int) -> list[Axes]:
         raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
     names = [name for name, _ in pairs]
     if not names or not all(_named(name) for name in names) or len(set(names)) < len(names):
-        raise InvalidInput("tally", f"expected one or more different names, or pairs of names, got {names!r}")
+        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
     return [_axes(name, given, bins) for name, given in pairs]
 
 

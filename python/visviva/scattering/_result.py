@@ -197,6 +197,7 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
             np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
 
     @staticmethod
+    @known_keywords
     def load(path: str | PathLike[str]) -> MonteCarlo:
         """Read a file that `save` wrote.
 
