@@ -146,7 +146,7 @@ vv.problems.lagrange_triangle(side=-1)              | side        | positive len
 vv.problems.lagrange_triangle(turn="once")          | turn        | expected real numbers
 vv.problems.kepler().error(3)                       | final       | expected a Scene or a Trajectory, got int
 vv.load(__file__)                                   | path        | expected a run that visviva saved
-mc(vv.potentials.Yukawa(1.0, 1.0))                  | potential   | expected a Coulomb potential
+mc(vv.Gravity(1.0))                  | potential   | expected one of visviva.potentials
 mc(beam_energy=-1)                                  | beam_energy | positive finite number, got -1
 mc(masses=(1, 1, 1))                                | masses      | expected shape \(2,\), got \(3,\)
 mc(masses=(1, -1))                                  | masses      | masses\[1\] is -1

@@ -25,6 +25,9 @@ if TYPE_CHECKING:
 
 __all__ = ["monte_carlo", "scattering_events"]
 
+# Names of quantities, each with a number of bins or edges.
+Axes: TypeAlias = list[tuple[str, Any]]
+
 
 @known_keywords
 def monte_carlo(
@@ -252,7 +255,7 @@ def _run(
         found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
         which = ((key, at, at + events),)
         at += events
-        results.append(MonteCarlo(found, which, tuple(_tally(*column, found, which) for column in columns)))
+        results.append(MonteCarlo(found, which, tuple(_tally(column, found, which) for column in columns)))
     result: MonteCarlo | None = sum(results[1:], start=results[0]) if results else None
     if at - first < count:
         raise Interrupted(f"interrupted after {at - first} of {count} events", result=result)
@@ -261,23 +264,13 @@ def _run(
     return result  # type: ignore[return-value]  # there is at least one event
 
 
-def _tally(
-    names: list[str],
-    edges: list[NDArray[np.float64]],
-    flow: NDArray[np.uint64],
-    captured: int,
-    single: tuple[NDArray[np.float64], tuple[float, float]] | None,
-    beam: Beam,
-    events: tuple[tuple[int, int, int], ...],
-) -> Tally | JointTally:
+def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:
+    names, edges, flow, captured, single = column
     if single is None:
         return JointTally(tuple(names), tuple(edges), flow, captured, beam, events)
     reachable, covered = single
     under, over = int(flow[0]), int(flow[-1])
     return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
-
-
-Axes: TypeAlias = "list[tuple[str, int | NDArray[np.float64]]]"
 
 
 def _tallies(tally: object, bins: int) -> list[Axes]:
@@ -293,7 +286,7 @@ def _tallies(tally: object, bins: int) -> list[Axes]:
         raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
     names = [name for name, _ in pairs]
     if not names or not all(_named(name) for name in names) or len(set(names)) < len(names):
-        raise InvalidInput("tally", f"expected one or more different names, or pairs of names, got {names!r}")
+        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
     return [_axes(name, given, bins) for name, given in pairs]
 
 

@@ -122,7 +122,7 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
     def resume(
         self, n_events: int, *, threads: int | None = None, progress: Progress = False, executor: Any = None
     ) -> MonteCarlo:
-        """This result and the next ``n_events``: the same bits as one run of them all.
+        """Go on with the next ``n_events``: the same bits as one run of them all.
 
         Parameters
         ----------
@@ -130,6 +130,11 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
             How many more, from `next_event` on.
         threads, progress, executor
             As of `monte_carlo`.
+
+        Returns
+        -------
+        MonteCarlo
+            Of all events.
 
         Raises
         ------
@@ -192,6 +197,7 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
             np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
 
     @staticmethod
+    @known_keywords
     def load(path: str | PathLike[str]) -> MonteCarlo:
         """Read a file that `save` wrote.
 
@@ -247,6 +253,7 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
     )
     events = tuple((seed, first, end) for seed, first, end in header["events"])
     tallies: list[Tally | JointTally] = []
+    tally: Tally | JointTally
     for index, told in enumerate(header["tallies"]):
         if isinstance(told["name"], str):
             edges, counts, reachable = (arrays[f"{index}/{name}"] for name in ("edges", "counts", "reachable"))

@@ -87,8 +87,8 @@ class Beam:
     b_max : float
         Radius of the disc of impact parameters.
     smallest_angle : float
-        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where deflections
-        fall with the impact parameter, no event is scattered by less.
+        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where
+        deflections fall with the impact parameter, no event is scattered by less.
     tables : tuple of int
         The hash of the event table of each energy, from which angles are taken; none of a Coulomb target.
     """

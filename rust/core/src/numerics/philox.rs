@@ -161,9 +161,9 @@ mod tests {
     }
 
     /// The contract of the module's header, word by word: an event beyond 2^33, so that both words of event/2
-    /// count, and the numbers that draws 1 and streams 1 of the same event would be, none of which it uses.
+    /// count; draw 1 of the same event, and what stream 1 would be, which it does not use.
     #[test]
-    fn an_event_uses_draw_0_of_stream_0() {
+    fn an_event_uses_draws_of_stream_0() {
         let seed = 0x0123_4567_89ab_cdef;
         let event = 2 * 0x0000_0005_8000_0007 + 1;
         let block = |draw, stream| philox([0x89ab_cdef, 0x0123_4567], [0x8000_0007, 5, draw, stream]);
