@@ -21,7 +21,8 @@ impl Field {
     pub fn new(potentials: &[Arc<dyn Potential>]) -> Self {
         let largest = potentials.iter().find_map(|potential| potential.lengths().last().copied());
         let length = largest.map_or(0, exponent);
-        let energy = potentials.first().map_or(0, |potential| near_one(potential, length).1);
+        // Even, so that the unit of velocity is a power of two, too.
+        let energy = potentials.first().map_or(0, |potential| near_one(potential, length).1) & !1;
         let units = Units { length, mass: energy - 2 * length, time: 0 };
         let terms = potentials.iter().map(|potential| potential.scaled(units)).collect();
         Self { terms, length, energy }
@@ -105,6 +106,14 @@ impl Field {
     /// Whether one of its terms diverges in the middle.
     pub fn singular(&self) -> bool {
         self.terms.iter().any(|term| term.singular())
+    }
+    /// Where a derivative may jump: jumps, and where pieces of tables meet.
+    pub(super) fn breaks(&self) -> Vec<f64> {
+        let broken = self.terms.iter().filter(|term| term.jumps() || term.domain().is_some());
+        let mut breaks: Vec<f64> = broken.flat_map(|term| term.lengths()).collect();
+        breaks.sort_by(f64::total_cmp);
+        breaks.dedup();
+        breaks
     }
     /// `k` if V = k/r.
     pub fn inverse_distance_strength(&self) -> Option<f64> {

@@ -46,12 +46,20 @@ pub enum Center {
     Unknown,
 }
 
+/// A range in which V is continuous; nothing where V is infinite.
+#[derive(Clone, Debug)]
+struct Zone {
+    ends: Option<(f64, f64)>,
+    /// Places between which U is monotone; rounding hides what U does before the first and after the last.
+    pieces: Vec<f64>,
+}
+
 /// What a potential can do.
 #[derive(Clone, Debug)]
 pub struct Landscape {
     field: Field,
-    /// Ranges in which V is continuous, in the field's units, and in each the places between which U is monotone.
-    zones: Vec<Vec<f64>>,
+    /// Ranges in which V is continuous, in the field's units.
+    zones: Vec<Zone>,
     center: Center,
 }
 
@@ -78,10 +86,11 @@ impl Landscape {
             if !zones.is_empty() && zone.first().is_some_and(|first| *first > jumps[zones.len() - 1]) {
                 zone.insert(0, jumps[zones.len() - 1]);
             }
-            zones.push(monotone(&field, &zone));
+            let ends = zone.first().copied().zip(zone.last().copied());
+            zones.push(Zone { ends, pieces: monotone(&field, &zone) });
             from = to;
         }
-        let center = center(&field, zones.iter().flatten().copied().next());
+        let center = center(&field, zones.iter().find_map(|zone| zone.ends).map(|(first, _)| first));
         Self { field, zones, center }
     }
 
@@ -95,7 +104,9 @@ impl Landscape {
     }
     /// Distances at which U and r³V′ are stationary, ascending: where two circles of one energy or one l merge.
     pub fn stationary(&self) -> Vec<f64> {
-        let inner = |zone: &Vec<f64>| zone.get(1..zone.len().saturating_sub(1)).unwrap_or_default().to_vec();
+        let inner = |zone: &Zone| {
+            zone.pieces.get(1..zone.pieces.len().saturating_sub(1)).unwrap_or_default().to_vec()
+        };
         self.zones.iter().flat_map(inner).map(|r| self.field.give_length(r)).collect()
     }
 
@@ -130,8 +141,8 @@ impl Landscape {
         let motion = Radial { field, energy, centrifugal };
         let mut found = Vec::new();
         let mut before: Option<bool> = None;
-        for zone in self.zones.iter() {
-            let (Some(&first), Some(&last)) = (zone.first(), zone.last()) else {
+        for zone in &self.zones {
+            let Some((first, last)) = zone.ends else {
                 // V is infinite there.
                 before = Some(false);
                 continue;
@@ -158,19 +169,22 @@ impl Landscape {
     }
 
     /// Whether the motion reaches as near to the center, and as far out, as the potential is known.
-    pub fn open_ends(&self, energy: f64, centrifugal: DoubleDouble) -> (bool, bool) {
+    pub(super) fn open_ends(&self, energy: f64, centrifugal: DoubleDouble) -> (bool, bool) {
         let field = &self.field;
         let (energy, centrifugal) = (field.take_energy(energy), field.take_centrifugal(centrifugal));
         let motion = Radial { field, energy, centrifugal };
-        let mut places = self.zones.iter().flatten();
-        let (first, last) = (places.next().copied(), places.next_back().copied());
+        let mut ends = self.zones.iter().filter_map(|zone| zone.ends);
+        let first = ends.next();
+        let last = ends.next_back().or(first).map(|(_, last)| last);
+        let first = first.map(|(first, _)| first);
         let reaches = |r: Option<f64>| r.is_some_and(|r| motion.allowed(r));
-        (reaches(first), reaches(last.or(first)))
+        (reaches(first), reaches(last))
     }
 
     /// In each zone the zeros of a function that is monotone between its places.
     fn crossings(&self, f: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
-        let of = |zone: &Vec<f64>| {
+        let of = |zone: &Zone| {
+            let zone = &zone.pieces;
             let signs: Vec<f64> = zone.iter().map(|r| f(*r)).collect();
             let mut found = Vec::new();
             for (ends, signs) in zone.windows(2).zip(signs.windows(2)) {
@@ -197,11 +211,11 @@ pub(super) struct Radial<'a> {
 
 impl Radial<'_> {
     /// E − V − l²/2mr², the kinetic energy of the motion along r, and its slope.
-    pub(super) fn kinetic(&self, r: DoubleDouble) -> (DoubleDouble, f64) {
+    pub(super) fn kinetic(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let (value, force) = self.field.precise(r);
         let turning = self.centrifugal / r / r;
         let kinetic = DoubleDouble::from(self.energy) - value - turning;
-        (kinetic, force.high() + 2.0 * turning.high() / r.high())
+        (kinetic, force + (turning / r).scale(2.0))
     }
     /// As [`kinetic`](Self::kinetic), rounded.
     pub(super) fn roughly(&self, r: f64) -> f64 {
@@ -222,13 +236,13 @@ impl Radial<'_> {
     }
 }
 
-/// The places of a zone between which U is monotone: its ends, and where 3V′ + rV″ changes sign.
+/// The places of a zone between which U is monotone: the ends of what can be told, and where 3V′ + rV″ changes sign.
 fn monotone(field: &Field, places: &[f64]) -> Vec<f64> {
-    let (Some(&first), Some(&last)) = (places.first(), places.last()) else { return Vec::new() };
     let slope = |r: f64| field.slope(r);
     // What rounding hides says nothing.
     let told: Vec<(f64, f64)> =
         places.iter().map(|r| (*r, slope(*r))).filter(|(_, slope)| *slope != 0.0).collect();
+    let (Some(&(first, _)), Some(&(last, _))) = (told.first(), told.last()) else { return Vec::new() };
     let mut found = vec![first];
     let mut cross = |from: (f64, f64), to: (f64, f64)| {
         if (from.1 < 0.0) != (to.1 < 0.0) {

@@ -4,6 +4,11 @@
 //! stationary, U = E. So what a potential can do is found once ([`landscape`]), and every question after that is a
 //! root between two places, of which there is one or none.
 
+pub mod circles;
 pub mod field;
 pub mod landscape;
+pub mod motion;
+mod quadrature;
+pub mod range;
 pub mod roots;
+pub mod state;

@@ -42,7 +42,7 @@ pub fn bracket(f: impl Fn(f64) -> f64, low: f64, high: f64, rises: bool) -> (f64
 ///
 /// Newton's steps, and halvings wherever one would leave the bracket or does not close it.
 pub fn precise(
-    f: impl Fn(DoubleDouble) -> (DoubleDouble, f64),
+    f: impl Fn(DoubleDouble) -> (DoubleDouble, DoubleDouble),
     [low, high]: [f64; 2],
     guess: f64,
     rises: bool,
@@ -60,7 +60,7 @@ pub fn precise(
         } else {
             b = x;
         }
-        let step = y / DoubleDouble::from(slope);
+        let step = y / slope;
         let next = x - step;
         let size = step.high().abs();
         let newton = next > a && next < b && size < 0.5 * before;
