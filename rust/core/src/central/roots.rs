@@ -63,6 +63,9 @@ pub fn precise(
         let step = y / slope;
         let next = x - step;
         let size = step.high().abs();
+        if size <= LAST * x.high().abs() {
+            return x;
+        }
         let newton = next > a && next < b && size < 0.5 * before;
         let next = if newton { next } else { (a + b).scale(0.5) };
         let moved = (next - x).high().abs();

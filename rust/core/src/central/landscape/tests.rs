@@ -113,3 +113,13 @@ fn narrow_wells_far_out_are_seen() {
     close(points[0].radius.to_f64(), 1.0 - (1.0 + x).ln() / 1000.0, 1e-9);
     close(points[1].radius.to_f64(), 1.0 - (1.0 - x).ln() / 1000.0, 1e-9);
 }
+
+#[test]
+fn a_root_that_is_a_number_is_found_at_once() {
+    // 9/13 and 9/7, of which E is known to the last bit.
+    let sum = [made("coulomb", &[-1.0]), made("power_law", &[-0.05, 2.0])];
+    let points = Landscape::of(&sum).turning_points(-0.505_555_555_555_555_6, DoubleDouble::from(0.5));
+    assert_eq!(points.len(), 2);
+    close(points[0].radius.to_f64(), 9.0 / 13.0, 1e-15);
+    close(points[1].radius.to_f64(), 9.0 / 7.0, 1e-15);
+}
