@@ -231,12 +231,11 @@ def central_passage(
     mass: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def central_state(
-    potentials: list[dict[str, Any]], mass: float, position: Sequence[float], velocity: Sequence[float]
-) -> dict[str, Any]: ...
+    potentials: list[dict[str, Any]], state: tuple[float, Sequence[float], Sequence[float]]
+) -> tuple[dict[str, Any], str]: ...
 def central_places(
     potentials: list[dict[str, Any]],
-    constants: tuple[float, float, float],
-    start: tuple[float, float],
+    state: tuple[float, Sequence[float], Sequence[float]],
     values: NDArray[np.float64],
     angles: bool,
 ) -> NDArray[np.float64]: ...

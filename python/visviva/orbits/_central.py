@@ -394,10 +394,14 @@ def radial_motion(
     if near is None:
         flat.append(np.full(flat[0].shape, np.nan))
     found, kinds = _core.central_motion(core_potentials(potential), *flat)
-    kind = np.array(kinds, dtype=np.str_)
+    return described_motion(fields(found, shape), np.array(kinds, dtype=np.str_).reshape(shape))
+
+
+def described_motion(numbers: dict[str, Any], kind: NDArray[np.str_]) -> RadialMotion:
+    """The numbers of motions, and the precession of those that return."""
     returns = (kind == "bound") | (kind == "circular")
-    found["precession"] = np.where(returns, 2.0 * (found["apsidal_angle"] - np.pi), np.nan)
-    return RadialMotion(**fields(found, shape), kind=kind.reshape(shape))
+    precession = np.where(returns, 2.0 * (numbers["apsidal_angle"] - np.pi), np.nan)[()]
+    return RadialMotion(**numbers, precession=precession, kind=kind)
 
 
 @known_keywords

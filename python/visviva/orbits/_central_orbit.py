@@ -11,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.orbits._central import RadialMotion, core_potentials, radial_motion
+from visviva.orbits._central import RadialMotion, core_potentials, described_motion
 from visviva.potentials import Potential
 
 if TYPE_CHECKING:
@@ -41,7 +41,7 @@ class CentralOrbit:
     energy: float
     angular_momentum: float
     motion: RadialMotion
-    _start: tuple[float, float] = field(repr=False)
+    _state: tuple[float, list[float], list[float]] = field(repr=False)
     _plane: NDArray[np.float64] = field(repr=False)
 
     @property
@@ -133,10 +133,7 @@ class CentralOrbit:
 
     def _places(self, name: str, values: ArrayLike, *, angles: bool) -> NDArray[np.float64]:
         given = float_array(name, values, None)
-        constants = (self.energy, self.angular_momentum, self.mass)
-        found = _core.central_places(
-            core_potentials(self.potentials), constants, self._start, given.ravel(), angles=angles
-        )
+        found = _core.central_places(core_potentials(self.potentials), self._state, given.ravel(), angles=angles)
         return found.reshape((*given.shape, 3))
 
     def _vectors(self, length: NDArray[np.float64], angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -211,17 +208,14 @@ def central_orbit(
     place, speed = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
     if not place.any():
         raise InvalidInput("position", "expected one that is not the center")
-    found = _core.central_state(described, m, place.tolist(), speed.tolist())
-    energy, momentum = found["energy"], found["angular_momentum"]
-    if not np.isfinite([energy, momentum]).all():
-        raise InvalidInput("position", "expected one at which the potential is known and finite")
-    motion = radial_motion(terms, energy=energy, angular_momentum=momentum, mass=m, near=found["radius"])
+    state = (m, place.tolist(), speed.tolist())
+    found, kind = _core.central_state(described, state)
     return CentralOrbit(
         potentials=terms,
         mass=m,
-        energy=energy,
-        angular_momentum=momentum,
-        motion=motion,
-        _start=(found["radius"], found["radial_velocity"]),
-        _plane=np.array([found["outward"], found["across"]]),
+        energy=found.pop("energy"),
+        angular_momentum=found.pop("angular_momentum"),
+        _state=state,
+        _plane=np.array([found.pop("outward"), found.pop("across")]),
+        motion=described_motion({name: np.float64(value) for name, value in found.items()}, np.array(kind)),
     )

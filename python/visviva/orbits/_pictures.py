@@ -60,7 +60,7 @@ def _path(axes: Any, orbit: CentralOrbit) -> None:
 def _well(axes: Any, orbit: CentralOrbit) -> None:
     """The effective potential about the range of motion, the energy, and where the motion turns."""
     low, high = orbit.turning_points
-    ends = [r for r in (low, high, orbit._start[0]) if 0.0 < r < np.inf]
+    ends = [r for r in (low, high, float(np.linalg.norm(orbit._state[1]))) if 0.0 < r < np.inf]
     r = np.geomspace(0.5 * min(ends), 2.5 * max(ends), _POINTS)
     domains = [domain for domain in (_domain(term) for term in orbit.potentials) if domain is not None]
     for first, last in domains:

@@ -13,6 +13,8 @@ use visviva_core::central::field::Field;
 use visviva_core::central::landscape::Landscape;
 use visviva_core::central::motion::Motion;
 use visviva_core::central::range::{Range, centrifugal};
+use visviva_core::central::state::Constants;
+use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::parallel::{for_chunks, thread_count};
 use visviva_core::potentials::Potential;
 use visviva_core::words::number;
@@ -117,7 +119,7 @@ pub(crate) fn central_ranges(
 ) -> PyResult<Vec<(f64, f64, &'static str)>> {
     let potentials = described(&potentials)?;
     let found = compute(py, 0, None, |_| {
-        Ok(Landscape::of(&potentials).ranges(energy, centrifugal(angular_momentum, mass)))
+        Ok(Landscape::of(&potentials).ranges(DoubleDouble::from(energy), centrifugal(angular_momentum, mass)))
     })?
     .whole(py)?;
     Ok(found.iter().map(|range| (range.inner.radius(), range.outer.radius(), range.kind())).collect())
@@ -126,6 +128,9 @@ pub(crate) fn central_ranges(
 /// Numbers of each radial motion, in this order.
 const NUMBERS: [&str; 6] =
     ["r_min", "r_max", "radial_period", "apsidal_angle", "period_error", "angle_error"];
+
+/// How far beyond the end of its range a distance may be, relatively: what the rounding of E may take from a round orbit.
+const HELD: f64 = 1e-7;
 
 /// The range of one motion, nothing if there is none.
 fn range_of(found: &[Range], near: f64) -> Result<Option<Range>> {
@@ -141,13 +146,15 @@ fn range_of(found: &[Range], near: f64) -> Result<Option<Range>> {
         }
         found.first()
     } else {
-        found.iter().find(|range| range.holds(near))
+        found.iter().find(|range| range.holds(near, HELD))
     };
     Ok(chosen.copied())
 }
 
-fn numbers_of(landscape: &Landscape, [energy, l, m, near]: [f64; 4]) -> Result<([f64; 6], &'static str)> {
-    let turning = centrifugal(l, m);
+/// Energy, l²/2m, mass, and a distance in the range.
+type Asked = (DoubleDouble, DoubleDouble, f64, f64);
+
+fn numbers_of(landscape: &Landscape, (energy, turning, m, near): Asked) -> Result<([f64; 6], &'static str)> {
     let Some(range) = range_of(&landscape.ranges(energy, turning), near)? else {
         return Ok(([f64::NAN; 6], "no_motion"));
     };
@@ -169,7 +176,7 @@ fn numbers_of(landscape: &Landscape, [energy, l, m, near]: [f64; 4]) -> Result<(
             if motion.turns_smoothly() {
                 let half = motion.to_the_end()?;
                 // Through a center without a singularity it goes on: half a turn for each passage.
-                let angle = match (kind, l == 0.0, landscape.field().singular()) {
+                let angle = match (kind, turning.high() == 0.0, landscape.field().singular()) {
                     ("reaches_the_center", true, false) => core::f64::consts::FRAC_PI_2,
                     ("reaches_the_center", true, true) => f64::NAN,
                     _ => half.angle,
@@ -197,8 +204,13 @@ pub(crate) fn central_motion<'py>(
     let potentials = described(&potentials)?;
     let (energy, l) = (flat("energy", &energy)?, flat("angular_momentum", &angular_momentum)?);
     let (m, near) = (flat("mass", &mass)?, flat("near", &near)?);
-    let asked: Vec<[f64; 4]> =
-        energy.iter().zip(&l).zip(&m).zip(&near).map(|(((e, l), m), near)| [*e, *l, *m, *near]).collect();
+    let asked: Vec<Asked> = energy
+        .iter()
+        .zip(&l)
+        .zip(&m)
+        .zip(&near)
+        .map(|(((e, l), m), near)| (DoubleDouble::from(*e), centrifugal(*l, *m), *m, *near))
+        .collect();
     let found = compute(py, asked.len() as u64, None, |ticker| {
         let landscape = Landscape::of(&potentials);
         for_chunks(thread_count(None)?, asked.len(), ticker, |at, ticker| {
@@ -250,8 +262,10 @@ pub(crate) fn central_passage<'py>(
                 return Err(Error::Internal("no passage".to_owned()));
             };
             let turning = centrifugal(l, m);
+            let energy = DoubleDouble::from(energy);
             let ranges = landscape.ranges(energy, turning);
-            let Some(range) = ranges.iter().find(|range| range.holds(from) && range.holds(to)) else {
+            let Some(range) = ranges.iter().find(|range| range.holds(from, 0.0) && range.holds(to, 0.0))
+            else {
                 let words: Vec<String> = ranges
                     .iter()
                     .map(|range| {
@@ -277,52 +291,78 @@ pub(crate) fn central_passage<'py>(
     ))
 }
 
-/// What is constant of a state: numbers by name, and two directions that span the plane.
+/// A state: mass, position and velocity.
+type State = (f64, [f64; 3], [f64; 3]);
+
+fn constants(landscape: &Landscape, (mass, position, velocity): State) -> Constants {
+    landscape.field().constants(mass, Vector3::from(position), Vector3::from(velocity))
+}
+
+/// What is constant of a state: numbers by name, those of its radial motion, and two directions that span the plane.
 #[pyfunction]
 pub(crate) fn central_state<'py>(
     py: Python<'py>,
     potentials: Vec<Bound<'py, PyDict>>,
-    mass: f64,
-    position: [f64; 3],
-    velocity: [f64; 3],
-) -> PyResult<Bound<'py, PyDict>> {
-    let field = Field::new(&described(&potentials)?);
-    let found = field.constants(mass, Vector3::from(position), Vector3::from(velocity));
+    state: State,
+) -> PyResult<(Bound<'py, PyDict>, &'static str)> {
+    let potentials = described(&potentials)?;
+    let (found, (numbers, kind)) = compute(py, 0, None, |_| {
+        let landscape = Landscape::of(&potentials);
+        let found = constants(&landscape, state);
+        if !found.energy.is_finite() {
+            let message = "expected one at which the potential is known and finite";
+            return Err(Error::invalid("position", message));
+        }
+        let motion = numbers_of(&landscape, (found.energy, found.centrifugal, state.0, found.radius))?;
+        Ok((found, motion))
+    })?
+    .whole(py)?;
     let dict = PyDict::new(py);
-    dict.set_item("radius", found.radius)?;
-    dict.set_item("radial_velocity", found.radial_velocity)?;
     dict.set_item("angular_momentum", found.angular_momentum)?;
-    dict.set_item("energy", found.energy)?;
+    dict.set_item("energy", found.energy.to_f64())?;
     dict.set_item("outward", <[f64; 3]>::from(found.outward))?;
     dict.set_item("across", <[f64; 3]>::from(found.across))?;
-    Ok(dict)
+    for (name, value) in NUMBERS.iter().zip(numbers) {
+        dict.set_item(name, value)?;
+    }
+    Ok((dict, kind))
 }
 
-/// Distance, angle and radial velocity at times, or at angles, since a start.
+/// Distance, angle and radial velocity at times, or at angles, since a state.
 #[pyfunction]
 pub(crate) fn central_places<'py>(
     py: Python<'py>,
     potentials: Vec<Bound<'py, PyDict>>,
-    constants: (f64, f64, f64),
-    start: (f64, f64),
+    state: State,
     values: Array<'py>,
     angles: bool,
 ) -> PyResult<Column<'py>> {
     let potentials = described(&potentials)?;
-    let ((energy, angular_momentum, mass), (radius, radial_velocity)) = (constants, start);
     let values = flat("t", &values)?;
-    let found = compute(py, 0, None, |_| {
+    let found = compute(py, 0, None, |ticker| {
         let landscape = Landscape::of(&potentials);
-        let turning = centrifugal(angular_momentum, mass);
-        let ranges = landscape.ranges(energy, turning);
-        let Some(range) = range_of(&ranges, radius)? else {
+        let found = constants(&landscape, state);
+        let ranges = landscape.ranges(found.energy, found.centrifugal);
+        let Some(range) = range_of(&ranges, found.radius)? else {
             return Err(Error::Internal("a state beyond its own range of motion".to_owned()));
         };
-        let motion = Motion::new(&landscape, range, energy, mass, turning);
-        let start = motion.start(radius, radial_velocity);
-        if angles { motion.at_angles(start, &values) } else { motion.places(start, &values) }
+        let motion = Motion::new(&landscape, range, found.energy, state.0, found.centrifugal);
+        let start = motion.start(found.radius, found.radial_velocity);
+        let mut places = Vec::with_capacity(values.len());
+        for some in values.chunks(AT_A_TIME) {
+            ticker.tick()?;
+            places.extend(if angles {
+                motion.at_angles(start, some)?
+            } else {
+                motion.places(start, some)?
+            });
+        }
+        Ok(places)
     })?
     .whole(py)?;
     let numbers = found.iter().flat_map(|place| [place.radius, place.angle, place.radial_velocity]).collect();
     moved(py, numbers, &[found.len(), 3])
 }
+
+/// Places between two looks at the clock.
+const AT_A_TIME: usize = 64;

@@ -136,9 +136,19 @@ impl Landscape {
         energy: f64,
         centrifugal: DoubleDouble,
     ) -> Vec<TurningPoint> {
+        self.turns(critical, self.radial(DoubleDouble::from(energy), centrifugal))
+    }
+
+    /// The radial motion at an energy that is known to thirty digits.
+    pub(super) fn radial(&self, energy: DoubleDouble, centrifugal: DoubleDouble) -> Radial<'_> {
         let field = &self.field;
-        let (energy, centrifugal) = (field.take_energy(energy), field.take_centrifugal(centrifugal));
-        let motion = Radial { field, energy, centrifugal };
+        let energy = DoubleDouble::new(field.take_energy(energy.high()), field.take_energy(energy.low()));
+        Radial { field, energy, centrifugal: field.take_centrifugal(centrifugal) }
+    }
+
+    /// Its turning points, ascending.
+    pub(super) fn turns(&self, critical: &[f64], motion: Radial<'_>) -> Vec<TurningPoint> {
+        let field = &self.field;
         let mut found = Vec::new();
         let mut before: Option<bool> = None;
         for zone in &self.zones {
@@ -169,10 +179,7 @@ impl Landscape {
     }
 
     /// Whether the motion reaches as near to the center, and as far out, as the potential is known.
-    pub(super) fn open_ends(&self, energy: f64, centrifugal: DoubleDouble) -> (bool, bool) {
-        let field = &self.field;
-        let (energy, centrifugal) = (field.take_energy(energy), field.take_centrifugal(centrifugal));
-        let motion = Radial { field, energy, centrifugal };
+    pub(super) fn open_ends(&self, motion: Radial<'_>) -> (bool, bool) {
         let mut ends = self.zones.iter().filter_map(|zone| zone.ends);
         let first = ends.next();
         let last = ends.next_back().or(first).map(|(_, last)| last);
@@ -204,7 +211,7 @@ impl Landscape {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Radial<'a> {
     pub(super) field: &'a Field,
-    pub(super) energy: f64,
+    pub(super) energy: DoubleDouble,
     /// l²/2m.
     pub(super) centrifugal: DoubleDouble,
 }
@@ -214,18 +221,19 @@ impl Radial<'_> {
     pub(super) fn kinetic(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let (value, force) = self.field.precise(r);
         let turning = self.centrifugal / r / r;
-        let kinetic = DoubleDouble::from(self.energy) - value - turning;
+        let kinetic = self.energy - value - turning;
         (kinetic, force + (turning / r).scale(2.0))
     }
     /// As [`kinetic`](Self::kinetic), rounded.
     pub(super) fn roughly(&self, r: f64) -> f64 {
-        self.energy - self.field.value(r) - self.centrifugal.high() / r / r
+        self.energy.high() - self.field.value(r) - self.centrifugal.high() / r / r
     }
     /// Whether it may be there.
     pub(super) fn allowed(&self, r: f64) -> bool {
         let (value, turning) = (self.field.value(r), self.centrifugal.high() / r / r);
-        let rough = self.energy - value - turning;
-        let doubtful = rough.abs() <= DOUBTFUL * (self.energy.abs() + value.abs() + turning.abs());
+        let energy = self.energy.high();
+        let rough = energy - value - turning;
+        let doubtful = rough.abs() <= DOUBTFUL * (energy.abs() + value.abs() + turning.abs());
         let kinetic = if doubtful { self.kinetic(DoubleDouble::from(r)).0.high() } else { rough };
         if kinetic.is_nan() { rough >= 0.0 } else { kinetic >= 0.0 }
     }

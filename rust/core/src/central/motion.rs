@@ -82,17 +82,13 @@ impl<'a> Motion<'a> {
     pub fn new(
         landscape: &'a Landscape,
         range: Range,
-        energy: f64,
+        energy: DoubleDouble,
         mass: f64,
         centrifugal: DoubleDouble,
     ) -> Self {
         let field = landscape.field();
         let (length, unit) = field.units();
-        let radial = Radial {
-            field,
-            energy: field.take_energy(energy),
-            centrifugal: field.take_centrifugal(centrifugal),
-        };
+        let radial = landscape.radial(energy, centrifugal);
         let take = |r: DoubleDouble| DoubleDouble::new(scale(r.high(), -length), scale(r.low(), -length));
         let form = match (range.inner.smooth().map(take), range.outer.smooth().map(take)) {
             (Some(a), Some(b)) => {
@@ -419,7 +415,8 @@ impl<'a> Motion<'a> {
         let aim = rest.abs();
         let (mut low, mut high) = (0.0, reach);
         let most = end.map_or_else(|| self.whole.map_or(0.0, |w| w.value[which]), |(_, most)| most[which]);
-        let mut p = if end.is_some() { reach.min(aim / self.rates(0.0)[which]) } else { PI * aim / most };
+        let mut p =
+            if end.is_some() { reach.min(aim / self.rates(0.0)[which]).min(1.0) } else { PI * aim / most };
         let mut at = self.since(p)?[which];
         for _ in 0..STEPS {
             if at < aim {
@@ -427,16 +424,20 @@ impl<'a> Motion<'a> {
             } else {
                 high = p;
             }
-            let next = p - (at - aim) / self.rates(p)[which];
+            let rate = self.rates(p)[which];
+            // Beyond a turning point time grows as an exponential, so its logarithm is taken.
+            let far = which == 0 && at > 2.0 * aim && aim > 0.0;
+            let step = if far { elementary::ln(at / aim) * at / rate } else { (at - aim) / rate };
+            let next = p - step;
             let next = if next > low && next < high { next } else { 0.5 * (low + high) };
-            let moved = next - p;
-            if moved.abs() <= 2e-16 * next.abs() || next == p {
-                break;
+            let moved = (next - p).abs();
+            if moved <= 4e-16 * next.abs() || at == aim {
+                return Ok(Some((2.0 * PI * turns + p.copysign(rest)).copysign(wanted)));
             }
             at = self.since(next)?[which];
             p = next;
         }
-        Ok(Some((2.0 * PI * turns + p.copysign(rest)).copysign(wanted)))
+        Err(refused())
     }
 }
 

@@ -59,10 +59,10 @@ impl Range {
             _ => "reaches_the_center_or_escapes",
         }
     }
-    /// Whether a distance is in it.
-    pub fn holds(&self, r: f64) -> bool {
-        let (low, high) = (self.inner.radius(), self.outer.radius());
-        r >= low - NEAR * low && r <= high + NEAR * high
+    /// Whether a distance is in it, or beyond it by no more than such a part, and rounding.
+    pub fn holds(&self, r: f64, beyond: f64) -> bool {
+        let (low, high, near) = (self.inner.radius(), self.outer.radius(), beyond.max(NEAR));
+        r >= low - near * low && r <= high + near * high
     }
 }
 
@@ -77,10 +77,11 @@ pub fn centrifugal(angular_momentum: f64, mass: f64) -> DoubleDouble {
 
 impl Landscape {
     /// Every range in which the motion may be, from the center outward.
-    pub fn ranges(&self, energy: f64, centrifugal: DoubleDouble) -> Vec<Range> {
-        let critical = self.critical_radii(energy);
-        let points = self.turning_points_between(&critical, energy, centrifugal);
-        let (to_center, outward) = self.open_ends(energy, centrifugal);
+    pub fn ranges(&self, energy: DoubleDouble, centrifugal: DoubleDouble) -> Vec<Range> {
+        let critical = self.critical_radii(energy.high());
+        let motion = self.radial(energy, centrifugal);
+        let points = self.turns(&critical, motion);
+        let (to_center, outward) = self.open_ends(motion);
         let domain =
             self.field().domain().map(|(a, b)| (self.field().give_length(a), self.field().give_length(b)));
         let mut inner = match domain {
@@ -109,7 +110,7 @@ impl Landscape {
         }
         // A stable circle that rounding of the energy alone has made impossible.
         for r in critical {
-            if found.iter().any(|range| range.holds(r)) || !self.is_circle(r, energy, centrifugal) {
+            if found.iter().any(|range| range.holds(r, 0.0)) || !self.is_circle(r, motion) {
                 continue;
             }
             let at = |turn| End::Turn(TurningPoint { radius: DoubleDouble::from(r), turn, jump: false });
@@ -121,16 +122,11 @@ impl Landscape {
     }
 
     /// Whether a circle there lacks no more energy than rounding takes.
-    fn is_circle(&self, r: f64, energy: f64, centrifugal: DoubleDouble) -> bool {
+    fn is_circle(&self, r: f64, motion: Radial<'_>) -> bool {
         let field = self.field();
         let r = field.take_length(r);
-        let motion = Radial {
-            field,
-            energy: field.take_energy(energy),
-            centrifugal: field.take_centrifugal(centrifugal),
-        };
         let (value, turning) = (field.value(r), motion.centrifugal.high() / r / r);
-        let size = motion.energy.abs() + value.abs() + turning;
+        let size = motion.energy.high().abs() + value.abs() + turning;
         field.slope(r) > 0.0 && motion.kinetic(DoubleDouble::from(r)).0.high().abs() <= ROUNDED * size
     }
 }

@@ -15,8 +15,10 @@ pub struct Constants {
     pub radial_velocity: f64,
     /// l = m |r × v|.
     pub angular_momentum: f64,
-    /// m v²/2 + V.
-    pub energy: f64,
+    /// l²/2m to about thirty digits.
+    pub centrifugal: DoubleDouble,
+    /// m v²/2 + V, as that.
+    pub energy: DoubleDouble,
     /// The direction to the body.
     pub outward: Vector3<f64>,
     /// The direction of the motion across it, in the plane of the orbit; of a radial motion any.
@@ -34,10 +36,12 @@ impl Field {
             (0..3).fold(DoubleDouble::default(), |sum, c| sum + DoubleDouble::product(a[c], b[c]))
         };
         let distance = Real::sqrt(dot(r, r));
-        let difference = |a: usize, b: usize| {
-            (DoubleDouble::product(r[a], v[b]) - DoubleDouble::product(r[b], v[a])).high()
-        };
-        let momentum = Vector3::new(difference(1, 2), difference(2, 0), difference(0, 1));
+        let difference =
+            |a: usize, b: usize| DoubleDouble::product(r[a], v[b]) - DoubleDouble::product(r[b], v[a]);
+        let exact = [difference(1, 2), difference(2, 0), difference(0, 1)];
+        let square = exact.iter().fold(DoubleDouble::default(), |sum, x| sum + *x * *x);
+        let momentum = Vector3::from(exact.map(DoubleDouble::high));
+        let scaled = |x: DoubleDouble, by: i32| DoubleDouble::new(scale(x.high(), by), scale(x.low(), by));
         let all = dot(v, v).scale(0.5) * DoubleDouble::from(mass) + self.precise(distance).0;
         let outward = r / distance.high();
         let turning = momentum.norm();
@@ -52,7 +56,8 @@ impl Field {
             radius: scale(distance.high(), length),
             radial_velocity: scale((dot(r, v) / distance).high(), speed),
             angular_momentum: scale(mass * turning, length + speed),
-            energy: scale(all.high(), energy),
+            centrifugal: scaled(square * DoubleDouble::from(0.5 * mass), 2 * length + energy),
+            energy: scaled(all, energy),
             outward,
             across,
         }

@@ -73,9 +73,15 @@ fn ellipses_hyperbolas_and_falls() {
     }
     let falls = Landscape::new(&made("power_law", &[-1.0, 2.0]));
     assert_eq!(falls.center(), Center::InverseSquare(1.0));
-    assert_eq!(falls.open_ends(1.0, DoubleDouble::from(0.9)), (true, true));
-    assert_eq!(falls.open_ends(1.0, DoubleDouble::from(1.1)), (false, true));
-    assert_eq!(falls.open_ends(-1.0, DoubleDouble::from(0.9)), (true, false));
+    assert_eq!(falls.open_ends(falls.radial(DoubleDouble::from(1.0), DoubleDouble::from(0.9))), (true, true));
+    assert_eq!(
+        falls.open_ends(falls.radial(DoubleDouble::from(1.0), DoubleDouble::from(1.1))),
+        (false, true)
+    );
+    assert_eq!(
+        falls.open_ends(falls.radial(DoubleDouble::from(-1.0), DoubleDouble::from(0.9))),
+        (true, false)
+    );
     let steep = Landscape::new(&made("power_law", &[-1.0, 4.0]));
     assert_eq!(steep.center(), Center::Attracting);
     assert_eq!(steep.turning_points(1.0, DoubleDouble::from(2.1)).len(), 2);
