@@ -230,6 +230,11 @@ def central_passage(
     angular_momentum: NDArray[np.float64],
     mass: NDArray[np.float64],
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def central_inverse_cube(
+    strengths: tuple[float, float],
+    state: tuple[float, Sequence[float], Sequence[float]],
+    angles: NDArray[np.float64],
+) -> tuple[dict[str, float], NDArray[np.float64]]: ...
 def central_state(
     potentials: list[dict[str, Any]], state: tuple[float, Sequence[float], Sequence[float]]
 ) -> tuple[dict[str, Any], str]: ...

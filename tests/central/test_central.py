@@ -31,7 +31,9 @@ from visviva.potentials import (
 )
 
 mpmath.mp.dps = 30
-GOLDEN = {case["id"]: case for case in json.loads((Path(__file__).parents[1] / "reference" / "golden.json").read_text())}
+GOLDEN = {
+    case["id"]: case for case in json.loads((Path(__file__).parents[1] / "reference" / "golden.json").read_text())
+}
 
 
 def close(found: Any, expected: Any, rel: float = 1e-13) -> None:
@@ -46,7 +48,10 @@ def oracle(value: Any, energy: float, momentum: float, mass: float, ends: tuple[
     def kinetic(r: Any) -> Any:
         return e - value(r) - half / r**2
 
-    low, high = (mpmath.findroot(kinetic, (mpmath.mpf(end) * (1 - 1e-9), mpmath.mpf(end) * (1 + 1e-9)), solver="anderson") for end in ends)
+    low, high = (
+        mpmath.findroot(kinetic, (mpmath.mpf(end) * (1 - 1e-9), mpmath.mpf(end) * (1 + 1e-9)), solver="anderson")
+        for end in ends
+    )
     middle, wide = (low + high) / 2, (high - low) / 2
 
     # r = middle − wide cos φ leaves no singularity.
@@ -201,6 +206,19 @@ def test_places_are_those_of_a_trajectory(potential: Any, position: list[float],
     close(orbit.radius(orbit.angle(t)), np.linalg.norm(r, axis=-1), 1e-12)
 
 
+def test_circles_and_what_is_nearly_one() -> None:
+    """Through the width at which an epicycle takes over from quadrature, against the conic."""
+    t = np.array([0.0, 0.3, 2.0, 11.0, -7.0])
+    for disturbed in (0.0, 1e-14, 1e-11, 0.7e-9, 0.9e-9, 1.1e-9, 3e-9, 1e-8, 1e-6):
+        start, velocity = [1.0, 0.0, 0.0], [0.3 * disturbed, 1.0 + disturbed, 0.0]
+        orbit = vv.orbits.central_orbit(Coulomb(-1.0), position=start, velocity=velocity)
+        assert orbit.motion.kind == ("circular" if disturbed < 0.8e-9 else "bound")
+        position, rate = vv.orbits.propagate(1.0, start, velocity, t)
+        assert np.abs(orbit.position(t) - position).max() < 4e-14
+        assert np.abs(orbit.velocity(t) - rate).max() < 4e-14
+        close(orbit.radius(orbit.angle(t)), np.linalg.norm(position, axis=-1), 4e-15)
+
+
 def test_the_path_obeys_its_equation() -> None:
     orbit = vv.orbits.central_orbit(Yukawa(-1.0, 2.0), position=[1.0, 0, 0], velocity=[0.1, 0.7, 0])
     h = 1e-3
@@ -262,9 +280,7 @@ def test_near_the_top_of_a_barrier() -> None:
     circles = vv.orbits.circular_orbits(lj, angular_momentum=momentum)
     top, rate = circles.energy[1], circles.growth_rate[1]
     missing = np.array([1e-4, 1e-6, 1e-8, 1e-10])
-    periods = vv.orbits.radial_period(
-        lj, energy=top - missing, angular_momentum=momentum, near=circles.radius[0]
-    )
+    periods = vv.orbits.radial_period(lj, energy=top - missing, angular_momentum=momentum, near=circles.radius[0])
     slopes = np.diff(periods) / np.log(100.0) * rate
     # Corrections are of the order of what is missing times its logarithm; at 1e-10, rounding of the top is 1e-6 of it.
     assert np.abs(slopes - 1.0).max() < 1e-2
@@ -330,9 +346,64 @@ def test_pictures() -> None:
     pytest.importorskip("matplotlib")
     for potential, speed in ((Yukawa(-1.0, 2.0), 0.7), (Coulomb(-1.0), 1.9)):
         orbit = vv.orbits.central_orbit(potential, position=[1.0, 0, 0], velocity=[0.1, speed, 0])
+        nearest = orbit.radius(-orbit.angle_since_pericenter)
+        close(nearest, orbit.turning_points[0], 4e-16)
         for kind in ("orbit", "effective_potential"):
             figure = orbit.plot(kind)
             assert orbit.plot(kind, ax=figure.axes[0]) is figure
             figure.canvas.draw()
     with pytest.raises(vv.InvalidInput, match="kind"):
         orbit.plot("orbits")
+
+
+@pytest.mark.parametrize(
+    ("gamma", "kappa"), [(1.0, 0.1), (1.0, -0.7), (-1.0, 0.3), (1.0, 2.0), (1.0, 0.81), (-0.5, 3.0)]
+)
+@pytest.mark.parametrize("radial", [0.0, 0.3, -0.9])
+def test_conics_that_turn_and_spirals(gamma: float, kappa: float, radial: float) -> None:
+    """Against the path equation by series of 30 digits, and against the general orbit."""
+    position, velocity = [1.0, 0.0, 0.0], [radial, 0.9, 0.0]
+    orbit = vv.orbits.precessing_conic(1.0, gamma, kappa, position=position, velocity=velocity)
+    l2 = mpmath.mpf(0.9) ** 2
+    beta2 = 1 - mpmath.mpf(kappa) / l2
+    beta, push = mpmath.sqrt(beta2), mpmath.mpf(gamma) / l2
+    rate = -mpmath.mpf(radial) / mpmath.mpf(0.9)
+
+    def exact(angle: float) -> float:
+        sine = mpmath.sin(beta * angle) / beta
+        return float(mpmath.re(1 / (1 + rate * sine + (push - beta2) * (1 - mpmath.cos(beta * angle)) / beta2)))
+
+    for angle in (0.0, 0.1, -0.1, 0.5):
+        close(orbit.radius(angle), exact(angle), 1e-14)
+    field = [Coulomb(-gamma), PowerLaw(-kappa / 2, 2.0)]
+    other = vv.orbits.range_of_motion(field, energy=orbit.energy, angular_momentum=orbit.angular_momentum)
+    (held,) = [part for part in other if part.r_min <= 1 + 1e-7 and part.r_max >= 1 - 1e-7]
+    close(orbit.r_min, held.r_min, 1e-13)
+    if np.isfinite(held.r_max):
+        close(orbit.r_max, held.r_max, 1e-13)
+    assert np.isinf(orbit.r_max) == np.isinf(held.r_max)
+    if np.isfinite(orbit.precession):
+        general = vv.orbits.central_orbit(field, position=position, velocity=velocity)
+        close(orbit.radial_period, general.radial_period, 1e-13)
+        close(orbit.apsidal_angle, general.apsidal_angle, 1e-13)
+        angle = np.linspace(-20.0, 20.0, 17)
+        close(orbit.radius(angle), general.radius(angle), 1e-12)
+
+
+def test_golden_precessing_ellipse_in_closed_form() -> None:
+    case = GOLDEN["G7.17-precessing-ellipse"]
+    given, out = case["inputs"], case["outputs"]
+    near = out["r_min"]
+    orbit = vv.orbits.precessing_conic(
+        given["m"], given["gamma"], given["kappa"], position=[near, 0, 0], velocity=[0, given["l"] / near, 0]
+    )
+    close(orbit.beta_squared, out["beta"] ** 2, 4e-16)
+    close(orbit.eccentricity, given["e"], 4e-15)
+    close(orbit.radial_period, out["radial_period"], 4e-15)
+    close(2 * orbit.apsidal_angle, out["apsidal_angle_full"], 4e-16)
+    close(orbit.precession, out["advance_per_radial_period"], 4e-15)
+    fast = vv.orbits.precessing_conic(1.0, 1.0, 0.0, position=[1.0, 0, 0], velocity=[0, 2.0, 0])
+    with pytest.raises(vv.InvalidInput, match="asymptotes"):
+        fast.radius(3.0)
+    with pytest.raises(vv.InvalidInput, match="velocity"):
+        vv.orbits.precessing_conic(1.0, 1.0, 0.0, position=[1.0, 0, 0], velocity=[2.0, 0.0, 0])

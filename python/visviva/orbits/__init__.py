@@ -38,6 +38,7 @@ from visviva.orbits._hyperbola import (
     mean_from_hyperbolic,
     true_from_hyperbolic,
 )
+from visviva.orbits._inverse_cube import PrecessingConic, precessing_conic
 from visviva.orbits._parabola import mean_from_parabolic, parabolic_from_mean, parabolic_from_true, true_from_parabolic
 
 __all__ = [
@@ -45,6 +46,7 @@ __all__ = [
     "CircularOrbits",
     "Conic",
     "Elements",
+    "PrecessingConic",
     "RadialMotion",
     "RadialRange",
     "apsidal_angle",
@@ -67,6 +69,7 @@ __all__ = [
     "parabolic_from_true",
     "path_equation",
     "period",
+    "precessing_conic",
     "precession",
     "propagate",
     "radial_motion",

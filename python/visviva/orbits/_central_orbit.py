@@ -34,6 +34,8 @@ class CentralOrbit:
         m, E = mv²/2 + V and l = m abs(r×v).
     motion : RadialMotion
         Turning points, radial period, apsidal angle, precession and kind of this orbit.
+    time_since_pericenter, angle_since_pericenter : float
+        At the start, from the nearest pericenter, with its sign; NaN of a circle, and where there is no pericenter.
     """
 
     potentials: tuple[Potential, ...]
@@ -41,6 +43,8 @@ class CentralOrbit:
     energy: float
     angular_momentum: float
     motion: RadialMotion
+    time_since_pericenter: float
+    angle_since_pericenter: float
     _state: tuple[float, list[float], list[float]] = field(repr=False)
     _plane: NDArray[np.float64] = field(repr=False)
 
@@ -210,11 +214,14 @@ def central_orbit(
         raise InvalidInput("position", "expected one that is not the center")
     state = (m, place.tolist(), speed.tolist())
     found, kind = _core.central_state(described, state)
+    time, angle = found.pop("phase")
     return CentralOrbit(
         potentials=terms,
         mass=m,
         energy=found.pop("energy"),
         angular_momentum=found.pop("angular_momentum"),
+        time_since_pericenter=time,
+        angle_since_pericenter=angle,
         _state=state,
         _plane=np.array([found.pop("outward"), found.pop("across")]),
         motion=described_motion({name: np.float64(value) for name, value in found.items()}, np.array(kind)),

@@ -44,10 +44,10 @@ def _path(axes: Any, orbit: CentralOrbit) -> None:
         angles = np.linspace(0.0, 2.0 * _PERIODS * orbit.apsidal_angle, _POINTS)
     else:
         reach = orbit.apsidal_angle * (1.0 - 1e-3)
-        angles = np.linspace(-reach, reach, _POINTS)
+        angles = np.linspace(-reach, reach, _POINTS) - orbit.angle_since_pericenter
     r = orbit.radius(angles)
     axes.plot(r * np.cos(angles), r * np.sin(angles), linewidth=0.8)
-    axes.plot(r[0] * np.cos(angles[0]), r[0] * np.sin(angles[0]), "o", markersize=4, color="C0")
+    axes.plot(float(np.linalg.norm(orbit._state[1])), 0.0, "o", markersize=4, color="C0")
     axes.plot(0.0, 0.0, "+", color="0.4")
     around = np.linspace(0.0, 2.0 * np.pi, 361)
     for radius in (low, high):

@@ -10,6 +10,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::central::circles::Circle;
 use visviva_core::central::field::Field;
+use visviva_core::central::inverse_cube::InverseCube;
 use visviva_core::central::landscape::Landscape;
 use visviva_core::central::motion::Motion;
 use visviva_core::central::range::{Range, centrifugal};
@@ -298,6 +299,21 @@ fn constants(landscape: &Landscape, (mass, position, velocity): State) -> Consta
     landscape.field().constants(mass, Vector3::from(position), Vector3::from(velocity))
 }
 
+/// Time and angle since the pericenter; NaN of what has none, or is a circle.
+fn phase_of(landscape: &Landscape, found: &Constants, mass: f64) -> Result<(f64, f64)> {
+    let ranges = landscape.ranges(found.energy, found.centrifugal);
+    match range_of(&ranges, found.radius)? {
+        Some(range) if matches!(range.kind(), "bound" | "escapes") => {
+            let motion = Motion::new(landscape, range, found.energy, mass, found.centrifugal);
+            if motion.counts_from_pericenter() {
+                return motion.since_turn(motion.start(found.radius, found.radial_velocity));
+            }
+        }
+        _ => {}
+    }
+    Ok((f64::NAN, f64::NAN))
+}
+
 /// What is constant of a state: numbers by name, those of its radial motion, and two directions that span the plane.
 #[pyfunction]
 pub(crate) fn central_state<'py>(
@@ -306,7 +322,7 @@ pub(crate) fn central_state<'py>(
     state: State,
 ) -> PyResult<(Bound<'py, PyDict>, &'static str)> {
     let potentials = described(&potentials)?;
-    let (found, (numbers, kind)) = compute(py, 0, None, |_| {
+    let (found, (numbers, kind), phase) = compute(py, 0, None, |_| {
         let landscape = Landscape::of(&potentials);
         let found = constants(&landscape, state);
         if !found.energy.is_finite() {
@@ -314,7 +330,8 @@ pub(crate) fn central_state<'py>(
             return Err(Error::invalid("position", message));
         }
         let motion = numbers_of(&landscape, (found.energy, found.centrifugal, state.0, found.radius))?;
-        Ok((found, motion))
+        let phase = phase_of(&landscape, &found, state.0)?;
+        Ok((found, motion, phase))
     })?
     .whole(py)?;
     let dict = PyDict::new(py);
@@ -322,6 +339,7 @@ pub(crate) fn central_state<'py>(
     dict.set_item("energy", found.energy.to_f64())?;
     dict.set_item("outward", <[f64; 3]>::from(found.outward))?;
     dict.set_item("across", <[f64; 3]>::from(found.across))?;
+    dict.set_item("phase", phase)?;
     for (name, value) in NUMBERS.iter().zip(numbers) {
         dict.set_item(name, value)?;
     }
@@ -347,7 +365,7 @@ pub(crate) fn central_places<'py>(
             return Err(Error::Internal("a state beyond its own range of motion".to_owned()));
         };
         let motion = Motion::new(&landscape, range, found.energy, state.0, found.centrifugal);
-        let start = motion.start(found.radius, found.radial_velocity);
+        let start = (found.radius, found.radial_velocity);
         let mut places = Vec::with_capacity(values.len());
         for some in values.chunks(AT_A_TIME) {
             ticker.tick()?;
@@ -366,3 +384,36 @@ pub(crate) fn central_places<'py>(
 
 /// Places between two looks at the clock.
 const AT_A_TIME: usize = 64;
+
+/// The closed form of an inverse-square and an inverse-cube force: its constants, and distances at angles (NaN where it
+/// does not come).
+#[pyfunction]
+pub(crate) fn central_inverse_cube<'py>(
+    py: Python<'py>,
+    strengths: (f64, f64),
+    state: State,
+    angles: Array<'py>,
+) -> PyResult<(Bound<'py, PyDict>, Column<'py>)> {
+    let angles = flat("angle", &angles)?;
+    let (found, radii) = compute(py, 0, None, |_| {
+        let (mass, position, velocity) = state;
+        let (position, velocity) = (Vector3::from(position), Vector3::from(velocity));
+        let r = position.norm();
+        let across = position.cross(&velocity).norm() / r;
+        let found = InverseCube::new(mass, strengths.0, strengths.1, r, position.dot(&velocity) / r, across)?;
+        let radii: Vec<f64> = angles.iter().map(|angle| found.radius(*angle).unwrap_or(f64::NAN)).collect();
+        Ok((found, radii))
+    })?
+    .whole(py)?;
+    let dict = PyDict::new(py);
+    dict.set_item("beta_squared", found.beta_squared)?;
+    dict.set_item("angular_momentum", found.angular_momentum)?;
+    dict.set_item("energy", found.energy)?;
+    dict.set_item("eccentricity", found.eccentricity)?;
+    dict.set_item("r_min", found.range.0)?;
+    dict.set_item("r_max", found.range.1)?;
+    dict.set_item("apsidal_angle", found.apsidal_angle)?;
+    dict.set_item("radial_period", found.radial_period)?;
+    let count = radii.len();
+    Ok((dict, moved(py, radii, &[count])?))
+}

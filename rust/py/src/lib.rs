@@ -34,8 +34,8 @@ mod _core {
 
     #[pymodule_export]
     use crate::central::{
-        central_circles, central_circular_radii, central_effective, central_motion, central_passage,
-        central_places, central_ranges, central_state,
+        central_circles, central_circular_radii, central_effective, central_inverse_cube, central_motion,
+        central_passage, central_places, central_ranges, central_state,
     };
     #[pymodule_export]
     use crate::diagnostic::{_busy, _echo};

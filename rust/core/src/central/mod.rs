@@ -6,6 +6,7 @@
 
 pub mod circles;
 pub mod field;
+pub mod inverse_cube;
 pub mod landscape;
 pub mod motion;
 mod quadrature;

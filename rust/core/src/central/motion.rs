@@ -70,6 +70,35 @@ pub struct Place {
     pub radial_velocity: f64,
 }
 
+/// A circle and a small oscillation about it.
+#[derive(Clone, Copy, Debug)]
+struct Epicycle {
+    guide: f64,
+    /// Frequencies of the oscillation, and of the revolution.
+    radial: f64,
+    angular: f64,
+    /// How far out the start is, and its radial velocity over the frequency.
+    offset: f64,
+    speed: f64,
+}
+
+impl Epicycle {
+    fn at(&self, t: f64) -> Place {
+        let (sine, cosine) = sin_cos(self.radial * t);
+        let lag = 2.0 * self.angular / (self.radial * self.guide);
+        Place {
+            radius: self.guide + (self.offset * cosine + self.speed * sine),
+            angle: self.angular * t - lag * (self.offset * sine + self.speed * (1.0 - cosine)),
+            radial_velocity: self.radial * (self.speed * cosine - self.offset * sine),
+        }
+    }
+    /// The time of an angle; what it lags by is of the first order, so a second step is exact.
+    fn time(&self, angle: f64) -> f64 {
+        let first = angle / self.angular;
+        (0..2).fold(first, |t, _| t + (angle - self.at(t).angle) / self.angular)
+    }
+}
+
 /// Samples of a period at most before panels take over.
 const SAMPLES: usize = 2048;
 /// Relative errors of integrals, if they can be had.
@@ -231,6 +260,10 @@ impl<'a> Motion<'a> {
     pub fn turns_smoothly(&self) -> bool {
         !matches!(self.form, Form::Open(_))
     }
+    /// Whether its variable counts from a pericenter.
+    pub fn counts_from_pericenter(&self) -> bool {
+        matches!(self.form, Form::Between(..) | Form::Beyond(_))
+    }
     /// From the pericenter to the apocenter, where V jumps at neither.
     ///
     /// # Errors
@@ -331,21 +364,52 @@ impl<'a> Motion<'a> {
         Ok(sum.map(|x| x.copysign(p)))
     }
 
-    /// Places at times since a start with that variable.
+    /// Time and angle since the turning point from which the variable counts.
     ///
     /// # Errors
-    /// A time after the body has reached the center or the end of a table, and as [`half_period`](Self::half_period).
-    pub fn places(&self, start: f64, times: &[f64]) -> Result<Vec<Place>> {
-        let unit = scale((0.5 * self.mass).sqrt(), self.length - self.speed);
-        self.inverted(start, times.iter().map(|t| t / unit), 0, times)
+    /// As [`half_period`](Self::half_period).
+    pub fn since_turn(&self, start: f64) -> Result<(f64, f64)> {
+        let [time, angle] = self.since(start)?;
+        Ok((scale((0.5 * self.mass).sqrt() * time, self.length - self.speed), angle))
     }
 
-    /// Places at angles since a start with that variable.
+    /// Places at times since a state: r, dr/dt.
+    ///
+    /// # Errors
+    /// A time after the body has reached the center or the end of a table, a motion that turns nowhere, and as
+    /// [`half_period`](Self::half_period).
+    pub fn places(&self, state: (f64, f64), times: &[f64]) -> Result<Vec<Place>> {
+        if let Some(epicycle) = self.epicycle(state) {
+            return Ok(times.iter().map(|t| epicycle.at(*t)).collect());
+        }
+        let unit = scale((0.5 * self.mass).sqrt(), self.length - self.speed);
+        self.inverted(self.start(state.0, state.1), times.iter().map(|t| t / unit), 0, times)
+    }
+
+    /// Places at angles since a state.
     ///
     /// # Errors
     /// As [`places`](Self::places).
-    pub fn at_angles(&self, start: f64, angles: &[f64]) -> Result<Vec<Place>> {
-        self.inverted(start, angles.iter().copied(), 1, angles)
+    pub fn at_angles(&self, state: (f64, f64), angles: &[f64]) -> Result<Vec<Place>> {
+        if let Some(epicycle) = self.epicycle(state) {
+            return Ok(angles.iter().map(|angle| epicycle.at(epicycle.time(*angle))).collect());
+        }
+        self.inverted(self.start(state.0, state.1), angles.iter().copied(), 1, angles)
+    }
+
+    /// Of a range that is no wider than the root of rounding, the motion to first order in its width.
+    fn epicycle(&self, (radius, radial_velocity): (f64, f64)) -> Option<Epicycle> {
+        if !self.range.circle {
+            return None;
+        }
+        let guide = 0.5 * (self.range.inner.radius() + self.range.outer.radius());
+        let r = scale(guide, -self.length);
+        let [_, force, curvature] = self.radial.field.at(r);
+        let square = (curvature - 3.0 * force / r) / self.mass;
+        let radial = scale(square.sqrt(), self.speed - self.length);
+        let angular = self.turning * (2.0 / self.mass).sqrt() / r / r;
+        let angular = scale(angular, self.speed - self.length);
+        Some(Epicycle { guide, radial, angular, offset: radius - guide, speed: radial_velocity / radial })
     }
 
     fn inverted(
