@@ -61,7 +61,7 @@ def oracle(value: Any, energy: float, momentum: float, mass: float, ends: tuple[
 
     places = mpmath.linspace(0, mpmath.pi, 9)
     time = mpmath.quad(lambda a: weight(a)[0], places)
-    angle = mpmath.quad(lambda a: (lambda w, r: w / r**2)(*weight(a)), places)
+    angle = mpmath.quad(lambda a: weight(a)[0] / weight(a)[1] ** 2, places)
     return (low, high), mpmath.sqrt(2 * mpmath.mpf(mass)) * time, mpmath.sqrt(half) * angle
 
 
@@ -324,11 +324,11 @@ def test_bad_input_is_refused_by_name(arguments: dict[str, Any], name: str) -> N
 
 def test_what_else_is_refused() -> None:
     lj = LennardJones(1.0, 1.0)
-    with pytest.raises(vv.InvalidInput, match="near.*to"):
+    with pytest.raises(vv.InvalidInput, match=r"near.*to"):
         vv.orbits.radial_motion(lj, energy=0.1, angular_momentum=1.5)
-    with pytest.raises(vv.InvalidInput, match="end.*range of motion, which is"):
+    with pytest.raises(vv.InvalidInput, match=r"end.*range of motion, which is"):
         vv.orbits.time_of_flight(lj, 1.2, 9.0, energy=0.1, angular_momentum=1.5)
-    with pytest.raises(vv.InvalidInput, match="radius.*attracts"):
+    with pytest.raises(vv.InvalidInput, match=r"radius.*attracts"):
         vv.orbits.circular_orbit(Coulomb(1.0), 1.0)
     with pytest.raises(vv.InvalidInput, match="potential"):
         vv.orbits.radial_motion([], energy=0.1, angular_momentum=1.5)

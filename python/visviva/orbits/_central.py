@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,16 +19,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
-
-Kind = Literal[
-    "bound",
-    "circular",
-    "escapes",
-    "reaches_the_center",
-    "reaches_the_center_or_escapes",
-    "leaves_the_table",
-    "no_motion",
-]
 
 
 def core_potentials(potential: Potential | Sequence[Potential]) -> list[dict[str, Any]]:
@@ -250,6 +240,7 @@ def circular_orbits(
     return circular_orbit(potential, np.array(radii), mass=m)
 
 
+@known_keywords
 @dataclass(frozen=True, slots=True)
 class RadialRange:
     """A range of distance in which a motion may be.
@@ -265,7 +256,7 @@ class RadialRange:
 
     r_min: float
     r_max: float
-    kind: Kind
+    kind: str
 
 
 @known_keywords

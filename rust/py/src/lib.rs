@@ -33,9 +33,11 @@ mod _core {
     use pyo3::prelude::*;
 
     #[pymodule_export]
+    use crate::central::orbit::{central_inverse_cube, central_places, central_state};
+    #[pymodule_export]
     use crate::central::{
-        central_circles, central_circular_radii, central_effective, central_inverse_cube, central_motion,
-        central_passage, central_places, central_ranges, central_state,
+        central_circles, central_circular_radii, central_effective, central_motion, central_passage,
+        central_ranges,
     };
     #[pymodule_export]
     use crate::diagnostic::{_busy, _echo};

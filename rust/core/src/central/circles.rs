@@ -29,7 +29,7 @@ impl Landscape {
         let r = field.take_length(radius);
         let [value, force, curvature] = field.at(r);
         let slope = -force;
-        if !(slope >= 0.0) {
+        if slope < 0.0 || slope.is_nan() {
             return None;
         }
         let square = 3.0 * slope / r + curvature;
