@@ -107,20 +107,13 @@ impl Field {
     pub fn singular(&self) -> bool {
         self.terms.iter().any(|term| term.singular())
     }
-    /// Where a derivative may jump: jumps, and where pieces of tables meet.
+    /// Where a derivative may jump: jumps, and what its terms say.
     pub(super) fn breaks(&self) -> Vec<f64> {
-        let broken = self.terms.iter().filter(|term| term.jumps() || term.domain().is_some());
-        let mut breaks: Vec<f64> = broken.flat_map(|term| term.lengths()).collect();
+        let mut breaks = self.jumps();
+        breaks.extend(self.terms.iter().flat_map(|term| term.breaks()));
         breaks.sort_by(f64::total_cmp);
         breaks.dedup();
         breaks
-    }
-    /// `k` if V = k/r.
-    pub fn inverse_distance_strength(&self) -> Option<f64> {
-        match &self.terms[..] {
-            [term] => term.inverse_distance_strength(),
-            _ => None,
-        }
     }
     /// Places at which slopes are looked at: dense about every declared length, and in every piece of a table.
     pub(super) fn places(&self) -> Vec<f64> {

@@ -14,7 +14,6 @@ use crate::numerics::elementary::{self, Exponential};
 use crate::numerics::logarithm::ln_1p;
 use crate::numerics::power_of_two::scale;
 use crate::numerics::scaled::Scaled;
-use crate::words::number;
 use core::f64::consts::PI;
 
 mod places;
