@@ -1,6 +1,6 @@
 """The compiled core. Everything here is checked again by Rust; users call the Python package."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from typing import Any, TypeAlias, TypedDict, final
 
 import numpy as np
@@ -266,6 +266,49 @@ def orbit_propagate(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
 def orbit_anomaly(
     name: str, anomaly: NDArray[np.float64], eccentricity: NDArray[np.float64], repulsive: bool
+) -> NDArray[np.float64]: ...
+def central_effective(
+    potentials: list[dict[str, Any]],
+    r: NDArray[np.float64],
+    angular_momentum: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    path: bool,
+) -> NDArray[np.float64]: ...
+def central_circles(
+    potentials: list[dict[str, Any]], radius: NDArray[np.float64], mass: NDArray[np.float64]
+) -> dict[str, NDArray[np.float64]]: ...
+def central_circular_radii(potentials: list[dict[str, Any]], angular_momentum: float, mass: float) -> list[float]: ...
+def central_ranges(
+    potentials: list[dict[str, Any]], energy: float, angular_momentum: float, mass: float
+) -> list[tuple[float, float, str]]: ...
+def central_motion(
+    potentials: list[dict[str, Any]],
+    energy: NDArray[np.float64],
+    angular_momentum: NDArray[np.float64],
+    mass: NDArray[np.float64],
+    near: NDArray[np.float64],
+) -> tuple[dict[str, NDArray[np.float64]], list[str]]: ...
+def central_passage(
+    potentials: list[dict[str, Any]],
+    start: NDArray[np.float64],
+    end: NDArray[np.float64],
+    energy: NDArray[np.float64],
+    angular_momentum: NDArray[np.float64],
+    mass: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]: ...
+def central_inverse_cube(
+    strengths: tuple[float, float],
+    state: tuple[float, Sequence[float], Sequence[float]],
+    angles: NDArray[np.float64],
+) -> tuple[dict[str, float], NDArray[np.float64]]: ...
+def central_state(
+    potentials: list[dict[str, Any]], state: tuple[float, Sequence[float], Sequence[float]]
+) -> tuple[dict[str, Any], str]: ...
+def central_places(
+    potentials: list[dict[str, Any]],
+    state: tuple[float, Sequence[float], Sequence[float]],
+    values: NDArray[np.float64],
+    angles: bool,
 ) -> NDArray[np.float64]: ...
 def orbit_period(mu: NDArray[np.float64], semi_major_axis: NDArray[np.float64]) -> NDArray[np.float64]: ...
 def orbit_semi_major_axis(mu: NDArray[np.float64], period: NDArray[np.float64]) -> NDArray[np.float64]: ...

@@ -10,7 +10,8 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "rust" / "core" / "src"
 
-# numerics ← ode, potentials ← forces ← nbody, rigid, scattering, generalized ← closed_forms, conservation ← scene.
+# numerics ← ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering ← closed_forms, conservation
+# ← scene.
 # Rooms of one floor do not know each other.
 FLOORS = (
     ("error",),
@@ -19,7 +20,9 @@ FLOORS = (
     ("memory", "parallel", "units"),
     ("ode", "potentials"),
     ("forces",),
-    ("nbody", "rigid", "scattering", "generalized"),
+    ("nbody", "rigid", "generalized"),
+    ("central",),
+    ("scattering",),
     ("closed_forms", "conservation"),
     ("registry",),
     ("scene",),

@@ -1,14 +1,34 @@
-"""Kepler orbits: elements, states, propagation in closed form, anomalies, and the constants of a conic.
+"""Orbits: Kepler's in closed form, and those in any central potential.
 
 The one idea: everything about the motion under r̈ = −μ r/|r|³ is known without a step. Ellipses, parabolas, hyperbolas,
 repulsion (μ < 0) and radial motion are one set of formulas; the work is done by the core in double-double where digits
 would be lost. Arguments may be numbers or arrays, and broadcast against each other; the vector axis is the last.
+
+Those in another potential V(r), or in a sum of them, are found from `radial_motion` to `central_orbit`: turning points
+without a gap, periods and angles by quadrature, places at any time by inverting it.
 
 Units are yours: with lengths in L and times in T, μ = G(m₁ + m₂) is in L³/T². Angles are in radians; x is the
 reference direction and z the pole. Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.7–3.9;
 Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
 """
 
+from visviva.orbits._central import (
+    CircularOrbits,
+    RadialMotion,
+    RadialRange,
+    apsidal_angle,
+    circular_orbit,
+    circular_orbits,
+    effective_potential,
+    path_equation,
+    precession,
+    radial_motion,
+    radial_period,
+    range_of_motion,
+    swept_angle,
+    time_of_flight,
+)
+from visviva.orbits._central_orbit import CentralOrbit, central_orbit
 from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period, semi_major_axis
 from visviva.orbits._elements import Elements, elements, propagate, state
 from visviva.orbits._ellipse import eccentric_from_mean, eccentric_from_true, mean_from_eccentric, true_from_eccentric
@@ -18,15 +38,26 @@ from visviva.orbits._hyperbola import (
     mean_from_hyperbolic,
     true_from_hyperbolic,
 )
+from visviva.orbits._inverse_cube import PrecessingConic, precessing_conic
 from visviva.orbits._parabola import mean_from_parabolic, parabolic_from_mean, parabolic_from_true, true_from_parabolic
 
 __all__ = [
+    "CentralOrbit",
+    "CircularOrbits",
     "Conic",
     "Elements",
+    "PrecessingConic",
+    "RadialMotion",
+    "RadialRange",
+    "apsidal_angle",
+    "central_orbit",
+    "circular_orbit",
+    "circular_orbits",
     "conic",
     "conic_from_constants",
     "eccentric_from_mean",
     "eccentric_from_true",
+    "effective_potential",
     "elements",
     "free_fall_time",
     "hyperbolic_from_mean",
@@ -36,10 +67,18 @@ __all__ = [
     "mean_from_parabolic",
     "parabolic_from_mean",
     "parabolic_from_true",
+    "path_equation",
     "period",
+    "precessing_conic",
+    "precession",
     "propagate",
+    "radial_motion",
+    "radial_period",
+    "range_of_motion",
     "semi_major_axis",
     "state",
+    "swept_angle",
+    "time_of_flight",
     "true_from_eccentric",
     "true_from_hyperbolic",
     "true_from_parabolic",

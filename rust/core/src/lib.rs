@@ -3,6 +3,7 @@
 //! A room knows the rooms below it and never those above:
 //! numerics ← potentials ← forces ← nbody, scattering ← closed_forms ← scene.
 
+pub mod central;
 pub mod closed_forms;
 pub mod conservation;
 pub mod error;

@@ -7,6 +7,7 @@
 #![deny(clippy::indexing_slicing)]
 
 mod arrays;
+mod central;
 mod diagnostic;
 mod drag;
 mod errors;
@@ -31,6 +32,13 @@ mod _core {
     use super::{PyModule, PyResult, errors};
     use pyo3::prelude::*;
 
+    #[pymodule_export]
+    use crate::central::orbit::{central_inverse_cube, central_places, central_state};
+    #[pymodule_export]
+    use crate::central::{
+        central_circles, central_circular_radii, central_effective, central_motion, central_passage,
+        central_ranges,
+    };
     #[pymodule_export]
     use crate::diagnostic::{_busy, _echo};
     #[pymodule_export]

@@ -125,6 +125,10 @@ pub trait Potential: Debug + Send + Sync {
     fn value_rows(&self, r: &[Lanes], value: &mut [Lanes]);
     /// −dV/dr of rows of distances.
     fn force_rows(&self, r: &[Lanes], force: &mut [Lanes]);
+    /// As [`evaluate`](Self::evaluate), at one distance.
+    fn at(&self, r: f64) -> [f64; 3];
+    /// The lengths that it declares, and inverses of inverse lengths: where something may happen, in order.
+    fn lengths(&self) -> Vec<f64>;
     /// V(r) and −dV/dr to about thirty digits.
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble);
     /// The same potential in other units.
@@ -198,6 +202,25 @@ impl<P: Formula> Potential for Held<P> {
     }
     fn force_rows(&self, r: &[Lanes], force: &mut [Lanes]) {
         force_rows_tier(&self.formula, r, force);
+    }
+    fn at(&self, r: f64) -> [f64; 3] {
+        let own = &self.formula.numbers();
+        [self.formula.value(own, r), self.formula.force(own, r), self.formula.curvature(own, r)]
+    }
+    fn lengths(&self) -> Vec<f64> {
+        let dimensions = P::DECLARATION.exponents(&self.values);
+        let mut lengths = Vec::new();
+        for (value, dimension) in self.values.iter().zip(dimensions) {
+            match (value, dimension) {
+                (Value::Number(length), [1.0, 0.0, 0.0]) => lengths.push(*length),
+                (Value::Number(inverse), [-1.0, 0.0, 0.0]) => lengths.push(1.0 / inverse),
+                (Value::Table(table), [1.0, 0.0, 0.0]) => lengths.extend_from_slice(table),
+                _ => {}
+            }
+        }
+        lengths.retain(|length| *length > 0.0 && length.is_finite());
+        lengths.sort_by(f64::total_cmp);
+        lengths
     }
     fn precise(&self, r: DoubleDouble) -> (DoubleDouble, DoubleDouble) {
         let own = &self.formula.numbers().map(DoubleDouble::from);
