@@ -10,7 +10,7 @@ from visviva import _core
 from visviva._arrays import float_array, positive, whole_number
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
-from visviva.scattering._structure import angles_within, described, structure
+from visviva.scattering._structure import angles_within, described, orbits
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -168,7 +168,10 @@ def capture_cross_section(potential: Potential, *, energy: ArrayLike) -> NDArray
     array([1. , 0.5])
     """
     energies = float_array("energy", energy, None)
-    edges = [structure(potential, float(e))[3] for e in energies.ravel()]
+    if (wrong := energies <= 0.0).any():
+        raise InvalidInput("energy", f"expected positive numbers, got {energies[wrong][0]}")
+    found = orbits(potential, energies.ravel())
+    edges = [max((b for b, _, captures in some if captures), default=0.0) for some in found]
     areas: NDArray[np.float64] = np.pi * np.square(np.array(edges))
     return areas.reshape(energies.shape)[()]
 

@@ -108,7 +108,7 @@ def rainbows(potential: Potential, *, energy: float) -> tuple[Rainbow, ...]:
     >>> vv.scattering.rainbows(vv.potentials.LennardJones(1.0, 1.0), energy=1.0)[0].impact_parameter
     1.665971...
     """
-    found, _, _, _ = structure(potential, energy)
+    found, _ = structure(potential, energy)
     return tuple(Rainbow(*mark) for mark in found)
 
 
@@ -141,7 +141,7 @@ def glories(potential: Potential, *, energy: float) -> tuple[Glory, ...]:
     >>> round(glory.impact_parameter, 9), glory.forward
     (1.100666112, True)
     """
-    _, found, _, _ = structure(potential, energy)
+    _, found = structure(potential, energy)
     return tuple(Glory(*mark) for mark in found)
 
 
@@ -173,7 +173,7 @@ def orbiting(potential: Potential, *, energy: float) -> tuple[Orbit, ...]:
     >>> round(orbit.radius, 9), round(orbit.impact_parameter, 9), orbit.captures
     (1.604636923, 1.998705157, False)
     """
-    _, _, found, _ = structure(potential, energy)
+    [found] = orbits(potential, np.array([positive("energy", energy)]))
     return tuple(Orbit(*mark) for mark in found)
 
 
@@ -214,11 +214,14 @@ def impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -
     return table.reshape((*angles.shape, table.shape[1]))
 
 
-def structure(
-    potential: object, energy: object
-) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]], list[tuple[float, float, bool]], float]:
-    """Marks of the deflection function, as the core finds them."""
+def structure(potential: object, energy: object) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]]]:
+    """Rainbows and glories, as the core finds them."""
     return _core.scattering_structure(described(potential), positive("energy", energy))
+
+
+def orbits(potential: object, energy: NDArray[np.float64]) -> list[list[tuple[float, float, bool]]]:
+    """Orbits at each energy, as the core finds them: impact parameter, radius, and whether it captures."""
+    return _core.scattering_orbits(described(potential), energy)
 
 
 def described(potential: object) -> dict[str, object]:

@@ -78,8 +78,8 @@ mod _core {
     };
     #[pymodule_export]
     use crate::scattering::cross_sections::{
-        beyond_angle, collision_integrals, differential_cross_section, scattering_branches, scattering_range,
-        scattering_structure, transport_cross_sections,
+        beyond_angle, collision_integrals, differential_cross_section, scattering_branches,
+        scattering_orbits, scattering_range, scattering_structure, transport_cross_sections,
     };
     #[pymodule_export]
     use crate::scattering::deflection::deflections;

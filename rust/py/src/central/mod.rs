@@ -55,7 +55,9 @@ pub(crate) fn central_effective<'py>(
     moved(py, all, &[length])
 }
 
-const CIRCLES: &[(&str, fn(&Circle) -> f64)] = &[
+/// What is told of a circle, by name.
+type OfCircle = (&'static str, fn(&Circle) -> f64);
+const CIRCLES: &[OfCircle] = &[
     ("radius", |found| found.radius),
     ("energy", |found| found.energy),
     ("angular_momentum", |found| found.angular_momentum),

@@ -13,8 +13,10 @@ use visviva_core::scattering::deflection::{Deflector, TOLERANCE};
 use visviva_core::scattering::kinematics::Collision;
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
-/// Rainbows (b, ψ), glories (b, ψ, dψ/db), orbits (b, r, whether it captures), and the largest b that is captured.
-type Marks = (Vec<(f64, f64)>, Vec<(f64, f64, f64)>, Vec<(f64, f64, bool)>, f64);
+/// Rainbows (b, ψ) and glories (b, ψ, dψ/db).
+type Marks = (Vec<(f64, f64)>, Vec<(f64, f64, f64)>);
+/// Of each energy the orbits: b, r, and whether it captures.
+type Orbits = Vec<Vec<(f64, f64, bool)>>;
 
 /// What marks the deflection function at an energy.
 #[pyfunction]
@@ -31,10 +33,33 @@ pub(crate) fn scattering_structure(
         let glories = structure.glories(ticker)?;
         let glories =
             glories.iter().map(|mark| (mark.impact_parameter, mark.angle, mark.derivative)).collect();
-        let orbits = structure.edges().iter();
-        let orbits =
-            orbits.filter_map(|edge| edge.orbit.map(|r| (edge.impact_parameter, r, edge.captures))).collect();
-        Ok((rainbows, glories, orbits, structure.capture()))
+        Ok((rainbows, glories))
+    })?
+    .whole(py)
+}
+
+/// The orbits that can be approached at each energy.
+#[pyfunction]
+pub(crate) fn scattering_orbits<'py>(
+    py: Python<'py>,
+    description: &Bound<'py, PyDict>,
+    energy: PyReadonlyArrayDyn<'py, f64>,
+) -> PyResult<Orbits> {
+    let potential = described_potential(description)?;
+    let (energy, _) = copied("energy", &energy, [None])?;
+    compute(py, 0, None, |ticker| {
+        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let mut all = Vec::with_capacity(energy.len());
+        for energy in &energy {
+            ticker.tick()?;
+            let edges = deflector.edges(*energy).into_iter();
+            all.push(
+                edges
+                    .filter_map(|edge| edge.orbit.map(|r| (edge.impact_parameter, r, edge.captures)))
+                    .collect(),
+            );
+        }
+        Ok(all)
     })?
     .whole(py)
 }

@@ -25,7 +25,7 @@ pub(in crate::scattering) const RULE: [[f64; 3]; 8] = [
 /// Points of a rule, filled up to whole rows.
 const POINTS: usize = 2 * WIDTH;
 /// Intervals at most.
-const MOST: usize = 4000;
+const MOST: usize = 600;
 /// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
 /// Up to this w at most the mean force is taken, by four points.

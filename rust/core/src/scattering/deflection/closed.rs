@@ -44,7 +44,7 @@ impl Closed {
         let rim = |b: f64| Edge { impact_parameter: b, orbit: None, captures: false };
         match self {
             Self::InverseSquare(c) if c < 0.0 => {
-                vec![Edge { impact_parameter: (-c / energy).sqrt(), orbit: None, captures: true }]
+                vec![Edge { impact_parameter: (-c / energy).sqrt(), orbit: Some(0.0), captures: true }]
             }
             Self::HardSphere(radius) => vec![rim(radius)],
             Self::SquareWell(depth, radius) => {

@@ -37,7 +37,7 @@ const CHUNK: usize = 256;
 /// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
 const NEAR_ORBITING: f64 = 1e-4;
 /// What rounding leaves of the distance to a barrier, as a part of b.
-const ROUNDING: f64 = 8.0 * f64::EPSILON;
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// And here equal steps would be many.
 const NEAR_BARRIER: f64 = 0.003;
 /// An angle of less than this part of what cancels in it is found as a sum of small turns.
