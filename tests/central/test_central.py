@@ -274,6 +274,29 @@ def test_square_well() -> None:
     close(found.apsidal_angle, np.arccos(near))
 
 
+def test_falls_and_walls() -> None:
+    """Into a steep center, along a logarithmic spiral, and between an orbit's end and a hard wall."""
+    # V = −1/r⁴, l = 0, from rest at 1 (E = −1): t = √(1/2) ∫ r² dr/√(1 − r⁴).
+    fall = vv.orbits.radial_motion(PowerLaw(-1.0, 4.0), energy=-1.0, angular_momentum=0.0)
+    time = mpmath.quad(lambda r: r**2 / mpmath.sqrt(1 - r**4), [0, 0.5, 1]) * mpmath.sqrt(mpmath.mpf(0.5))
+    close(fall.radial_period, float(2 * time), 1e-14)
+    # As l²/2m < 1: r² = (E − …) never turns inside; the angle has no end.
+    spiral = vv.orbits.radial_motion(PowerLaw(-1.0, 2.0), energy=-1.0, angular_momentum=1.0)
+    assert spiral.kind == "reaches_the_center"
+    assert np.isinf(spiral.apsidal_angle)
+    # r r' = −√(2 (C − r²)), C = 1/2: the time is √(C/2).
+    close(spiral.radial_period, 1.0, 1e-14)
+    # Kepler's ellipse with a hard core at its semi-latus rectum.
+    half = vv.orbits.radial_motion([Coulomb(-1.0), HardSphere(0.75)], energy=-0.5, angular_momentum=0.75**0.5)
+    assert (half.kind, float(half.r_min)) == ("bound", 0.75)
+    close(half.apsidal_angle, np.pi / 2, 1e-14)
+    straight = vv.orbits.radial_motion(HardSphere(2.0), energy=1.0, angular_momentum=1.0)
+    close(straight.apsidal_angle, np.arcsin(1.0 / (2.0 * 2.0**0.5)), 1e-14)
+    well = vv.orbits.radial_motion([SquareWell(5.0, 1.0), HardSphere(0.5)], energy=-1.0, angular_momentum=0.5)
+    near = 0.5 / 8.0**0.5
+    close(well.apsidal_angle, np.arccos(near) - np.arccos(near / 0.5), 1e-13)
+
+
 def test_near_the_top_of_a_barrier() -> None:
     """The period grows as the logarithm of what is missing to the top; the slope is 1/λ of the unstable circle."""
     lj, momentum = LennardJones(1.0, 1.0), 1.5

@@ -178,6 +178,11 @@ impl Landscape {
         found
     }
 
+    /// The nearest place to the center at which V is a number, in the field's units.
+    pub(super) fn nearest(&self) -> f64 {
+        self.zones.iter().find_map(|zone| zone.ends).map_or(f64::NAN, |(first, _)| first)
+    }
+
     /// Whether the motion reaches as near to the center, and as far out, as the potential is known.
     pub(super) fn open_ends(&self, motion: Radial<'_>) -> (bool, bool) {
         let mut ends = self.zones.iter().filter_map(|zone| zone.ends);

@@ -43,6 +43,8 @@ pub struct Motion<'a> {
     mass: f64,
     length: i32,
     speed: i32,
+    /// The nearest place to the center at which V is a number.
+    nearest: f64,
     /// √(l²/2m).
     turning: f64,
     /// Cosine series of the rates, where they converge.
@@ -100,8 +102,18 @@ impl<'a> Motion<'a> {
             }
         };
         let turning = radial.centrifugal.high().sqrt();
-        let mut motion =
-            Self { radial, form, range, mass, length, speed: unit / 2, turning, series: None, whole: None };
+        let mut motion = Self {
+            radial,
+            form,
+            range,
+            mass,
+            length,
+            speed: unit / 2,
+            nearest: landscape.nearest(),
+            turning,
+            series: None,
+            whole: None,
+        };
         if matches!(form, Form::Between(..)) && !range.circle {
             motion.survey();
         }
@@ -220,10 +232,6 @@ impl<'a> Motion<'a> {
         }
     }
 
-    /// Whether it has a turning point at which V does not jump.
-    pub fn turns_smoothly(&self) -> bool {
-        !matches!(self.form, Form::Open(_))
-    }
     /// Whether its variable counts from a pericenter.
     pub fn counts_from_pericenter(&self) -> bool {
         matches!(self.form, Form::Between(..) | Form::Beyond(_))
@@ -252,25 +260,41 @@ impl<'a> Motion<'a> {
         self.integral(a.min(b), a.max(b)).map(|integral| self.passage(integral)).ok_or_else(refused)
     }
 
-    /// From its turning point to the center or to infinity: the limit of both, of which one may be infinite.
+    /// The variable at both ends of the range, as far as numbers go.
+    fn reach(&self) -> (f64, f64) {
+        let place = |r: f64| self.variable(scale(r, -self.length));
+        let inner = match self.range.inner {
+            End::Center => self.variable(self.nearest),
+            end => place(end.radius()),
+        };
+        let outer = match (self.range.outer, self.form) {
+            (End::Infinity, Form::Open(_)) => FAR,
+            (End::Infinity, _) => FAR.sqrt(),
+            (end, _) => place(end.radius()),
+        };
+        match self.form {
+            Form::Between(..) => (0.0, PI),
+            Form::Beyond(_) => (0.0, outer),
+            Form::Within(_) => (0.0, inner),
+            Form::Open(_) => (inner, outer),
+        }
+    }
+
+    /// From one end of the range to the other; what has no end is infinite.
     ///
     /// # Errors
     /// As [`half_period`](Self::half_period).
     pub fn to_the_end(&self) -> Result<Passage> {
-        let most = match (self.form, self.range.outer) {
-            (Form::Beyond(_), End::Turn(_) | End::Edge(_)) => {
-                self.variable(scale(self.range.outer.radius(), -self.length))
-            }
-            (Form::Beyond(_) | Form::Within(_), _) => FAR.sqrt(),
-            _ => return Err(refused()),
-        };
-        let integral = self.integral(0.0, most).ok_or_else(refused)?;
+        let (from, to) = self.reach();
+        let integral = self.integral(from, to).ok_or_else(refused)?;
         let mut passage = self.passage(integral);
-        if matches!(self.range.outer, End::Turn(_) | End::Edge(_)) && matches!(self.form, Form::Beyond(_)) {
+        // Of a range that ends, both ends are places.
+        let open = [self.range.inner, self.range.outer].map(|end| matches!(end, End::Center | End::Infinity));
+        if !open[0] && !open[1] {
             return Ok(passage);
         }
         // What does not come to an end before the last place has none.
-        let last = self.rates(most);
+        let last = self.rates(if matches!(self.form, Form::Open(_)) && open[0] { from } else { to });
         let ends = |at: usize| last[at] <= TOLERANCE * integral.value[at];
         if !ends(0) {
             (passage.time, passage.time_error) = (f64::INFINITY, 0.0);

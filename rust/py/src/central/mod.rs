@@ -55,9 +55,10 @@ pub(crate) fn central_effective<'py>(
     moved(py, all, &[length])
 }
 
-/// What is told of a circle, by name.
-type OfCircle = (&'static str, fn(&Circle) -> f64);
-const CIRCLES: &[OfCircle] = &[
+/// A number of a circle, by name.
+type Named = (&'static str, fn(&Circle) -> f64);
+
+const CIRCLES: &[Named] = &[
     ("radius", |found| found.radius),
     ("energy", |found| found.energy),
     ("angular_momentum", |found| found.angular_momentum),
@@ -175,18 +176,14 @@ fn numbers_of(landscape: &Landscape, (energy, turning, m, near): Asked) -> Resul
         }
         "escapes" | "reaches_the_center" => {
             let motion = Motion::new(landscape, range, energy, m, turning);
-            if motion.turns_smoothly() {
-                let half = motion.to_the_end()?;
-                // Through a center without a singularity it goes on: half a turn for each passage.
-                let angle = match (kind, turning.high() == 0.0, landscape.field().singular()) {
-                    ("reaches_the_center", true, false) => core::f64::consts::FRAC_PI_2,
-                    ("reaches_the_center", true, true) => f64::NAN,
-                    _ => half.angle,
-                };
-                [2.0 * half.time, angle, 2.0 * half.time_error, half.angle_error]
-            } else {
-                [f64::INFINITY, f64::NAN, 0.0, 0.0]
-            }
+            let half = motion.to_the_end()?;
+            // Through a center without a singularity it goes on: half a turn for each passage.
+            let angle = match (kind, turning.high() == 0.0, landscape.field().singular()) {
+                ("reaches_the_center", true, false) => core::f64::consts::FRAC_PI_2,
+                ("reaches_the_center", true, true) => f64::NAN,
+                _ => half.angle,
+            };
+            [2.0 * half.time, angle, 2.0 * half.time_error, half.angle_error]
         }
         _ => [f64::NAN; 4],
     };

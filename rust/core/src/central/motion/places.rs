@@ -1,8 +1,7 @@
 //! Where a body is at a time or at an angle: integrals inverted by Newton's method, with a bracket.
 
-use super::{FAR, Form, Motion, refused};
+use super::{Form, Motion, refused};
 use crate::central::quadrature::Pair;
-use crate::central::range::End;
 use crate::error::{Error, Result};
 use crate::numerics::angles::sin_cos;
 use crate::numerics::elementary;
@@ -132,13 +131,10 @@ impl Motion<'_> {
 
     /// The largest value of the variable, and time and angle there; nothing of a period.
     fn end(&self) -> Result<Option<(f64, Pair)>> {
-        let reach = match (self.form, self.range.outer) {
-            (Form::Between(..), _) => return Ok(None),
-            (Form::Beyond(_), End::Turn(_) | End::Edge(_)) => {
-                self.variable(scale(self.range.outer.radius(), -self.length))
-            }
-            _ => FAR.sqrt(),
-        };
+        if matches!(self.form, Form::Between(..)) {
+            return Ok(None);
+        }
+        let (_, reach) = self.reach();
         Ok(Some((reach, self.since(reach)?)))
     }
 
