@@ -14,19 +14,12 @@ Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
 
 from visviva.orbits._central import (
     CircularOrbits,
-    RadialMotion,
     RadialRange,
-    apsidal_angle,
     circular_orbit,
     circular_orbits,
     effective_potential,
     path_equation,
-    precession,
-    radial_motion,
-    radial_period,
     range_of_motion,
-    swept_angle,
-    time_of_flight,
 )
 from visviva.orbits._central_orbit import CentralOrbit, central_orbit
 from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period, semi_major_axis
@@ -40,6 +33,15 @@ from visviva.orbits._hyperbola import (
 )
 from visviva.orbits._inverse_cube import PrecessingConic, precessing_conic
 from visviva.orbits._parabola import mean_from_parabolic, parabolic_from_mean, parabolic_from_true, true_from_parabolic
+from visviva.orbits._radial import (
+    RadialMotion,
+    apsidal_angle,
+    precession,
+    radial_motion,
+    radial_period,
+    swept_angle,
+    time_of_flight,
+)
 
 __all__ = [
     "CentralOrbit",

@@ -11,7 +11,8 @@ from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.orbits._central import RadialMotion, core_potentials, described_motion
+from visviva.orbits._central import core_potentials
+from visviva.orbits._radial import RadialMotion, described_motion
 from visviva.potentials import Potential
 
 if TYPE_CHECKING:

@@ -150,9 +150,7 @@ pub(crate) fn beyond_angle<'py>(
 #[pyfunction]
 pub(crate) fn scattering_range(py: Python<'_>, description: &Bound<'_, PyDict>) -> PyResult<f64> {
     let potential = described_potential(description)?;
-    Deflector::new(&potential, TOLERANCE)
-        .map(|deflector| deflector.range())
-        .map_err(|error| raised(py, error))
+    compute(py, 0, None, |_| Ok(Deflector::new(&potential, TOLERANCE)?.range()))?.whole(py)
 }
 
 /// Q^(l) at each energy.
