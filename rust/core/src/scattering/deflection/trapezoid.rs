@@ -22,8 +22,8 @@ const BLOCK: usize = 4;
 const LEFT_OUT: f64 = 0.01;
 /// Where V(r₀)/E is less, the attraction is strong.
 const STRONG: f64 = -0.5;
-/// The error after halving is the square of the one before times a number that is below 200 in all that was tried.
-const MARGIN: f64 = 300.0;
+/// Halvings at least. The error's sign changes with b, so two sums may agree by accident; three do not.
+const LEAST_LEVEL: usize = 2;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Where G comes nearer to zero, a barrier is near.
@@ -343,17 +343,17 @@ pub(super) fn integrate(profile: &Profile, pack: &Pack, tolerance: f64, all: boo
             let agree = |i: usize| {
                 let size = running.size[i].0[lane] * h + scale(pack, &comparisons[lane], i, lane);
                 let off = (finer[i].0[lane] - means[i].0[lane]).abs() / size;
-                off <= tolerance || MARGIN * off * off <= tolerance || size == 0.0
+                off <= tolerance || size == 0.0
             };
             let fine = running.least.0[lane] > NEAR_ZERO;
-            if (0..wanted).all(agree) && fine && h <= pack.longest.0[lane] {
+            if level >= LEAST_LEVEL && (0..wanted).all(agree) && fine && h <= pack.longest.0[lane] {
                 done.met = done.met.or(Bits(1 << lane));
             }
             if done.met.lane(lane) || !fine || running.least.0[lane].is_nan() {
                 open[lane] = false;
                 let size = running.size[0].0[lane] * h + scale(pack, &comparisons[lane], 0, lane);
                 let off = (finer[0].0[lane] - means[0].0[lane]).abs();
-                done.error.0[lane] = off.min(MARGIN * off * (off / size)).max(ROUNDING * size);
+                done.error.0[lane] = off.max(ROUNDING * size);
                 for i in 0..INTEGRALS {
                     done.integral[i].0[lane] = finer[i].0[lane];
                 }
