@@ -3,7 +3,7 @@
 use super::{DEGREE, EventTable, Piece, clenshaw, reference};
 use crate::numerics::angles::{cos, sin};
 use crate::numerics::philox::{draw, key};
-use crate::parallel::Ticker;
+use crate::parallel::{Ticker, for_chunks};
 use crate::scattering::deflection::{Deflection, Deflector, Status};
 use crate::words::number;
 use crate::{Error, Result};
@@ -11,18 +11,22 @@ use core::f64::consts::{FRAC_PI_2, PI};
 
 /// The largest error of sin²(ψ/2) that a table may have.
 pub const MOST_ERROR: f64 = 4e-6;
+/// Of the quadrature that tables are made of and checked against.
+pub const TOLERANCE: f64 = 1e-11;
 /// What series are refined to, as a part of the largest angle nearby: the first that fits.
 const AIMS: [f64; 3] = [1e-9, 1e-8, 1e-7];
 /// Below this no angle of its own is meant: head-on sin²(ψ/2) and far out 2κ/b have this at most from it.
 const SMALLEST: f64 = 1e-13;
 /// Intervals are halved so often at most.
-const DEEPEST: u32 = 30;
+const DEEPEST: u32 = 26;
+/// Pairs that a thread takes.
+const PART: usize = 32;
 /// Points between the nodes at which a series is tried, none of them where its error vanishes by symmetry.
 const TRIED: [f64; 4] = [-0.949, -0.437, 0.183, 0.871];
 /// Points, by area of the disc, at which the whole is tried.
 const CERTIFYING: u64 = 512;
 /// Pieces that fit in 64 KB.
-const MOST_PIECES: usize = 800;
+const MOST_PIECES: usize = 580;
 
 /// What a table is made of.
 pub(super) struct Built {
@@ -54,7 +58,12 @@ struct Source<'a, 'b> {
 impl Source<'_, '_> {
     fn at(&mut self, parts: &[f64]) -> Result<Vec<Deflection>> {
         let b: Vec<f64> = parts.iter().map(|part| part * self.b_max).collect();
-        self.deflector.deflect(&vec![self.energy; b.len()], &b, false, self.threads, self.ticker)
+        // In parts of a few lanes: near a barrier each takes its time.
+        let parts = for_chunks(self.threads, b.len().div_ceil(PART), self.ticker, |part, ticker| {
+            let b = &b[part * PART..b.len().min((part + 1) * PART)];
+            self.deflector.deflect(&vec![self.energy; b.len()], b, false, 1, ticker)
+        })?;
+        Ok(parts.into_iter().flatten().collect())
     }
 }
 
