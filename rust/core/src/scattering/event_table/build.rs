@@ -64,8 +64,7 @@ impl Source<'_, '_> {
         let parts = for_chunks(self.threads, b.len().div_ceil(PART), self.ticker, |part, ticker| {
             let b = &b[part * PART..b.len().min((part + 1) * PART)];
             // With derivatives: the more there is that must agree, the less a sum is taken for finished too soon.
-            let all = !self.deflector.is_closed();
-            self.deflector.deflect(&vec![self.energy; b.len()], b, all, 1, ticker)
+            self.deflector.deflect(&vec![self.energy; b.len()], b, true, 1, ticker)
         })?;
         Ok(parts.into_iter().flatten().collect())
     }
