@@ -85,13 +85,12 @@ pub fn monte_carlo(
     ticker: &mut Ticker<'_>,
 ) -> Result<Counted> {
     let end = end_of(first_event, n_events)?;
-    let program = Program {
-        component: mixture.lookup(),
-        steps: tallies
-            .iter()
-            .map(|tally| mixture.beams().map(|beam| tally.steps(beam, ticker)).collect())
-            .collect::<Result<_>>()?,
+    let beams: Vec<&Beam> = mixture.beams().collect();
+    let steps = |tally: &Tally| {
+        for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
     };
+    let program =
+        Program { component: mixture.lookup(), steps: tallies.iter().map(steps).collect::<Result<_>>()? };
     let counts = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;

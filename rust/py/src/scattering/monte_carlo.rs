@@ -67,11 +67,14 @@ impl Described<'_> {
 
 impl Taken {
     fn mixture(&self, threads: usize, ticker: &mut Ticker<'_>) -> Result<Mixture> {
-        let beam = |energy: &f64, ticker: &mut Ticker<'_>| {
-            Beam::new(&self.potential, *energy, self.masses, self.b_max, threads, ticker)
-        };
-        let beams = self.energies.iter().map(|energy| beam(energy, ticker)).collect::<Result<Vec<_>>>()?;
-        Mixture::new(beams, &self.weights)
+        Mixture::of_energies(
+            &self.potential,
+            (&self.energies, &self.weights),
+            self.masses,
+            self.b_max,
+            threads,
+            ticker,
+        )
     }
 }
 

@@ -48,7 +48,7 @@ fn tables_of_every_kind() {
             assert_eq!(angle.is_none(), found.status == Status::Captured, "{name} at {part}");
             let Some(angle) = angle else { continue };
             // Refined to 1e-9 of the largest angle of a piece, where it is tried; three times that between. An edge
-            // that cuts a piece of 2^-30 is not among these points.
+            // that cuts a piece of 2^-26 is not among these points.
             let off = (angle - found.angle).abs();
             assert!(off <= 3e-8 * found.angle.abs() + 1e-9, "{name} at {part}: {angle} {}", found.angle);
         }

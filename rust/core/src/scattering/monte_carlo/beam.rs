@@ -1,11 +1,12 @@
 //! A parallel beam on a disc around one target: what an impact parameter leads to.
 
 use super::quantity::Quantity;
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::Ticker;
 use crate::potentials::Potential;
-use crate::scattering::deflection::{Deflector, Status, TOLERANCE};
-use crate::scattering::event_table::EventTable;
+use crate::scattering::deflection::{Deflection, Deflector, Status};
+use crate::scattering::event_table::{EventTable, TOLERANCE};
 use crate::scattering::histogram::Edges;
 use crate::scattering::kinematics::{Collision, HalfAngle};
 use crate::scattering::reach::Limits;
@@ -19,6 +20,8 @@ use std::sync::Arc;
 pub(super) const UNIT: f64 = 1.0 / (1_u64 << DRAW_BITS) as f64;
 /// Impact parameters beyond the disc that are tried, out to a thousand of its radii.
 const BEYOND: i32 = 240;
+/// A part of the largest angle that no other is meant to follow.
+const NOTHING: f64 = 1e-6;
 /// Points of a piece of a table among which turning points are looked for.
 const TRIED: u64 = 8;
 
@@ -312,12 +315,20 @@ fn largest_beyond(
 ) -> Result<f64> {
     // Steps of 1.0002 at first, of 1.06 at the end.
     let part = |i: i32| 1.0 + (f64::from(i) / f64::from(BEYOND)).powi(3) * 999.0;
-    let b: Vec<f64> = (0..=BEYOND).map(|i| b_max * part(i)).filter(|b| b.is_finite()).collect();
-    let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
-    let size = |found: &crate::scattering::deflection::Deflection| {
-        if found.status == Status::Captured { PI } else { found.angle.abs() }
-    };
-    let edge = found.first().map_or(PI, size);
-    let largest = found.iter().map(size).fold(0.0, f64::max);
+    let size = |found: &Deflection| if found.status == Status::Captured { PI } else { found.angle.abs() };
+    let (mut edge, mut largest) = (None, 0.0_f64);
+    for first in (0..=BEYOND).step_by(WIDTH) {
+        let b: Vec<f64> =
+            (first..first + WIDTH as i32).map(|i| b_max * part(i)).filter(|b| b.is_finite()).collect();
+        let found = deflector.deflect(&vec![energy; b.len()], &b, false, threads, ticker)?;
+        let here = found.iter().map(size).fold(0.0, f64::max);
+        largest = largest.max(here);
+        edge = edge.or(found.first().map(size));
+        // So far out that nothing turns any more: of short range it has no other zone beyond.
+        if here <= NOTHING * largest {
+            break;
+        }
+    }
+    let edge = edge.unwrap_or(PI);
     Ok(if largest <= edge { edge.min(PI) } else { (1.05 * largest).min(PI) })
 }

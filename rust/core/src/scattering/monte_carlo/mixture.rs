@@ -3,10 +3,12 @@
 use super::beam::{Beam, UNIT};
 use super::quantity::Quantity;
 use crate::numerics::philox::DRAW_BITS;
-use crate::parallel::Ticker;
+use crate::parallel::{Ticker, for_chunks};
+use crate::potentials::Potential;
 use crate::scattering::histogram::{Edges, Lookup, Steps};
 use crate::words::number;
 use crate::{Error, Result};
+use std::sync::Arc;
 
 /// Beams, each with its part of the events.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,6 +44,27 @@ impl Mixture {
             components.push((start, beam));
         }
         Ok(Self { components })
+    }
+    /// On any potential, energies in parts as their weights: as [`Beam::new`], on several threads.
+    ///
+    /// # Errors
+    /// As [`Beam::new`] and [`new`](Self::new).
+    pub fn of_energies(
+        potential: &Arc<dyn Potential>,
+        (energies, weights): (&[f64], &[f64]),
+        masses: (f64, f64),
+        b_max: f64,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        let beams = if let [energy] = energies {
+            vec![Beam::new(potential, *energy, masses, b_max, threads, ticker)?]
+        } else {
+            for_chunks(threads, energies.len(), ticker, |index, ticker| {
+                Beam::new(potential, energies[index], masses, b_max, 1, ticker)
+            })?
+        };
+        Self::new(beams, weights)
     }
     /// The beams, in order.
     pub fn beams(&self) -> impl Iterator<Item = &Beam> {
