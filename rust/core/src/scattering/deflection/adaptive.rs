@@ -26,6 +26,8 @@ pub(in crate::scattering) const RULE: [[f64; 3]; 8] = [
 const POINTS: usize = 2 * WIDTH;
 /// Intervals at most.
 const MOST: usize = 600;
+/// What is asked of ψ, of dψ/db and of the delay, as parts of the tolerance.
+const LOOSER: [f64; INTEGRALS] = [1.0, 10.0, 100.0];
 /// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
 /// Up to this w at most the mean force is taken, by four points.
@@ -95,7 +97,7 @@ pub(super) fn integrate(
     pair: &Pair,
     integrand: Integrand,
     ends: &[f64],
-    tolerance: f64,
+    (tolerance, wanted): (f64, usize),
 ) -> Whole {
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
@@ -116,12 +118,16 @@ pub(super) fn integrate(
     loop {
         let (sum, error, size) = totals(&intervals);
         let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
-        let worst = (0..INTEGRALS).fold(0, |worst, i| if share(i) > share(worst) { i } else { worst });
+        // The angle first: what is far out in the others is rounded, and would take all intervals.
+        let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
+        let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
+            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+        };
         let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
         let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
         let [from, to] = intervals[at].ends;
         let middle = 0.5 * (from + to);
-        if share(worst) <= tolerance || intervals.len() >= MOST || middle <= from || middle >= to {
+        if middle <= from || middle >= to {
             return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
         }
         intervals[at] = rule(profile, pair, integrand, [from, middle]);

@@ -363,7 +363,8 @@ impl Quadrature<'_> {
         tolerance: f64,
     ) -> ([f64; trapezoid::INTEGRALS], f64) {
         let ends = [barriers, self.profile.breaks()].concat();
-        let whole = adaptive::integrate(self.profile, pair, integrand, &ends, tolerance);
+        let wanted = if self.all && integrand == Integrand::Deflection { trapezoid::INTEGRALS } else { 1 };
+        let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)
     }
 
