@@ -121,7 +121,7 @@ def deflect(
     impact_parameter : array_like
         Not negative; broadcast against ``energy``.
     tolerance : float
-        Of the angle, relative to what was added up to it, from 1e-14 to 1e-3.
+        Of the angle, relative to what was added up to it, from 1e-13 to 1e-3.
     reduced_mass : float, optional
         μ, for `Deflection.time_delay`.
     threads : int, optional

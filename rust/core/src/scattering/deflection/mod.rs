@@ -31,7 +31,7 @@ use turning::{Critical, Way};
 /// The tolerance if none is asked for: of an angle, relative to what was added up to it.
 pub const TOLERANCE: f64 = 1e-12;
 /// What can be asked for.
-pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-14..=1e-3;
+pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-13..=1e-3;
 /// Pairs of a chunk.
 const CHUNK: usize = 256;
 /// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
@@ -326,7 +326,10 @@ impl Quadrature<'_> {
             };
             let comparison = Comparison::of(single.value, single.root);
             let (mut angle, mut complement) = comparison.angle(single.value, single.root, integral[0]);
-            if angle.abs() < CANCELLED * PI * (single.value / (1.0 + single.root)).abs().min(1.0) {
+            // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
+            let passes = matches!(profile.center(), profile::Center::Open(_));
+            let short = CANCELLED * PI * (single.value / (1.0 + single.root)).abs().min(1.0);
+            if passes && angle.abs() < short {
                 let (turns, off) =
                     self.by_intervals(&single, Integrand::Turning, &pair.barriers, self.tolerance);
                 (angle, complement, error) = (turns[0], PI - turns[0].abs(), 0.5 * off / single.root);
