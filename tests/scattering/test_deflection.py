@@ -245,6 +245,24 @@ def test_no_bit_depends_on_neighbours_threads_or_units() -> None:
     assert np.array_equal(small.closest_approach * 2.0**200, usual.closest_approach)
 
 
+def test_sums_that_agree_by_accident_are_not_believed() -> None:
+    """The error of equal steps changes its sign with b: here two sums were alike and 2e-5 off, with 1e-12 claimed."""
+    well, b = V.Morse(21.89971284973794, 2.0, 1.0), 2.027255355992828
+    found = s.deflect(well, energy=0.5, impact_parameter=b)
+    expected = oracle.angle(
+        oracle.potential("Morse", 21.89971284973794, 2.0, 1.0), 0.5, b, float(found.closest_approach)
+    )
+    for angle in (found.angle, s.deflection_angle(well, energy=0.5, impact_parameter=b)):
+        assert float(angle) == pytest.approx(float(expected), abs=1e-12)
+    random = np.random.default_rng(0)
+    many = random.uniform(0.0, 3.0, 20_000)
+    for potential, energy in ((well, 0.5), (LENNARD_JONES, 1.2)):
+        whole = s.deflect(potential, energy=energy, impact_parameter=many)
+        alone = s.deflection_angle(potential, energy=energy, impact_parameter=many)
+        # By other sums: that of the derivative goes on longer.
+        assert (np.abs(alone - whole.angle) <= 1e-12 + 1e-15 * whole.conditioning).all()
+
+
 def test_tables_and_functions_are_as_what_they_are_of() -> None:
     r = np.geomspace(0.5, 12.0, 4000)
     values = V.Yukawa(1.0, 1.0).value(r)

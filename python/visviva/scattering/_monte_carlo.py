@@ -257,11 +257,11 @@ def _run(
         at += events
         results.append(MonteCarlo(found, which, tuple(_tally(column, found, which) for column in columns)))
     result: MonteCarlo | None = sum(results[1:], start=results[0]) if results else None
-    if at - first < count:
+    if result is None or at - first < count:
         raise Interrupted(f"interrupted after {at - first} of {count} events", result=result)
-    if result is not None and counted[-1][1]:
+    if counted[-1][1]:
         raise Interrupted(f"interrupted after {count} of {count} events", result=result)
-    return result  # type: ignore[return-value]  # there is at least one event
+    return result
 
 
 def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:
