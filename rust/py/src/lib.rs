@@ -13,6 +13,7 @@ mod drag;
 mod errors;
 mod fitted;
 mod gate;
+mod generalized;
 mod heavy_top;
 mod info;
 mod mass;
@@ -45,6 +46,8 @@ mod _core {
     use crate::drag::{drag_crossover_speed, drag_quadratic, drag_reynolds_number, drag_stokes, drag_throw};
     #[pymodule_export]
     use crate::fitted::{fitted, tabulated_drag};
+    #[pymodule_export]
+    use crate::generalized::GeneralizedModel;
     #[pymodule_export]
     use crate::heavy_top::{
         top_least_spin, top_motion, top_nutation, top_sleeping_threshold, top_steady_precession,

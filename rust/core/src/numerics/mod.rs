@@ -9,6 +9,7 @@ pub mod element;
 pub mod elementary;
 pub mod elliptic;
 pub mod exponentials;
+pub mod functions;
 pub mod fused_double;
 pub mod inverse_cube;
 pub mod lanes;

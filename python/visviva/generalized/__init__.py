@@ -1,0 +1,28 @@
+"""Lagrangians and Hamiltonians: an expression in, equations of motion at native speed out.
+
+`Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core makes
+a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a new
+derivation. The names here are those of `visviva` itself.
+"""
+
+from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
+from visviva.generalized._hamiltonian import Hamiltonian
+from visviva.generalized._lagrangian import Lagrangian
+from visviva.generalized._nodes import Expression
+from visviva.generalized._plan import GeneralizedPlan
+from visviva.generalized._symbolic import coordinate, time
+from visviva.generalized._system import GeneralizedSystem
+from visviva.generalized._trajectory import GeneralizedTrajectory
+
+__all__ = [
+    "Expression",
+    "GeneralizedEnsemble",
+    "GeneralizedEnsembleTrajectory",
+    "GeneralizedPlan",
+    "GeneralizedSystem",
+    "GeneralizedTrajectory",
+    "Hamiltonian",
+    "Lagrangian",
+    "coordinate",
+    "time",
+]

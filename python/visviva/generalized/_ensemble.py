@@ -1,0 +1,223 @@
+"""Many copies of a system in generalized coordinates: `GeneralizedEnsemble`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva._keywords import known_keywords
+from visviva.errors import Interrupted, InvalidInput
+from visviva.generalized._source import _label
+from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._system import GeneralizedSystem
+    from visviva.typing import Progress
+
+__all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
+
+
+@known_keywords
+class GeneralizedEnsemble:
+    """Copies of a system with starts or parameters of their own. Made by ``ensemble`` of a system.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> len(vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]))
+    2
+    """
+
+    __slots__ = ("_parameters", "_states", "system")
+
+    system: GeneralizedSystem
+    _states: NDArray[np.float64]
+    _parameters: NDArray[np.float64]
+
+    def __init__(
+        self,
+        system: GeneralizedSystem,
+        position: ArrayLike | None = None,
+        second: ArrayLike | None = None,
+        parameters: Mapping[Any, ArrayLike] | None = None,
+    ) -> None:
+        n, sizes = len(system.coordinates), dict[str, int]()
+        halves = [
+            None if value is None else float_array(name, value, ("B", n), sizes)
+            for name, value in (("position", position), (system._second_name, second))
+        ]
+        own: dict[str, NDArray[np.float64]] = {}
+        for key, value in (parameters or {}).items():
+            name = _label(key)
+            if name not in system.parameters:
+                raise InvalidInput("parameters", f"there is no parameter {name!r}; there are {list(system.parameters)}")
+            own[name] = float_array(f"parameters[{name!r}]", value, ("B",), sizes)
+        if "B" not in sizes:
+            raise InvalidInput(
+                "position", f"expected position, {system._second_name} or parameters of the copies, got none"
+            )
+        members = int(sizes["B"])
+        if halves[0] is None:
+            halves[0] = np.tile(system._start()[:n], (members, 1))
+        if halves[1] is None:
+            halves[1] = np.tile(system._second, (members, 1))
+        self.system = system
+        self._states = np.concatenate([half for half in halves if half is not None], axis=1)
+        self._parameters = np.tile(system._values, (members, 1))
+        for name, values in own.items():
+            self._parameters[:, list(system.parameters).index(name)] = values
+
+    def __len__(self) -> int:
+        return len(self._states)
+
+    def __getitem__(self, member: int) -> GeneralizedSystem:
+        n = len(self.system.coordinates)
+        state = self._states[member]
+        values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
+        return self.system.at(position=state[:n], parameters=values, **{self.system._second_name: state[n:]})
+
+    def run(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "gauss16",
+        rtol: float = 1e-12,
+        dt: float | None = None,
+        max_step: float | None = None,
+        threads: int | None = None,
+        progress: Progress = False,
+    ) -> GeneralizedEnsembleTrajectory:
+        """Run all copies; each has the bits that it has alone.
+
+        Parameters
+        ----------
+        t, method, rtol, dt, max_step, progress
+            As in `GeneralizedSystem.run`.
+        threads : int, optional
+            Threads; all cores if not given. They change no bit.
+
+        Returns
+        -------
+        GeneralizedEnsembleTrajectory
+
+        Raises
+        ------
+        InvalidInput
+            For what cannot be run, before anything runs.
+        Interrupted
+            By Ctrl-C.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> lengths = np.array([0.5, 1.0, 2.0])
+        >>> many = vv.systems.pendulum(position=[0.5]).ensemble(parameters={"l": lengths})
+        >>> many.run(t=5.0).energy.shape
+        (3, 2)
+        """
+        asked, _ = self.system._asked(t, method, rtol, dt, max_step)
+        for member in (0, len(self) - 1):
+            self[member]._check_start()
+        result = self.system._run(asked, self._states, self._parameters, threads, progress)
+        out = GeneralizedEnsembleTrajectory(self, result, asked)
+        if result["interrupted"]:
+            raise Interrupted("the ensemble was interrupted", out)
+        return out
+
+
+@known_keywords
+class GeneralizedEnsembleTrajectory:
+    """The motions of an ensemble.
+
+    Attributes
+    ----------
+    ensemble : GeneralizedEnsemble
+    t : ndarray, shape (T,)
+    position, velocity, momentum : ndarray, shape (B, T, n)
+        NaN from where a copy failed.
+    energy : ndarray, shape (B, T)
+    status : ndarray of Status, shape (B,)
+    steps, evaluations : ndarray of int, shape (B,)
+
+    ``out[i]`` is the trajectory of one copy.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+    >>> out.position.shape, out[1].position.shape
+    ((2, 2, 1), (2, 1))
+    """
+
+    __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
+
+    def __init__(self, ensemble: GeneralizedEnsemble, result: dict[str, Any], asked: dict[str, Any]) -> None:
+        self.ensemble = ensemble
+        self.t: NDArray[np.float64] = asked["outputs"]
+        self._result = result
+        self._asked = asked
+        self.status = np.array([STATUS[ending] for ending in result["endings"]])
+        self.steps = np.array(result["steps"])
+        self.evaluations = np.array(result["evaluations"])
+        shape = (len(self.status), len(self.t), ensemble._states.shape[1])
+        if all(length == len(self.t) for length in result["lengths"]):
+            self._states: NDArray[np.float64] = result["y"].reshape(shape)
+        else:
+            self._states = np.full(shape, np.nan)
+            ends = np.cumsum([0, *result["lengths"]])
+            for member, length in enumerate(result["lengths"]):
+                self._states[member, :length] = result["y"][ends[member] : ends[member + 1]]
+        self._states.flags.writeable = False
+        self._columns: NDArray[np.float64] | None = None
+
+    def __len__(self) -> int:
+        return len(self.status)
+
+    def __getitem__(self, member: int) -> GeneralizedTrajectory:
+        return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, range(len(self))[member])
+
+    def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
+        if self._columns is None:
+            members, times, numbers = self._states.shape
+            parameters = np.repeat(self.ensemble._parameters, times, axis=0)
+            model = self.ensemble.system._model
+            flat = model.columns(np.tile(self.t, members), self._states.reshape(-1, numbers), parameters)
+            self._columns = flat.reshape(members, times, -1)
+        return self._columns[..., first:last]
+
+    @property
+    def _n(self) -> int:
+        return len(self.ensemble.system.coordinates)
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Coordinates, shape (B, T, n)."""
+        return self._states[..., : self._n]
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (B, T, n)."""
+        lagrangian = self.ensemble.system._source.kind == "lagrangian"
+        return self._states[..., self._n :] if lagrangian else self._column(0, self._n)
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Momenta, shape (B, T, n)."""
+        hamiltonian = self.ensemble.system._source.kind == "hamiltonian"
+        return self._states[..., self._n :] if hamiltonian else self._column(0, self._n)
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """Jacobi's integral, or H, shape (B, T)."""
+        return self._column(self._n, self._n + 1)[..., 0]
+
+    @property
+    def reactions(self) -> NDArray[np.float64]:
+        """Multipliers of the constraints, shape (B, T, c)."""
+        return self._column(self._n + 1, None)

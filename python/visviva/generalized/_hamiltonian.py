@@ -1,0 +1,128 @@
+"""Hamiltonians: `Hamiltonian`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.generalized._source import described
+from visviva.generalized._symbolic import trees
+from visviva.generalized._system import GeneralizedSystem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Hamiltonian"]
+
+
+@known_keywords
+class Hamiltonian(GeneralizedSystem):
+    """A system by its Hamiltonian H(q, p, t).
+
+    Parameters
+    ----------
+    H : sympy.Expr or callable
+        The Hamiltonian: an expression, or a function ``H(q, p, t, **parameters)`` of arithmetic and NumPy's functions.
+    q, p : sequence of sympy.Symbol
+        Coordinates and momenta; for a function, names of coordinates, and no ``p``.
+    parameters : dict, optional
+        Values of symbols.
+    position, momentum : array_like, shape (n,), optional
+        The start; zero momenta if none are given.
+    forces : dict, optional
+        Forces by coordinate that are not −∂H/∂q.
+    t0 : float
+        The time of the start.
+
+    Raises
+    ------
+    InvalidInput
+        For symbols without a value and functions that the core does not know.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (8.18).
+
+    Examples
+    --------
+    >>> import sympy as sp, visviva as vv
+    >>> x, y, px, py = sp.symbols("x y px py")
+    >>> H = (px**2 + py**2) / 2 + (x**2 + y**2) / 2 + x**2 * y - y**3 / 3
+    >>> henon_heiles = vv.Hamiltonian(H, q=[x, y], p=[px, py], position=[0.1, 0.0], momentum=[0.0, 0.5])
+    >>> henon_heiles.run(t=100.0).position[-1].round(12)
+    array([-0.040194237876,  0.679016921772])
+    """
+
+    __slots__ = ()
+    _second_name = "momentum"
+
+    def __init__(
+        self,
+        H: Any,
+        q: Any,
+        p: Any = None,
+        *,
+        parameters: Mapping[Any, float] | None = None,
+        position: ArrayLike | None = None,
+        momentum: ArrayLike | None = None,
+        forces: Mapping[Any, Any] | None = None,
+        t0: float = 0.0,
+    ) -> None:
+        source, values = described("hamiltonian", H, q, p, parameters, {"forces": forces})
+        self._prepare(source, values, (position, momentum, t0))
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Momenta at the start, shape (n,)."""
+        return self._second
+
+    @property
+    def energy(self) -> float:
+        """H at the start."""
+        n = len(self.coordinates)
+        return float(self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0, n])
+
+    @property
+    def equations(self) -> tuple[list[Any], list[Any]]:
+        """q̇ and ṗ as expressions of SymPy."""
+        return self._shown("conjugates"), self._shown("slopes")
+
+    def poisson(self, f: Any, g: Any) -> Any:
+        """The Poisson bracket {f, g} = Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q, as an expression of SymPy.
+
+        Parameters
+        ----------
+        f, g : sympy.Expr
+            Functions of coordinates, momenta, time and parameters.
+
+        Raises
+        ------
+        InvalidInput
+            For an expression that the core does not know; of a system that is a function of Python.
+
+        Examples
+        --------
+        >>> import sympy as sp, visviva as vv
+        >>> x, y, z, px, py, pz = sp.symbols("x y z px py pz")
+        >>> free = vv.Hamiltonian((px**2 + py**2 + pz**2) / 2, q=[x, y, z], p=[px, py, pz])
+        >>> free.poisson(y * pz - z * py, z * px - x * pz)
+        -px*y + py*x
+        """
+        if self._source.symbols is None:
+            raise InvalidInput("f", "brackets are of expressions of SymPy; pass the Hamiltonian as one, too")
+        nodes, roots = self._source.nodes("f", [f, g])
+        found, places = self._model.poisson(nodes, (roots[0], roots[1]))
+        first, second, parameters = self._source.symbols
+        return trees(found, places, [*first, *second], list(parameters))[0]
+
+    def _check_start(self) -> None:
+        rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
+        if not np.all(np.isfinite(rates)):
+            raise InvalidInput(
+                "position", "the equations have no meaning at the start: a singularity of H; start away from it"
+            )

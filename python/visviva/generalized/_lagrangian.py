@@ -1,0 +1,181 @@
+"""Lagrangians: `Lagrangian`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.generalized._source import described
+from visviva.generalized._symbolic import sympy
+from visviva.generalized._system import GeneralizedSystem
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from numpy.typing import ArrayLike, NDArray
+
+__all__ = ["Lagrangian"]
+
+#: Residuals of constraints above this, relative to the largest number of the state, are no round-off.
+_CONSISTENT = 1e-10
+
+
+@known_keywords
+class Lagrangian(GeneralizedSystem):
+    """A system by its Lagrangian L(q, q̇, t).
+
+    Parameters
+    ----------
+    L : sympy.Expr or callable
+        The Lagrangian: an expression, or a function ``L(q, v, t, **parameters)`` of arithmetic and NumPy's functions, called
+        once. Velocity-dependent potentials and explicit times are welcome.
+    coordinates : sequence
+        As `coordinate` makes them (their velocities are ``theta.diff(vv.time)``), or symbols with ``velocities=``; for a
+        function, names.
+    velocities : sequence of sympy.Symbol, optional
+        The velocities of coordinates that are symbols.
+    parameters : dict, optional
+        Values of symbols.
+    position, velocity : array_like, shape (n,), optional
+        The start; at rest if no velocity is given.
+    forces : dict, optional
+        Generalized forces by coordinate, of coordinates, velocities and time.
+    dissipation : sympy.Expr, optional
+        Rayleigh's function R: the forces −∂R/∂q̇.
+    constraints : sequence, optional
+        Holonomic constraints g(q, t) = 0, kept by multipliers; states are put back on them after every step.
+    nonholonomic : sequence, optional
+        Constraints a(q, t)·q̇ + b(q, t) = 0.
+    consistent : {"project"}, optional
+        Puts a start that violates the constraints on them; it is refused otherwise.
+    t0 : float
+        The time of the start.
+
+    Raises
+    ------
+    InvalidInput
+        For symbols without a value, functions that the core does not know, coordinates without kinetic energy, starts off the
+        constraints.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (1.57), (1.70), (2.23).
+
+    Examples
+    --------
+    >>> import sympy as sp, visviva as vv
+    >>> theta, g, l = vv.coordinate("theta"), *sp.symbols("g l")
+    >>> L = l**2 * theta.diff(vv.time) ** 2 / 2 + g * l * sp.cos(theta)
+    >>> pendulum = vv.Lagrangian(L, [theta], parameters={g: 9.81, l: 1.0}, position=[3.0])
+    >>> pendulum.run(t=10.0).position.round(6)
+    array([[ 3.      ],
+           [-2.694211]])
+
+    Without SymPy:
+
+    >>> import numpy as np
+    >>> spring = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - q[0] ** 2 / 2, ["x"], position=[1.0])
+    >>> spring.run(t=2 * np.pi).position[-1].round(9)
+    array([1.])
+    """
+
+    __slots__ = ()
+
+    def __init__(
+        self,
+        L: Any,
+        coordinates: Any,
+        *,
+        velocities: Sequence[Any] | None = None,
+        parameters: Mapping[Any, float] | None = None,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        forces: Mapping[Any, Any] | None = None,
+        dissipation: Any = None,
+        constraints: Any = (),
+        nonholonomic: Any = (),
+        consistent: str | None = None,
+        t0: float = 0.0,
+    ) -> None:
+        further = {
+            "forces": forces,
+            "dissipation": dissipation,
+            "constraints": constraints,
+            "nonholonomic": nonholonomic,
+        }
+        source, values = described("lagrangian", L, coordinates, velocities, parameters, further)
+        try:
+            self._prepare(source, values, (position, velocity, t0))
+        except InvalidInput as error:
+            raise _named(error, source.names) from None
+        if consistent not in (None, "project"):
+            raise InvalidInput("consistent", f"expected 'project' or None, got {consistent!r}")
+        if consistent == "project" and self._constraints() and self.position is not None:
+            state = self._model.projected(self.t0, self._start(), self._values)[2]
+            self._prepare(source, values, (state[: len(source.names)], state[len(source.names) :], t0), self._model)
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities at the start, shape (n,)."""
+        return self._second
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Generalized momenta ∂L/∂q̇ at the start, shape (n,)."""
+        return self._columns_at_start()[: len(self.coordinates)]
+
+    @property
+    def energy(self) -> float:
+        """Jacobi's integral Σ q̇ ∂L/∂q̇ − L at the start."""
+        return float(self._columns_at_start()[len(self.coordinates)])
+
+    def _columns_at_start(self) -> NDArray[np.float64]:
+        return self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
+
+    @property
+    def mass_matrix(self) -> Any:
+        """∂²L/∂q̇∂q̇ as a matrix of SymPy."""
+        n = len(self.coordinates)
+        return sympy().Matrix(n, n, self._shown("mass_matrix"))
+
+    @property
+    def momenta(self) -> list[Any]:
+        """∂L/∂q̇ as expressions of SymPy."""
+        return self._shown("conjugates")
+
+    @property
+    def degrees_of_freedom(self) -> int:
+        """Coordinates less constraints, which are independent of each other."""
+        return len(self.coordinates) - self._constraints()
+
+    def _check_start(self) -> None:
+        state = self._start()
+        if self._constraints():
+            places, velocities, _ = self._model.projected(self.t0, state, self._values)
+            scale = max(1.0, float(np.abs(state).max()))
+            for what, residuals in (("constraint", places), ("the rate of constraint", velocities)):
+                for index, residual in enumerate(residuals):
+                    if not abs(residual) <= _CONSISTENT * scale:
+                        raise InvalidInput(
+                            "position" if what == "constraint" else "velocity",
+                            f"{what} {index} is {residual:.3g} at the start and not 0; pass consistent='project' to Lagrangian",
+                        )
+        rates = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
+        if not np.all(np.isfinite(rates)):
+            index = int(np.argmin(np.isfinite(rates)))
+            raise InvalidInput(
+                "position",
+                f"the acceleration of {self.coordinates[index]!r} is no number at the start: a singularity of these "
+                "coordinates, or a mass matrix that is singular there; start away from it or take other coordinates",
+            )
+
+
+def _named(error: InvalidInput, names: tuple[str, ...]) -> InvalidInput:
+    """Put names in the place of numbers of coordinates."""
+    message = error.message
+    for index, name in reversed(list(enumerate(names))):
+        message = message.replace(f"coordinate {index} ", f"coordinate {name!r} ")
+    return InvalidInput(error.argument, message)

@@ -1,0 +1,145 @@
+"""Nodes of expressions: what goes to the core, and the expressions of plain Python that record themselves.
+
+A node is ``(operation, arguments, value)``, its arguments the numbers of nodes before it. Equal nodes are one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, TypeAlias
+
+from visviva.errors import InvalidInput
+
+__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes"]
+
+Node: TypeAlias = tuple[str, list[int], float]
+
+FUNCTIONS = (
+    "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
+    "asin", "acos", "atan", "asinh", "acosh", "atanh",
+)  # fmt: skip
+_NUMPY = {
+    "arcsin": "asin",
+    "arccos": "acos",
+    "arctan": "atan",
+    "arcsinh": "asinh",
+    "arccosh": "acosh",
+    "arctanh": "atanh",
+}
+
+
+class Nodes:
+    """A growing list of nodes."""
+
+    __slots__ = ("_places", "all")
+
+    def __init__(self) -> None:
+        self.all: list[Node] = []
+        self._places: dict[tuple[str, tuple[int, ...], float], int] = {}
+
+    def add(self, operation: str, arguments: tuple[int, ...] = (), value: float = 0.0) -> int:
+        """Add a node unless it is there, and give its number."""
+        key = (operation, arguments, value)
+        place = self._places.get(key)
+        if place is None:
+            place = self._places[key] = len(self.all)
+            self.all.append((operation, list(arguments), value))
+        return place
+
+    def constant(self, value: float) -> int:
+        """Give the number of a constant."""
+        return self.add("constant", (), float(value))
+
+
+class Expression:
+    """A number of a system as an expression: arithmetic and NumPy's functions record what is done with it.
+
+    Given to the function that is passed to `Lagrangian` or `Hamiltonian` in the place of numbers.
+    """
+
+    __slots__ = ("_nodes", "_place")
+
+    def __init__(self, nodes: Nodes, place: int) -> None:
+        self._nodes = nodes
+        self._place = place
+
+    def _with(self, operation: str, *others: object, swapped: bool = False) -> Expression:
+        places = [self._place]
+        for other in others:
+            if isinstance(other, Expression):
+                places.append(other._place)
+            else:
+                try:
+                    places.append(self._nodes.constant(float(other)))  # type: ignore[arg-type]
+                except (TypeError, ValueError):
+                    raise InvalidInput(
+                        "L", f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it"
+                    ) from None
+        if swapped:
+            places.reverse()
+        return Expression(self._nodes, self._nodes.add(operation, tuple(places)))
+
+    def _negative(self, other: object) -> object:
+        return other._with("product", -1.0) if isinstance(other, Expression) else -other  # type: ignore[operator]
+
+    def __add__(self, other: object) -> Expression:
+        return self._with("sum", other)
+
+    __radd__ = __add__
+
+    def __sub__(self, other: object) -> Expression:
+        return self._with("sum", self._negative(other))
+
+    def __rsub__(self, other: object) -> Expression:
+        return self._with("product", -1.0)._with("sum", other)
+
+    def __mul__(self, other: object) -> Expression:
+        return self._with("product", other)
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: object) -> Expression:
+        return self._with("quotient", other)
+
+    def __rtruediv__(self, other: object) -> Expression:
+        return self._with("quotient", other, swapped=True)
+
+    def __pow__(self, other: object) -> Expression:
+        return self._with("power", other)
+
+    def __rpow__(self, other: object) -> Expression:
+        return self._with("power", other, swapped=True)
+
+    def __neg__(self) -> Expression:
+        return self._with("product", -1.0)
+
+    def __pos__(self) -> Expression:
+        return self
+
+    def __abs__(self) -> Expression:
+        return self._with("product", self)._with("sqrt")
+
+    def __bool__(self) -> bool:
+        raise InvalidInput("L", "an expression has no truth value: the function must not branch on coordinates")
+
+    def __float__(self) -> float:
+        raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
+
+    def __getattr__(self, name: str) -> Callable[[], Expression]:
+        # np.sin of an object calls its method sin.
+        function = _NUMPY.get(name, name)
+        if function in FUNCTIONS:
+            return lambda: self._with(function)
+        if name.startswith("_"):
+            raise AttributeError(name)
+        raise InvalidInput("L", f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}")
+
+
+def recorded(nodes: Nodes, value: Any, argument: str) -> int:
+    """Give the node of what a function has returned."""
+    if isinstance(value, Expression):
+        return value._place
+    try:
+        return nodes.constant(float(value))
+    except (TypeError, ValueError):
+        raise InvalidInput(argument, f"expected one number of the function, got {type(value).__name__}") from None

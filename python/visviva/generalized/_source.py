@@ -1,0 +1,176 @@
+"""From what a user says of a system to what the core takes: names, parameters, and nodes."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from visviva._arrays import number
+from visviva.errors import InvalidInput
+from visviva.generalized._nodes import Expression, Nodes, recorded
+from visviva.generalized._symbolic import Symbols, sympy, time
+
+__all__ = ["Source", "described"]
+
+
+@dataclass(frozen=True, slots=True)
+class Source:
+    """A system as the core takes it, and the names of what is in it."""
+
+    kind: str
+    names: tuple[str, ...]
+    #: Symbols of coordinates, of velocities or momenta, and of parameters; None of a function of Python.
+    symbols: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]] | None
+    parameters: tuple[str, ...]
+    description: dict[str, Any]
+
+    def nodes(self, argument: str, expressions: Iterable[Any]) -> tuple[list[Any], list[int]]:
+        """Give further expressions of the same state as nodes and their places."""
+        nodes = Nodes()
+        walk = self._walk(nodes)
+        roots = [walk(argument, expression) for expression in expressions]
+        return nodes.all, roots
+
+    def _walk(self, nodes: Nodes) -> Callable[[str, Any], int]:
+        if self.symbols is None:
+            return _calls(nodes, self.names, self.parameters)
+        first, second, parameters = self.symbols
+        return Symbols(nodes, first, second, parameters).node
+
+
+def described(
+    kind: str,
+    function: Any,
+    coordinates: Any,
+    second: Any,
+    parameters: Mapping[Any, Any] | None,
+    further: dict[str, Any],
+) -> tuple[Source, list[Any]]:
+    """Describe a system; its parameters' values come along.
+
+    ``further`` holds forces (of coordinates), dissipation, holonomic and nonholonomic constraints.
+    """
+    given = dict(parameters) if isinstance(parameters, Mapping) else {} if parameters is None else None
+    if given is None:
+        raise InvalidInput(
+            "parameters", f"expected values by parameter, as {{g: 9.81}}, got {type(parameters).__name__}"
+        )
+    listed = _listed("coordinates" if kind == "lagrangian" else "q", coordinates)
+    argument = "L" if kind == "lagrangian" else "H"
+    nodes = Nodes()
+    if callable(function) and not hasattr(function, "free_symbols"):
+        names = tuple(_name(each) for each in listed)
+        keys = tuple(_name(each) for each in given)
+        symbols = None
+        walk = _calls(nodes, names, keys)
+    else:
+        sp = sympy()
+        first = tuple(_coordinate(sp, each) for each in listed)
+        others = _second(sp, kind, first, second)
+        names = tuple(_label(each) for each in first)
+        keys = tuple(_name(each) for each in given)
+        parameter_symbols = tuple(_parameter(sp, each, function) for each in given)
+        symbols = (first, others, parameter_symbols)
+        walk = Symbols(nodes, first, others, parameter_symbols).node
+    for what, each in (("coordinates", names), ("parameters", keys)):
+        if len(set(each)) < len(each):
+            raise InvalidInput(what, f"expected different names, got {list(each)}")
+    root = walk(argument, function)
+    forces = further.get("forces") or {}
+    if not isinstance(forces, Mapping):
+        raise InvalidInput("forces", f"expected forces by coordinate, as {{theta: Q}}, got {type(forces).__name__}")
+    by_name = {_label(key): value for key, value in forces.items()}
+    unknown = [key for key in by_name if key not in names]
+    if unknown:
+        raise InvalidInput("forces", f"there is no coordinate {unknown[0]!r}; there are {list(names)}")
+    dissipation = further.get("dissipation")
+    description = {
+        "kind": kind,
+        "coordinates": len(names),
+        "parameters": len(keys),
+        "function": root,
+        "forces": [walk("forces", by_name.get(name, 0)) for name in names] if by_name else [],
+        "dissipation": None if dissipation is None else walk("dissipation", dissipation),
+        "holonomic": [walk("constraints", each) for each in _listed("constraints", further.get("constraints", ()))],
+        "nonholonomic": [
+            walk("nonholonomic", each) for each in _listed("nonholonomic", further.get("nonholonomic", ()))
+        ],
+        "nodes": nodes.all,
+    }
+    return Source(kind, names, symbols, keys, description), list(given.values())
+
+
+def _listed(argument: str, value: Any) -> list[Any]:
+    if isinstance(value, (list, tuple)):
+        if not value and argument in ("coordinates", "q"):
+            raise InvalidInput(argument, "expected at least one coordinate, got none")
+        return list(value)
+    if isinstance(value, str) or not isinstance(value, Iterable):
+        return [value]
+    return list(value)
+
+
+def _name(value: Any) -> str:
+    name = str(value)
+    if not name.isidentifier():
+        raise InvalidInput("parameters", f"expected symbols or names, got {value!r}")
+    return name
+
+
+def _label(coordinate: Any) -> str:
+    """Give the name of a coordinate: of theta(t), theta."""
+    function = getattr(coordinate, "func", None)
+    name = getattr(function, "__name__", None) if getattr(coordinate, "args", ()) else None
+    return name or str(coordinate)
+
+
+def _coordinate(sp: Any, value: Any) -> Any:
+    if isinstance(value, sp.Symbol) and value != time._sympy_():
+        return value
+    if isinstance(value, sp.core.function.AppliedUndef) and value.args == (time._sympy_(),):
+        return value
+    raise InvalidInput(
+        "coordinates",
+        f"expected coordinates as vv.coordinate('theta') makes them, or symbols with velocities=, got {value!r}",
+    )
+
+
+def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...]:
+    """Give the symbols of velocities, or of momenta."""
+    argument = "velocities" if kind == "lagrangian" else "p"
+    if second is None:
+        if kind == "lagrangian" and not any(isinstance(each, sp.Symbol) for each in first):
+            return tuple(each.diff(time._sympy_()) for each in first)
+        what = "velocities of coordinates that are symbols" if kind == "lagrangian" else "momenta"
+        raise InvalidInput(argument, f"expected the {what}, one for each of {list(first)}")
+    listed = tuple(_listed(argument, second))
+    if len(listed) != len(first):
+        raise InvalidInput(argument, f"expected {len(first)}, one for each of {list(first)}, got {len(listed)}")
+    return listed
+
+
+def _parameter(sp: Any, key: Any, function: Any) -> Any:
+    """Give the symbol of a parameter; a name means the symbol of that name in the function."""
+    if not isinstance(key, str):
+        return key
+    named = [symbol for symbol in getattr(function, "free_symbols", ()) if symbol.name == key]
+    return named[0] if named else sp.Symbol(key)
+
+
+def _calls(nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...]) -> Callable[[str, Any], int]:
+    """Record functions of (first, second, t, **parameters)."""
+    n = len(names)
+
+    def expression(operation: str, value: float = 0.0) -> Expression:
+        return Expression(nodes, nodes.add(operation, (), value))
+
+    def walk(argument: str, function: Any) -> int:
+        if not callable(function):
+            return nodes.constant(number(argument, function))
+        first = [expression("variable", float(i)) for i in range(n)]
+        second = [expression("variable", float(n + i)) for i in range(n)]
+        values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
+        return recorded(nodes, function(first, second, expression("time"), **values), argument)
+
+    return walk

@@ -1,0 +1,250 @@
+"""SymPy's trees as nodes, and nodes as SymPy's trees. SymPy is asked for nothing else: it derives and simplifies nothing."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from visviva.errors import InvalidInput
+from visviva.generalized._nodes import FUNCTIONS, Node, Nodes
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+__all__ = ["Symbols", "coordinate", "sympy", "time", "trees"]
+
+
+def sympy() -> Any:
+    """Give the module, or say how to get it."""
+    try:
+        import sympy
+    except ImportError:
+        raise InvalidInput(
+            "L",
+            "expressions need SymPy: pip install 'visviva[symbolic]', or pass a function of (position, velocity, t)",
+        ) from None
+    return sympy
+
+
+class _Time:
+    """The time, as SymPy's symbol ``t`` wherever an expression meets it."""
+
+    __slots__ = ()
+
+    def _sympy_(self) -> Any:
+        return sympy().Symbol("t")
+
+    def __repr__(self) -> str:
+        return "t"
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self._sympy_(), name)
+
+    def __reduce__(self) -> str:
+        return "time"
+
+    def __eq__(self, other: object) -> bool:
+        return other is self or bool(self._sympy_() == other)
+
+    def __hash__(self) -> int:
+        return hash("t")
+
+    def __add__(self, other: object) -> Any:
+        return self._sympy_() + other
+
+    __radd__ = __add__
+
+    def __sub__(self, other: object) -> Any:
+        return self._sympy_() - other
+
+    def __rsub__(self, other: object) -> Any:
+        return other - self._sympy_()
+
+    def __mul__(self, other: object) -> Any:
+        return self._sympy_() * other
+
+    __rmul__ = __mul__
+
+    def __truediv__(self, other: object) -> Any:
+        return self._sympy_() / other
+
+    def __rtruediv__(self, other: object) -> Any:
+        return other / self._sympy_()
+
+    def __pow__(self, other: object) -> Any:
+        return self._sympy_() ** other
+
+    def __rpow__(self, other: object) -> Any:
+        return other ** self._sympy_()
+
+    def __neg__(self) -> Any:
+        return -self._sympy_()
+
+
+time: Any = _Time()
+
+
+def coordinate(names: str) -> Any:
+    """Generalized coordinates: functions of the time, as SymPy's ``dynamicsymbols`` makes them.
+
+    Parameters
+    ----------
+    names : str
+        One name, or several parted by spaces or commas.
+
+    Returns
+    -------
+    sympy.Function or tuple of them
+        ``theta``; its velocity is ``theta.diff(vv.time)``.
+
+    Raises
+    ------
+    InvalidInput
+        Without SymPy, or for what is no name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> theta = vv.coordinate("theta")
+    >>> theta.diff(vv.time)
+    Derivative(theta(t), t)
+    """
+    if not isinstance(names, str) or not names.replace(",", " ").split():
+        raise InvalidInput("names", f"expected the name of a coordinate, got {names!r}")
+    sp = sympy()
+    made = tuple(sp.Function(name)(sp.Symbol("t")) for name in names.replace(",", " ").split())
+    return made[0] if len(made) == 1 else made
+
+
+class Symbols:
+    """What the symbols of an expression mean, and the walk from its tree to nodes."""
+
+    def __init__(
+        self, nodes: Nodes, coordinates: Sequence[Any], velocities: Sequence[Any], parameters: Iterable[Any]
+    ) -> None:
+        self._sympy = sympy()
+        self._nodes = nodes
+        self._time = time._sympy_()
+        self._known: dict[Any, int] = {self._time: nodes.add("time")}
+        self._coordinates = tuple(coordinates)
+        n = len(self._coordinates)
+        for index, symbol in enumerate(parameters):
+            self._known[symbol] = nodes.add("parameter", (), float(index))
+        for index, (symbol, velocity) in enumerate(zip(self._coordinates, velocities, strict=True)):
+            self._known[symbol] = nodes.add("variable", (), float(index))
+            self._known[velocity] = nodes.add("variable", (), float(n + index))
+
+    def node(self, argument: str, expression: Any) -> int:
+        """Give the node of an expression."""
+        sp = self._sympy
+        if isinstance(expression, str):
+            raise InvalidInput(
+                argument, f"expected an expression, got the text {expression!r}; sympy.sympify makes one of it"
+            )
+        try:
+            tree = sp.sympify(expression, strict=True)
+        except sp.SympifyError:
+            raise InvalidInput(argument, f"expected an expression of SymPy, got {type(expression).__name__}") from None
+        if isinstance(tree, sp.MatrixBase) or not isinstance(tree, sp.Expr):
+            raise InvalidInput(argument, f"expected a scalar expression, got {type(tree).__name__}")
+        return self._walk(argument, tree)
+
+    def _walk(self, argument: str, tree: Any) -> int:
+        place = self._known.get(tree)
+        if place is None:
+            place = self._known[tree] = self._made(argument, tree)
+        return place
+
+    def _made(self, argument: str, tree: Any) -> int:
+        sp, nodes = self._sympy, self._nodes
+        if tree.is_Number or tree.is_NumberSymbol:
+            value = complex(tree)
+            if value.imag or value.real != value.real or abs(value.real) == float("inf"):
+                raise InvalidInput(argument, f"expected finite real numbers, got {tree}")
+            return nodes.constant(value.real)
+        if tree.is_Add or tree.is_Mul or tree.is_Pow:
+            operation = "sum" if tree.is_Add else "product" if tree.is_Mul else "power"
+            return nodes.add(operation, tuple(self._walk(argument, part) for part in tree.args))
+        if tree.is_Symbol:
+            raise InvalidInput(argument, f"free symbol {str(tree)!r} has no value; pass parameters={{{tree}: …}}")
+        if isinstance(tree, sp.Derivative):
+            raise self._derivative(argument, tree)
+        name = type(tree).__name__
+        if name in FUNCTIONS:
+            return nodes.add(name, (self._walk(argument, tree.args[0]),))
+        if isinstance(tree, sp.Abs):
+            inner = self._walk(argument, tree.args[0])
+            return nodes.add("sqrt", (nodes.add("product", (inner, inner)),))
+        if isinstance(tree, (sp.cot, sp.sec, sp.csc, sp.coth, sp.sech, sp.csch)):
+            return self._walk(argument, self._inverse(tree))
+        if isinstance(tree, sp.atan2):
+            y, x = tree.args
+            return self._walk(argument, 2 * sp.atan(y / (sp.sqrt(x**2 + y**2) + x), evaluate=False))
+        if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign)):
+            raise InvalidInput(
+                argument, f"{name} switches inside a step, where no method keeps its order; leave it out"
+            )
+        if isinstance(tree, sp.core.function.AppliedUndef):
+            raise InvalidInput(
+                argument,
+                f"{tree} is not among the coordinates {list(self._coordinates)}; add it, or put a value in its place",
+            )
+        raise InvalidInput(
+            argument, f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, atan2, Abs"
+        )
+
+    def _inverse(self, tree: Any) -> Any:
+        sp = self._sympy
+        of = {sp.cot: sp.tan, sp.sec: sp.cos, sp.csc: sp.sin, sp.coth: sp.tanh, sp.sech: sp.cosh, sp.csch: sp.sinh}
+        return 1 / of[type(tree)](*tree.args)
+
+    def _derivative(self, argument: str, tree: Any) -> InvalidInput:
+        inner = tree.args[0]
+        if inner in self._coordinates and tree.derivative_count > 1:
+            return InvalidInput(
+                argument, f"the second derivative of {inner} is in it: only first ones make equations of motion"
+            )
+        if isinstance(inner, self._sympy.core.function.AppliedUndef):
+            return InvalidInput(
+                argument, f"{tree} is in it, but {inner} is not among the coordinates {list(self._coordinates)}; add it"
+            )
+        return InvalidInput(argument, f"{tree} is not carried out; call its doit() first")
+
+
+def trees(
+    nodes: Sequence[Node], roots: Sequence[int], variables: Sequence[Any], parameters: Sequence[Any]
+) -> list[Any]:
+    """Give SymPy's trees of nodes; numbers that are whole are shown as such."""
+    sp = sympy()
+    made: list[Any] = []
+    for operation, arguments, value in nodes:
+        of = [made[argument] for argument in arguments]
+        match operation:
+            case "constant":
+                made.append(
+                    sp.Integer(int(value)) if value == int(value) and abs(value) < 1e15 else _fraction(sp, value)
+                )
+            case "variable":
+                made.append(variables[int(value)])
+            case "parameter":
+                made.append(parameters[int(value)])
+            case "time":
+                made.append(time._sympy_())
+            case "sum":
+                made.append(sp.Add(*of))
+            case "product":
+                made.append(sp.Mul(*of))
+            case "quotient":
+                made.append(of[0] / of[1])
+            case "power":
+                made.append(sp.Pow(*of))
+            case _:
+                made.append(getattr(sp, operation)(*of))
+    return [made[root] for root in roots]
+
+
+def _fraction(sp: Any, value: float) -> Any:
+    """Give a small fraction where that is the very number."""
+    fraction = sp.Rational(value).limit_denominator(10**4)
+    return fraction if float(fraction) == value else sp.Float(value)

@@ -1,0 +1,233 @@
+"""What a run in generalized coordinates gives: `GeneralizedTrajectory`."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.status import Status
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from visviva.generalized._system import GeneralizedSystem
+
+__all__ = ["GeneralizedTrajectory"]
+
+STATUS = {
+    "finished": Status.OK,
+    "step too small": Status.STEP_FAILURE,
+    "not finite": Status.STEP_FAILURE,
+    "interrupted": Status.INTERRUPTED,
+}
+
+
+@known_keywords
+class GeneralizedTrajectory:
+    """The motion of a system in generalized coordinates at the output times. Made by ``run``.
+
+    Attributes
+    ----------
+    system : Lagrangian or Hamiltonian
+        What was run.
+    t : ndarray, shape (T,)
+        Output times; fewer than asked for if the run failed.
+    position, velocity, momentum : ndarray, shape (T, n)
+        Coordinates; their velocities; ∂L/∂q̇.
+    energy : ndarray, shape (T,)
+        Jacobi's integral Σ q̇ ∂L/∂q̇ − L, or H.
+    reactions : ndarray, shape (T, c)
+        Multipliers λ of the constraints, in their order, holonomic ones first: the force Σ λ ∂g/∂q acts on the system.
+    status : Status
+    steps, evaluations : int
+        What it took; an evaluation is one of all stages.
+    longest_step : float
+
+    ``out["theta"]`` is a coordinate over time.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.systems.double_pendulum().run(t=1.0)
+    >>> out.position.shape, out.status.name
+    ((2, 2), 'OK')
+    """
+
+    __slots__ = ("_columns", "_states", "evaluations", "longest_step", "method", "status", "steps", "system", "t")
+
+    system: GeneralizedSystem
+    t: NDArray[np.float64]
+    status: Status
+    steps: int
+    evaluations: int
+    longest_step: float
+    method: str
+    _states: NDArray[np.float64]
+    _columns: NDArray[np.float64] | None
+
+    def __init__(
+        self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
+    ) -> None:
+        ends = np.cumsum([0, *result["lengths"]])
+        rows = slice(int(ends[member]), int(ends[member + 1]))
+        self.system = system
+        self.t = result["t"][rows]
+        self._states = result["y"][rows]
+        for array in (self.t, self._states):
+            array.flags.writeable = False
+        self.status = STATUS[result["endings"][member]]
+        self.steps = result["steps"][member]
+        self.evaluations = result["evaluations"][member]
+        self.longest_step = result["longest_step"][member]
+        self.method = asked["method"]
+        self._columns = None
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.system.coordinates)
+        span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
+        return f"GeneralizedTrajectory({names}; {len(self.t)} times, {span}, {self.status.name})"
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def __getitem__(self, name: str) -> NDArray[np.float64]:
+        if name not in self.system.coordinates:
+            raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
+        return self.position[:, self.system.coordinates.index(name)]
+
+    def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
+        if self._columns is None:
+            columns = self.system._model.columns(self.t, self._states, self.system._values[None, :])
+            columns.flags.writeable = False
+            self._columns = columns
+        return self._columns[:, first:last]
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Coordinates, shape (T, n)."""
+        return self._states[:, : len(self.system.coordinates)]
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (T, n); of a Hamiltonian ∂H/∂p."""
+        n = len(self.system.coordinates)
+        return self._states[:, n:] if self.system._source.kind == "lagrangian" else self._column(0, n)
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Momenta, shape (T, n); of a Lagrangian ∂L/∂q̇."""
+        n = len(self.system.coordinates)
+        return self._states[:, n:] if self.system._source.kind == "hamiltonian" else self._column(0, n)
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """Jacobi's integral, or H, shape (T,)."""
+        n = len(self.system.coordinates)
+        return self._column(n, n + 1)[:, 0]
+
+    @property
+    def reactions(self) -> NDArray[np.float64]:
+        """Multipliers of the constraints, shape (T, c)."""
+        return self._column(len(self.system.coordinates) + 1, None)
+
+    @property
+    def final(self) -> GeneralizedSystem:
+        """The system at the last time, ready to run on."""
+        n = len(self.system.coordinates)
+        if not len(self.t):
+            raise InvalidInput("final", "the run has no state")
+        last = self._states[-1]
+        return self.system.at(position=last[:n], t0=float(self.t[-1]), **{self.system._second_name: last[n:]})
+
+    def conservation(self) -> dict[str, float]:
+        """The largest relative change of what is conserved; of what is zero, the change itself.
+
+        Returns
+        -------
+        dict of str to float
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> changes = vv.systems.spherical_pendulum().run(t=10.0).conservation()
+        >>> sorted(changes), max(changes.values()) < 1e-13
+        (['energy', 'momentum of phi'], True)
+        """
+        changes = {}
+        for name in self.system.conserved:
+            if name == "energy":
+                values = self.energy
+            else:
+                values = self.momentum[:, self.system.coordinates.index(name.removeprefix("momentum of "))]
+            scale = float(np.abs(values).max()) if len(values) else 0.0
+            changes[name] = float(np.ptp(values)) / scale if scale > 0.0 else 0.0
+        return changes
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the coordinates over time.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> ax = vv.systems.pendulum().run(t=np.linspace(0, 10, 200)).plot()
+        >>> ax.get_xlabel()
+        't'
+        """
+        from visviva.plot import axes
+
+        ax = axes(ax)
+        for index, name in enumerate(self.system.coordinates):
+            ax.plot(self.t, self.position[:, index], label=name)
+        ax.set_xlabel("t")
+        ax.set_ylabel(", ".join(self.system.coordinates) if len(self.system.coordinates) < 4 else "coordinates")
+        if len(self.system.coordinates) > 1:
+            ax.legend()
+        return ax
+
+    def plot_phase(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw a coordinate against its momentum.
+
+        Parameters
+        ----------
+        name : str, optional
+            The coordinate; the first if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        InvalidInput
+            For a coordinate that is not there.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> ax = vv.systems.pendulum().run(t=np.linspace(0, 10, 200)).plot_phase("theta")
+        >>> ax.get_xlabel()
+        'theta'
+        """
+        from visviva.plot import axes
+
+        name = self.system.coordinates[0] if name is None else name
+        ax = axes(ax)
+        ax.plot(self[name], self.momentum[:, self.system.coordinates.index(name)])
+        ax.set_xlabel(name)
+        ax.set_ylabel(f"momentum of {name}")
+        return ax

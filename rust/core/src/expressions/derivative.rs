@@ -1,0 +1,143 @@
+//! Derivatives of expressions, on the graph.
+//!
+//! The one idea: what a node's value changes by is a sum over what it is made of. Swept from the end (reverse) it gives all
+//! derivatives of one expression; from the beginning (forward) those of all expressions along one direction.
+
+use super::function::Function;
+use super::graph::{Graph, Id, Node, number};
+use std::collections::HashMap;
+
+impl Graph {
+    /// What a node is made of, each with the derivative with respect to it.
+    fn partials(&mut self, id: Id) -> Vec<(Id, Id)> {
+        match self.node(id).clone() {
+            Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => vec![],
+            Node::Sum(_, terms) => terms.iter().map(|&(c, x)| (x, self.constant(number(c)))).collect(),
+            Node::Product(a, b) if a == b => vec![(a, self.scale(2.0, a))],
+            Node::Product(a, b) => vec![(a, b), (b, a)],
+            Node::Quotient(a, b) => {
+                let one = self.constant(1.0);
+                let (reciprocal, ratio) = (self.divide(one, b), self.divide(id, b));
+                vec![(a, reciprocal), (b, self.scale(-1.0, ratio))]
+            }
+            Node::Call(function, a) => vec![(a, self.slope(function, a, id))],
+            Node::Power(a, exponent) => {
+                let exponent = number(exponent);
+                let lower = self.power(a, exponent - 1.0);
+                vec![(a, self.scale(exponent, lower))]
+            }
+        }
+    }
+
+    /// The derivative of a function at `a`, where its value is `value`.
+    fn slope(&mut self, function: Function, a: Id, value: Id) -> Id {
+        let one = self.constant(1.0);
+        match function {
+            Function::Sin => self.call(Function::Cos, a),
+            Function::Cos => {
+                let sine = self.call(Function::Sin, a);
+                self.scale(-1.0, sine)
+            }
+            Function::Exp => value,
+            Function::Ln => self.divide(one, a),
+            Function::Sqrt => {
+                let reciprocal = self.divide(one, value);
+                self.scale(0.5, reciprocal)
+            }
+            Function::Tan | Function::Tanh => {
+                let square = self.multiply(value, value);
+                self.sum(1.0, &[(if function == Function::Tan { 1.0 } else { -1.0 }, square)])
+            }
+            Function::Sinh => self.call(Function::Cosh, a),
+            Function::Cosh => self.call(Function::Sinh, a),
+            Function::Atan => self.reciprocal_of(1.0, 1.0, a, false),
+            Function::Atanh => self.reciprocal_of(1.0, -1.0, a, false),
+            Function::Asin => self.reciprocal_of(1.0, -1.0, a, true),
+            Function::Acos => {
+                let negative = self.reciprocal_of(1.0, -1.0, a, true);
+                self.scale(-1.0, negative)
+            }
+            Function::Asinh => self.reciprocal_of(1.0, 1.0, a, true),
+            Function::Acosh => self.reciprocal_of(-1.0, 1.0, a, true),
+        }
+    }
+
+    /// 1/(constant + factor·a²), or that of the root.
+    fn reciprocal_of(&mut self, constant: f64, factor: f64, a: Id, root: bool) -> Id {
+        let square = self.multiply(a, a);
+        let mut below = self.sum(constant, &[(factor, square)]);
+        if root {
+            below = self.call(Function::Sqrt, below);
+        }
+        let one = self.constant(1.0);
+        self.divide(one, below)
+    }
+
+    /// The derivatives of an expression with respect to some of the nodes it is made of.
+    pub fn gradient(&mut self, root: Id, variables: &[Id]) -> Vec<Id> {
+        let order = self.reachable(&[root]);
+        let mut active: HashMap<Id, Vec<(f64, Id)>> = variables.iter().map(|&id| (id, vec![])).collect();
+        for &id in &order {
+            let mut depends = false;
+            super::graph::for_each_argument(self.node(id), |argument| {
+                depends |= active.contains_key(&argument)
+            });
+            if depends {
+                let _ = active.entry(id).or_default();
+            }
+        }
+        let one = self.constant(1.0);
+        if let Some(terms) = active.get_mut(&root) {
+            terms.push((1.0, one));
+        }
+        for &id in order.iter().rev() {
+            let Some(terms) = active.get(&id).filter(|terms| !terms.is_empty()).cloned() else { continue };
+            let outer = self.sum(0.0, &terms);
+            let _ = active.insert(id, vec![(1.0, outer)]);
+            for (argument, slope) in self.partials(id) {
+                if !active.contains_key(&argument) {
+                    continue;
+                }
+                let term = match self.as_constant(slope) {
+                    Some(value) => (value, outer),
+                    None => (1.0, self.multiply(outer, slope)),
+                };
+                active.entry(argument).or_default().push(term);
+            }
+        }
+        let found: Vec<_> = variables.iter().map(|id| active[id].clone()).collect();
+        found.iter().map(|terms| self.sum(0.0, terms)).collect()
+    }
+
+    /// The derivatives of expressions along a direction: what some nodes change by.
+    pub fn tangent(&mut self, roots: &[Id], direction: &HashMap<Id, Id>) -> Vec<Id> {
+        let mut change: HashMap<Id, Id> = HashMap::new();
+        for id in self.reachable(roots) {
+            if let Some(&seed) = direction.get(&id) {
+                let _ = change.insert(id, seed);
+                continue;
+            }
+            let mut depends = false;
+            super::graph::for_each_argument(self.node(id), |argument| {
+                depends |= change.contains_key(&argument)
+            });
+            if !depends {
+                continue;
+            }
+            let mut terms = Vec::new();
+            for (argument, slope) in self.partials(id) {
+                let Some(&inner) = change.get(&argument) else { continue };
+                match self.as_constant(slope) {
+                    Some(value) => terms.push((value, inner)),
+                    None => terms.push((1.0, self.multiply(slope, inner))),
+                }
+            }
+            let sum = self.sum(0.0, &terms);
+            if !self.is_zero(sum) {
+                let _ = change.insert(id, sum);
+            }
+        }
+        let zero = self.constant(0.0);
+        roots.iter().map(|root| change.get(root).copied().unwrap_or(zero)).collect()
+    }
+}

@@ -1,0 +1,302 @@
+//! Runs code: one operation after another, each for all that lies in its registers.
+//!
+//! The one idea: the loop over words is the only thing that is interpreted. An operation does eight states at once, or `K`
+//! times eight, so its dispatch is shared; it is the same sequence of correctly rounded operations for one number as in
+//! every lane of every tier, so a trajectory has the bits that it has alone.
+
+use super::code::{Code, word};
+use super::function::Function;
+use crate::numerics::binary::Binary;
+use crate::numerics::elementary::Exponential;
+use crate::numerics::functions;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::tiered;
+
+/// What registers hold.
+pub trait Scalar: Binary + Exponential + functions::Functions {}
+impl<S: Binary + Exponential + functions::Functions> Scalar for S {}
+
+/// Which part of a code.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// What depends on parameters alone.
+    Preamble,
+    /// What is done for each state.
+    Body,
+}
+
+/// Elements that registers of `K` blocks and linear systems take.
+pub fn room<const K: usize>(code: &Code) -> usize {
+    code.registers * K + code.scratch
+}
+
+/// Runs a part of the code on registers of `K` blocks each, register after register, and room for linear systems.
+///
+/// # Panics
+/// If there is less room than [`room`] says.
+#[inline(always)]
+pub fn execute<S: Scalar, const K: usize>(code: &Code, part: Part, registers: &mut [S]) {
+    assert!(registers.len() >= room::<K>(code), "too few registers");
+    let words = match part {
+        Part::Preamble => &code.preamble,
+        Part::Body => &code.body,
+    };
+    let scratch = code.registers * K;
+    Runner::<S, K> {
+        at: words.as_ptr(),
+        constants: code.constants.as_ptr(),
+        registers: registers.as_mut_ptr(),
+        scratch,
+    }
+    .run();
+}
+
+/// What runs. Made by [`execute`] alone, from words that were checked (a [`Code`] is made of no others) and registers of which
+/// there are enough: every index that a word says is there, and the last word is `END`.
+struct Runner<S, const K: usize> {
+    at: *const u16,
+    constants: *const f64,
+    registers: *mut S,
+    /// Where the room for linear systems begins.
+    scratch: usize,
+}
+
+impl<S: Scalar, const K: usize> Runner<S, K> {
+    /// The word so many after that of the operation.
+    #[inline(always)]
+    fn word(&self, index: usize) -> usize {
+        // SAFETY: operations are whole.
+        usize::from(unsafe { *self.at.add(index) })
+    }
+
+    /// The constant that a word says.
+    #[inline(always)]
+    fn constant(&self, index: usize) -> f64 {
+        // SAFETY: constants are there.
+        unsafe { *self.constants.add(self.word(index)) }
+    }
+
+    /// A block of the register that a word says.
+    #[inline(always)]
+    fn get(&self, index: usize, block: usize) -> S {
+        // SAFETY: registers are there, with all their blocks.
+        unsafe { *self.registers.add(self.word(index) * K + block) }
+    }
+
+    /// Writes a block of the register that a word says.
+    #[inline(always)]
+    fn put(&mut self, index: usize, block: usize, value: S) {
+        // SAFETY: as above, and they are ours alone while this runs.
+        unsafe { *self.registers.add(self.word(index) * K + block) = value }
+    }
+
+    /// The room for linear systems.
+    #[inline(always)]
+    fn room(&mut self, elements: usize) -> &mut [S] {
+        // SAFETY: the largest system of the code has its room after the registers.
+        unsafe { core::slice::from_raw_parts_mut(self.registers.add(self.scratch), elements) }
+    }
+
+    #[inline(always)]
+    fn run(mut self) {
+        /// An operation of so many words that writes a value for every block.
+        macro_rules! each {
+            ($words:expr, $k:ident => $value:expr) => {{
+                for $k in 0..K {
+                    let value = $value;
+                    self.put(1, $k, value);
+                }
+                $words
+            }};
+        }
+        loop {
+            let length = match self.word(0) as u16 {
+                word::ADD => each!(4, k => self.get(2, k) + self.get(3, k)),
+                word::SUBTRACT => each!(4, k => self.get(2, k) - self.get(3, k)),
+                word::MULTIPLY => each!(4, k => self.get(2, k) * self.get(3, k)),
+                word::SQUARE => each!(3, k => self.get(2, k) * self.get(2, k)),
+                word::FUSED => each!(5, k => self.get(2, k).multiply_add(self.get(3, k), self.get(4, k))),
+                word::SCALE => each!(4, k => S::splat(self.constant(2)) * self.get(3, k)),
+                word::DIVIDE => each!(4, k => self.get(2, k) / self.get(3, k)),
+                word::RECIPROCAL => each!(4, k => S::splat(self.constant(2)) / self.get(3, k)),
+                word::LINEAR => self.linear(),
+                word::SINE_COSINE => {
+                    for k in 0..K {
+                        let (sine, cosine) = functions::sin_cos(self.get(3, k));
+                        self.put(1, k, sine);
+                        self.put(2, k, cosine);
+                    }
+                    4
+                }
+                word::SOLVE => self.solved(),
+                word::POWER => each!(4, k => functions::power(self.get(2, k), self.constant(3))),
+                word::CONSTANT => {
+                    let value = S::splat(self.constant(2));
+                    for k in 0..K {
+                        self.put(1, k, value);
+                    }
+                    3
+                }
+                word::END => return,
+                other => each!(3, k => call(other, self.get(2, k))),
+            };
+            // SAFETY: the last word is `END`, at which this returns.
+            self.at = unsafe { self.at.add(length) };
+        }
+    }
+
+    /// A sum; the words it takes.
+    #[inline(always)]
+    fn linear(&mut self) -> usize {
+        let counts = [self.word(3), self.word(4), self.word(5), self.word(6)];
+        let mut sum = [S::splat(self.constant(2)); K];
+        let mut place = 7;
+        for _ in 0..counts[0] {
+            let factor = S::splat(self.constant(place));
+            for k in 0..K {
+                sum[k] = factor.multiply_add(self.get(place + 1, k), sum[k]);
+            }
+            place += 2;
+        }
+        for _ in 0..counts[1] {
+            for k in 0..K {
+                sum[k] = self.get(place, k).multiply_add(self.get(place + 1, k), sum[k]);
+            }
+            place += 2;
+        }
+        for _ in 0..counts[2] {
+            for k in 0..K {
+                sum[k] = self.get(place, k).multiply_subtract_from(self.get(place + 1, k), sum[k]);
+            }
+            place += 2;
+        }
+        for _ in 0..counts[3] {
+            let factor = S::splat(self.constant(place));
+            for k in 0..K {
+                sum[k] = (factor * self.get(place + 1, k)).multiply_add(self.get(place + 2, k), sum[k]);
+            }
+            place += 3;
+        }
+        for k in 0..K {
+            self.put(1, k, sum[k]);
+        }
+        place
+    }
+
+    /// The solution of a linear system; the words it takes.
+    #[inline(always)]
+    fn solved(&mut self) -> usize {
+        let unknowns = self.word(1);
+        let triangle = unknowns * (unknowns + 1) / 2;
+        for k in 0..K {
+            for i in 0..triangle + unknowns {
+                let value = self.get(2 + i, k);
+                self.room(i + 1)[i] = value;
+            }
+            let (matrix, rest) = self.room(triangle + 2 * unknowns).split_at_mut(triangle);
+            let (right, row) = rest.split_at_mut(unknowns);
+            factor(matrix, row);
+            solve(matrix, right);
+            for i in 0..unknowns {
+                let value = self.room(triangle + i + 1)[triangle + i];
+                self.put(2 + triangle + unknowns + i, k, value);
+            }
+        }
+        2 + triangle + 2 * unknowns
+    }
+}
+
+/// A function by its word.
+#[inline(always)]
+fn call<S: Scalar>(word: u16, x: S) -> S {
+    const TAN: u16 = word::CALL + Function::Tan as u16;
+    const EXP: u16 = word::CALL + Function::Exp as u16;
+    const LN: u16 = word::CALL + Function::Ln as u16;
+    const SQRT: u16 = word::CALL + Function::Sqrt as u16;
+    const SINH: u16 = word::CALL + Function::Sinh as u16;
+    const COSH: u16 = word::CALL + Function::Cosh as u16;
+    const TANH: u16 = word::CALL + Function::Tanh as u16;
+    const ASIN: u16 = word::CALL + Function::Asin as u16;
+    const ACOS: u16 = word::CALL + Function::Acos as u16;
+    const ATAN: u16 = word::CALL + Function::Atan as u16;
+    const ASINH: u16 = word::CALL + Function::Asinh as u16;
+    const ACOSH: u16 = word::CALL + Function::Acosh as u16;
+    const ATANH: u16 = word::CALL + Function::Atanh as u16;
+    match word {
+        TAN => functions::tan(x),
+        EXP => x.exp(),
+        LN => functions::ln(x),
+        SQRT => x.sqrt(),
+        SINH => functions::sinh_cosh(x).0,
+        COSH => functions::sinh_cosh(x).1,
+        TANH => functions::tanh(x),
+        ASIN => functions::asin(x),
+        ACOS => functions::acos(x),
+        ATAN => functions::atan(x),
+        ASINH => functions::asinh(x),
+        ACOSH => functions::acosh(x),
+        ATANH => functions::atanh(x),
+        // Sine and cosine come in pairs.
+        _ => S::splat(f64::NAN),
+    }
+}
+
+/// L D Lᵀ of a symmetric matrix, its lower triangle row by row, in place: L below the diagonal, 1/D on it. `row` is room.
+#[inline(always)]
+fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S]) {
+    for i in 0..row.len() {
+        let start = i * (i + 1) / 2;
+        for j in 0..i {
+            let other = j * (j + 1) / 2;
+            let mut x = matrix[start + j];
+            for k in 0..j {
+                x = row[k].multiply_subtract_from(matrix[other + k], x);
+            }
+            row[j] = x;
+        }
+        let mut pivot = matrix[start + i];
+        for j in 0..i {
+            let l = row[j] * matrix[j * (j + 1) / 2 + j];
+            matrix[start + j] = l;
+            pivot = l.multiply_subtract_from(row[j], pivot);
+        }
+        matrix[start + i] = S::one() / pivot;
+    }
+}
+
+/// Solves with what [`factor`] has made.
+#[inline(always)]
+fn solve<S: Scalar>(matrix: &[S], right: &mut [S]) {
+    let n = right.len();
+    for i in 0..n {
+        let mut x = right[i];
+        for k in 0..i {
+            x = matrix[i * (i + 1) / 2 + k].multiply_subtract_from(right[k], x);
+        }
+        right[i] = x;
+    }
+    for i in (0..n).rev() {
+        let mut x = right[i] * matrix[i * (i + 1) / 2 + i];
+        for k in i + 1..n {
+            x = matrix[k * (k + 1) / 2 + i].multiply_subtract_from(right[k], x);
+        }
+        right[i] = x;
+    }
+}
+
+#[inline(always)]
+fn lanes_body<V: Vector8 + Scalar>(code: &Code, part: Part, registers: &mut [Lanes]) {
+    execute::<V, 1>(code, part, V::view_mut(registers));
+}
+
+#[inline(always)]
+fn one_body<V: Vector8>(code: &Code, part: Part, registers: &mut [f64]) {
+    execute::<f64, 1>(code, part, registers);
+}
+
+tiered! {
+    /// Runs a part of the code for eight states.
+    pub fn lanes[][](code: &Code, part: Part, registers: &mut [Lanes]) = lanes_body;
+    /// Runs a part of the code for one state, with the processor's fused operations.
+    pub fn one[][](code: &Code, part: Part, registers: &mut [f64]) = one_body;
+}

@@ -1,0 +1,389 @@
+//! The graph: sums are linear combinations, products are binary, and equal nodes are the same node.
+//!
+//! The one idea: a node is simplified when it is made and never again. Sums are kept sorted, so that like terms of
+//! derivatives cancel at once; constants are pulled out of products; nothing is ever expanded.
+
+use super::function::{Function, Parity};
+use super::identity;
+use std::collections::HashMap;
+
+/// The number of a node; what it is made of has smaller numbers.
+pub type Id = u32;
+
+/// An operation on other nodes. Constants are kept as bits, so that nodes can be compared.
+#[derive(Clone, PartialEq, Eq, Hash, Debug)]
+pub enum Node {
+    /// A number.
+    Constant(u64),
+    /// A number of the state.
+    Variable(u32),
+    /// A parameter.
+    Parameter(u32),
+    /// The time.
+    Time,
+    /// c₀ + Σ cᵢ xᵢ, the xᵢ ascending and neither constants nor multiples.
+    Sum(u64, Box<[(u64, Id)]>),
+    /// A product, the smaller number first.
+    Product(Id, Id),
+    /// A quotient.
+    Quotient(Id, Id),
+    /// A function.
+    Call(Function, Id),
+    /// A constant real power that products and roots do not make.
+    Power(Id, u64),
+}
+
+/// What the value of a node may change with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Dependence {
+    /// Nothing.
+    Constant,
+    /// Parameters.
+    Parameters,
+    /// The time, and parameters.
+    Time,
+    /// The state, and all else.
+    State,
+}
+
+/// Whole powers up to this are multiplied out.
+const MULTIPLIED: f64 = 64.0;
+
+/// Expressions that share what they have in common.
+#[derive(Clone, Debug, Default)]
+pub struct Graph {
+    nodes: Vec<Node>,
+    dependence: Vec<Dependence>,
+    ids: HashMap<Node, Id>,
+}
+
+/// The number that these are the bits of; there is one zero.
+pub fn number(bits: u64) -> f64 {
+    f64::from_bits(bits)
+}
+
+/// The bits of a number, of one zero.
+fn bits(value: f64) -> u64 {
+    (value + 0.0).to_bits()
+}
+
+impl Graph {
+    /// All nodes.
+    pub fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// One of them.
+    pub fn node(&self, id: Id) -> &Node {
+        &self.nodes[id as usize]
+    }
+
+    /// What a node may change with.
+    pub fn dependence(&self, id: Id) -> Dependence {
+        self.dependence[id as usize]
+    }
+
+    /// The node as it stands, which may be there already.
+    pub(super) fn put(&mut self, node: Node) -> Id {
+        if let Some(&id) = self.ids.get(&node) {
+            return id;
+        }
+        let id = self.nodes.len() as Id;
+        let dependence = match &node {
+            Node::Constant(_) => Dependence::Constant,
+            Node::Parameter(_) => Dependence::Parameters,
+            Node::Time => Dependence::Time,
+            Node::Variable(_) => Dependence::State,
+            _ => {
+                let mut most = Dependence::Constant;
+                for_each_argument(&node, |argument| most = most.max(self.dependence(argument)));
+                most
+            }
+        };
+        self.nodes.push(node.clone());
+        self.dependence.push(dependence);
+        let _ = self.ids.insert(node, id);
+        id
+    }
+
+    /// A number.
+    pub fn constant(&mut self, value: f64) -> Id {
+        self.put(Node::Constant(bits(value)))
+    }
+
+    /// A number of the state.
+    pub fn variable(&mut self, index: u32) -> Id {
+        self.put(Node::Variable(index))
+    }
+
+    /// A parameter.
+    pub fn parameter(&mut self, index: u32) -> Id {
+        self.put(Node::Parameter(index))
+    }
+
+    /// The time.
+    pub fn time(&mut self) -> Id {
+        self.put(Node::Time)
+    }
+
+    /// The number that a node is, if it is one.
+    pub fn as_constant(&self, id: Id) -> Option<f64> {
+        match self.node(id) {
+            Node::Constant(value) => Some(number(*value)),
+            _ => None,
+        }
+    }
+
+    /// Whether a node is the number 0.
+    pub fn is_zero(&self, id: Id) -> bool {
+        self.as_constant(id) == Some(0.0)
+    }
+
+    /// A node as a multiple of another, which is none.
+    fn multiple(&self, id: Id) -> (f64, Id) {
+        match self.node(id) {
+            Node::Sum(constant, terms) if number(*constant) == 0.0 && terms.len() == 1 => {
+                (number(terms[0].0), terms[0].1)
+            }
+            _ => (1.0, id),
+        }
+    }
+
+    /// `constant` + Σ coefficient · node.
+    pub fn sum(&mut self, mut constant: f64, terms: &[(f64, Id)]) -> Id {
+        let mut found: Vec<(Id, f64)> = Vec::with_capacity(terms.len());
+        for &(coefficient, id) in terms {
+            if coefficient == 0.0 {
+                continue;
+            }
+            if let Some(value) = self.as_constant(id) {
+                constant += coefficient * value;
+                continue;
+            }
+            let (factor, id) = self.multiple(id);
+            found.push((id, coefficient * factor));
+        }
+        found.sort_by_key(|&(id, _)| id);
+        let mut like: Vec<(Id, f64)> = Vec::with_capacity(found.len());
+        for (id, coefficient) in found {
+            match like.last_mut() {
+                Some(last) if last.0 == id => last.1 += coefficient,
+                _ => like.push((id, coefficient)),
+            }
+        }
+        like.retain(|&(_, coefficient)| coefficient != 0.0);
+        if let Some(simpler) = identity::squares_of_sine_and_cosine(self, &like) {
+            return self.sum(constant, &simpler);
+        }
+        match like.as_slice() {
+            [] => return self.constant(constant),
+            &[(id, 1.0)] if constant == 0.0 => return id,
+            &[(id, -1.0)] if constant == 0.0 => {
+                // −(sum) has its terms' signs changed.
+                if let Node::Sum(inner, terms) = self.node(id) {
+                    let negated: Vec<_> = terms.iter().map(|&(c, x)| (-number(c), x)).collect();
+                    let inner = -number(*inner);
+                    return self.sum(inner, &negated);
+                }
+            }
+            _ => {}
+        }
+        let terms = like.iter().map(|&(id, coefficient)| (bits(coefficient), id)).collect();
+        self.put(Node::Sum(bits(constant), terms))
+    }
+
+    /// a + b.
+    pub fn add(&mut self, a: Id, b: Id) -> Id {
+        self.sum(0.0, &[(1.0, a), (1.0, b)])
+    }
+
+    /// a − b.
+    pub fn subtract(&mut self, a: Id, b: Id) -> Id {
+        self.sum(0.0, &[(1.0, a), (-1.0, b)])
+    }
+
+    /// A multiple.
+    pub fn scale(&mut self, factor: f64, a: Id) -> Id {
+        self.sum(0.0, &[(factor, a)])
+    }
+
+    /// a · b.
+    pub fn multiply(&mut self, a: Id, b: Id) -> Id {
+        if let Some(value) = self.as_constant(a) {
+            return self.scale(value, b);
+        }
+        if let Some(value) = self.as_constant(b) {
+            return self.scale(value, a);
+        }
+        let ((factor_a, a), (factor_b, b)) = (self.multiple(a), self.multiple(b));
+        let factor = factor_a * factor_b;
+        for (one, other) in [(a, b), (b, a)] {
+            // a · (1/d) = a/d
+            if let Node::Quotient(numerator, denominator) = *self.node(other)
+                && self.as_constant(numerator) == Some(1.0)
+            {
+                let quotient = self.divide(one, denominator);
+                return self.scale(factor, quotient);
+            }
+        }
+        let product = self.put(Node::Product(a.min(b), a.max(b)));
+        if factor == 1.0 { product } else { self.scale(factor, product) }
+    }
+
+    /// The product of several: what depends on least first, so that products of parameters are found once for all times.
+    pub fn product(&mut self, factors: &[Id]) -> Id {
+        let mut sorted = factors.to_vec();
+        sorted.sort_by_key(|&id| self.dependence(id));
+        let one = self.constant(1.0);
+        sorted.into_iter().fold(one, |product, factor| self.multiply(product, factor))
+    }
+
+    /// a / b.
+    pub fn divide(&mut self, a: Id, b: Id) -> Id {
+        if let Some(value) = self.as_constant(b)
+            && value != 0.0
+        {
+            // A product with the reciprocal, where that is exact.
+            let (factor, rest) = self.multiple(a);
+            return match self.as_constant(a) {
+                Some(a) => self.constant(a / value),
+                None => self.scale(factor / value, rest),
+            };
+        }
+        if self.is_zero(a) {
+            return a;
+        }
+        let ((factor_a, a), (factor_b, b)) = (self.multiple(a), self.multiple(b));
+        if a == b {
+            return self.constant(factor_a / factor_b);
+        }
+        if let Some(value) = self.as_constant(a) {
+            let one = self.constant(1.0);
+            let reciprocal = self.put(Node::Quotient(one, b));
+            return self.scale(value * factor_a / factor_b, reciprocal);
+        }
+        let quotient = self.put(Node::Quotient(a, b));
+        self.scale(factor_a / factor_b, quotient)
+    }
+
+    /// A function of a node.
+    pub fn call(&mut self, function: Function, a: Id) -> Id {
+        if let Some(value) = self.as_constant(a).and_then(|x| function.of_constant(x)) {
+            return self.constant(value);
+        }
+        let leading = match self.node(a) {
+            Node::Sum(constant, terms) if number(*constant) == 0.0 => number(terms[0].0),
+            Node::Sum(constant, _) => number(*constant),
+            _ => 1.0,
+        };
+        if leading < 0.0 && function.parity() != Parity::Neither {
+            let negated = self.scale(-1.0, a);
+            let value = self.put(Node::Call(function, negated));
+            return if function.parity() == Parity::Odd { self.scale(-1.0, value) } else { value };
+        }
+        self.put(Node::Call(function, a))
+    }
+
+    /// A constant power: whole ones by multiplication, halves by roots.
+    pub fn power(&mut self, a: Id, exponent: f64) -> Id {
+        if exponent == 0.0 {
+            return self.constant(1.0);
+        }
+        if exponent == 1.0 {
+            return a;
+        }
+        if exponent < 0.0 && (2.0 * exponent).fract() == 0.0 {
+            let (one, positive) = (self.constant(1.0), self.power(a, -exponent));
+            return self.divide(one, positive);
+        }
+        if exponent == 0.5 {
+            return self.call(Function::Sqrt, a);
+        }
+        if exponent.fract() == 0.0 && exponent <= MULTIPLIED {
+            return self.whole_power(a, exponent as u32);
+        }
+        if exponent.fract() == 0.5 && exponent <= MULTIPLIED {
+            let (whole, root) = (self.whole_power(a, exponent as u32), self.call(Function::Sqrt, a));
+            return self.multiply(whole, root);
+        }
+        self.put(Node::Power(a, bits(exponent)))
+    }
+
+    fn whole_power(&mut self, a: Id, mut exponent: u32) -> Id {
+        let (mut square, mut product) = (a, self.constant(1.0));
+        while exponent > 0 {
+            if exponent & 1 == 1 {
+                product = self.multiply(product, square);
+            }
+            exponent >>= 1;
+            if exponent > 0 {
+                square = self.multiply(square, square);
+            }
+        }
+        product
+    }
+
+    /// x^y of any exponent, of positive x: e^(y ln x).
+    pub fn general_power(&mut self, x: Id, y: Id) -> Id {
+        if let Some(exponent) = self.as_constant(y) {
+            return self.power(x, exponent);
+        }
+        let logarithm = self.call(Function::Ln, x);
+        let product = self.multiply(y, logarithm);
+        self.call(Function::Exp, product)
+    }
+
+    /// The nodes that these are made of, and they themselves, ascending.
+    pub fn reachable(&self, roots: &[Id]) -> Vec<Id> {
+        let mut seen = vec![false; self.nodes.len()];
+        let mut waiting = roots.to_vec();
+        while let Some(id) = waiting.pop() {
+            if !core::mem::replace(&mut seen[id as usize], true) {
+                for_each_argument(self.node(id), |argument| waiting.push(argument));
+            }
+        }
+        (0..self.nodes.len() as Id).filter(|&id| seen[id as usize]).collect()
+    }
+
+    /// Whether something that these are made of is such a node.
+    pub fn any(&self, roots: &[Id], is: impl Fn(&Node) -> bool) -> bool {
+        self.reachable(roots).iter().any(|&id| is(self.node(id)))
+    }
+
+    /// The same expressions with other nodes in the place of some.
+    pub fn substitute(&mut self, roots: &[Id], replaced: &HashMap<Id, Id>) -> Vec<Id> {
+        let mut new: HashMap<Id, Id> = replaced.clone();
+        for id in self.reachable(roots) {
+            if new.contains_key(&id) {
+                continue;
+            }
+            let of = |argument: &Id| new.get(argument).copied().unwrap_or(*argument);
+            let made = match self.node(id).clone() {
+                Node::Sum(constant, terms) => {
+                    let terms: Vec<_> = terms.iter().map(|(c, x)| (number(*c), of(x))).collect();
+                    self.sum(number(constant), &terms)
+                }
+                Node::Product(a, b) => self.multiply(of(&a), of(&b)),
+                Node::Quotient(a, b) => self.divide(of(&a), of(&b)),
+                Node::Call(function, a) => self.call(function, of(&a)),
+                Node::Power(a, exponent) => self.power(of(&a), number(exponent)),
+                Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => id,
+            };
+            let _ = new.insert(id, made);
+        }
+        roots.iter().map(|root| new[root]).collect()
+    }
+}
+
+/// What a node is made of, one after another; a square's factor comes twice.
+pub fn for_each_argument(node: &Node, mut each: impl FnMut(Id)) {
+    match node {
+        Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => {}
+        Node::Sum(_, terms) => terms.iter().for_each(|&(_, id)| each(id)),
+        Node::Product(a, b) | Node::Quotient(a, b) => {
+            each(*a);
+            each(*b);
+        }
+        Node::Call(_, a) | Node::Power(a, _) => each(*a),
+    }
+}

@@ -1,0 +1,82 @@
+//! A code with its registers: what a run holds for one trajectory, or for eight.
+
+use super::code::Code;
+use super::execute::{self, Part, room};
+use crate::numerics::lanes::Lanes;
+use crate::numerics::real::Real;
+use std::sync::Arc;
+
+/// What registers hold: a number, or eight.
+pub trait Width: Real {
+    /// Runs a part of a code.
+    fn execute(code: &Code, part: Part, registers: &mut [Self]);
+}
+
+impl Width for f64 {
+    fn execute(code: &Code, part: Part, registers: &mut [Self]) {
+        execute::one(code, part, registers);
+    }
+}
+
+impl Width for Lanes {
+    fn execute(code: &Code, part: Part, registers: &mut [Self]) {
+        execute::lanes(code, part, registers);
+    }
+}
+
+/// A code with its registers, whose preamble is done.
+#[derive(Clone, Debug)]
+pub struct Machine<S> {
+    code: Arc<Code>,
+    registers: Vec<S>,
+}
+
+impl<S: Width> Machine<S> {
+    /// For these parameters.
+    pub fn new(code: Arc<Code>, parameters: &[S]) -> Self {
+        let mut registers = vec![S::zero(); room::<1>(&code)];
+        let first = code.variables() + 1;
+        registers[first..first + code.parameters()].copy_from_slice(parameters);
+        S::execute(&code, Part::Preamble, &mut registers);
+        Self { code, registers }
+    }
+
+    /// The code.
+    pub fn code(&self) -> &Code {
+        &self.code
+    }
+
+    /// The code and all registers, for those who run it themselves.
+    pub fn parts(&mut self) -> (&Code, &mut [S]) {
+        (&self.code, &mut self.registers)
+    }
+
+    /// The numbers of the state, to be written.
+    #[inline]
+    pub fn state(&mut self) -> &mut [S] {
+        let count = self.code.variables;
+        &mut self.registers[..count]
+    }
+
+    /// Runs the body at the state that was written and the time.
+    #[inline]
+    pub fn run(&mut self, t: S) {
+        self.registers[self.code.variables] = t;
+        S::execute(&self.code, Part::Body, &mut self.registers);
+    }
+
+    /// A result of the last run.
+    #[inline]
+    pub fn output(&self, index: usize) -> S {
+        self.registers[usize::from(self.code.outputs[index])]
+    }
+
+    /// Runs the body at a state and writes all results.
+    pub fn evaluate(&mut self, t: S, state: &[S], results: &mut [S]) {
+        self.state().copy_from_slice(state);
+        self.run(t);
+        for (index, result) in results.iter_mut().enumerate() {
+            *result = self.output(index);
+        }
+    }
+}

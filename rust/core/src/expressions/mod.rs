@@ -1,0 +1,23 @@
+//! Expressions: a graph of operations, its derivatives, and programs that evaluate it for eight states at once.
+//!
+//! The one idea: equal expressions are one node, from the moment they are made. So derivatives share what they have in common
+//! with what they are derivatives of, nothing is searched for afterwards, and making a program is a walk over the nodes.
+//! Nothing here knows mechanics: a program is a function of a state, the time and parameters.
+
+pub mod assembler;
+pub mod code;
+mod derivative;
+pub mod execute;
+pub mod function;
+pub mod graph;
+mod identity;
+pub mod machine;
+pub mod program;
+mod verify;
+
+pub use code::Code;
+pub use graph::{Graph, Id, Node};
+pub use machine::Machine;
+
+#[cfg(test)]
+mod tests;

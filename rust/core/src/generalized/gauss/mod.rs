@@ -1,0 +1,70 @@
+//! Gauss's collocation methods of orders 4, 8 and 16: symplectic for any Lagrangian and any Hamiltonian, separable or not.
+//!
+//! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
+//! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
+//! in the next one; where energy is conserved steps are chosen at the start and then held ([`trial`]).
+
+mod step;
+mod tables;
+mod trial;
+
+use crate::numerics::lanes::{Lanes, WIDTH};
+pub use trial::{GaussStep, Steps};
+
+/// A collocation method: row `j` of a matrix holds what stage `j` contributes to each of the stages.
+#[derive(Debug)]
+pub struct Table {
+    pub(super) stages: usize,
+    /// Nodes.
+    c: Lanes,
+    a: [Lanes; WIDTH],
+    /// The square of `a`.
+    a2: [Lanes; WIDTH],
+    /// Weights of the rates, and what they leave out.
+    b: [Lanes; 2],
+    /// Weights of the accelerations in the coordinates, b·a.
+    b2: [Lanes; 2],
+    /// The polynomial through the stages at those of the next step.
+    ahead: [Lanes; WIDTH],
+    /// Barycentric weights of the nodes.
+    weights: Lanes,
+}
+
+/// A method of this family.
+#[derive(Debug)]
+pub struct Method {
+    /// Its name in the Python interface.
+    pub name: &'static str,
+    /// Its order.
+    pub order: u32,
+    table: &'static Table,
+}
+
+/// The methods of this family.
+pub static METHODS: [Method; 3] = [
+    Method { name: "gauss4", order: 4, table: &tables::GAUSS4 },
+    Method { name: "gauss8", order: 8, table: &tables::GAUSS8 },
+    Method { name: "gauss16", order: 16, table: &tables::GAUSS16 },
+];
+
+/// The method of that name.
+pub fn method(name: &str) -> Option<&'static Method> {
+    METHODS.iter().find(|method| method.name == name)
+}
+
+impl Table {
+    /// The polynomial through the stages at these fractions of the step: a row for what each stage contributes.
+    fn at(&self, fractions: &Lanes) -> [Lanes; WIDTH] {
+        let mut rows = [Lanes([0.0; WIDTH]); WIDTH];
+        for (place, &x) in fractions.0.iter().enumerate() {
+            for (k, row) in rows.iter_mut().enumerate().take(self.stages) {
+                let mut weight = self.weights.0[k];
+                for j in (0..self.stages).filter(|&j| j != k) {
+                    weight *= x - self.c.0[j];
+                }
+                row.0[place] = weight;
+            }
+        }
+        rows
+    }
+}

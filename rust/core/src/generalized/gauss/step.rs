@@ -1,0 +1,210 @@
+//! One step of a collocation method, for one trajectory: the lanes are its stages.
+//!
+//! The one idea: the right-hand side at all stages is one run of the code, so eight stages cost what one would. Stages begin
+//! where the polynomial of the step before leads, and are iterated until nothing changes; of q'' = a(t, q, q') accelerations
+//! alone are iterated, and coordinates follow by the square of the matrix.
+//! E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration* (2006), VIII.6.
+
+use super::Table;
+use crate::expressions::Machine;
+use crate::expressions::execute::{self, Part, Scalar};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::ode::state::State;
+use crate::ode::system::Form;
+use crate::tiered;
+
+/// Iterations after which stages are given up.
+const MOST_ITERATIONS: u32 = 60;
+/// Below this, in units of how much a step changes a number, changes that no longer fall are round-off.
+const ROUND_OFF: f64 = 1e-13;
+/// As above, where the right-hand side itself has lost digits.
+const STAGNATION: f64 = 1e-9;
+/// No number's scale is below this times the largest: noise on what stands still would never converge.
+const LEAST_SCALE: f64 = 1e-8;
+
+/// What the stages of a step hold.
+#[derive(Clone, Debug)]
+pub(super) struct Stages {
+    /// Right-hand sides (accelerations, of the second order), a row of stages each.
+    pub(super) rates: Vec<Lanes>,
+    /// Where they began.
+    pub(super) guess: Vec<Lanes>,
+    /// The numbers that are iterated (velocities, of the second order).
+    numbers: Vec<Lanes>,
+    /// What one is measured by, inverted.
+    pub(super) scales: Vec<f64>,
+}
+
+impl Stages {
+    pub(super) fn new(evaluated: usize) -> Self {
+        let row = vec![Lanes([0.0; WIDTH]); evaluated];
+        Self { rates: row.clone(), guess: row.clone(), numbers: row, scales: vec![0.0; evaluated] }
+    }
+}
+
+/// What came of an iteration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Iterated {
+    pub(super) converged: bool,
+    pub(super) evaluations: u32,
+}
+
+/// A step on its way.
+pub(super) struct Work<'a> {
+    pub(super) table: &'static Table,
+    pub(super) form: Form,
+    pub(super) machine: &'a mut Machine<Lanes>,
+    pub(super) state: &'a State<f64>,
+    pub(super) stages: &'a mut Stages,
+    /// Its beginning, as the system counts time, and its length.
+    pub(super) t: f64,
+    pub(super) h: f64,
+}
+
+/// Σ over the stages of `weights[stage] · values[stage]`, for each stage of a row.
+#[inline(always)]
+pub(super) fn combined<V: Vector8>(weights: &[Lanes; WIDTH], values: &Lanes) -> V {
+    let (mut even, mut odd) = (V::zero(), V::zero());
+    for j in 0..WIDTH / 2 {
+        even = V::splat(values.0[j]).multiply_add(V::load(weights[j]), even);
+        odd = V::splat(values.0[j + WIDTH / 2]).multiply_add(V::load(weights[j + WIDTH / 2]), odd);
+    }
+    even + odd
+}
+
+/// The largest lane; a NaN counts as infinite.
+#[inline(always)]
+pub(super) fn largest(lanes: Lanes) -> f64 {
+    lanes.0.iter().fold(0.0, |most, &x| {
+        if x <= most {
+            most
+        } else if x.is_nan() {
+            f64::INFINITY
+        } else {
+            x
+        }
+    })
+}
+
+/// Sets what changes are measured by: how large a number is and how far it goes in the step.
+#[inline(always)]
+fn set_scales(scales: &mut [f64], rates: &[Lanes], y: &[f64], h: f64) {
+    let mut most = 0.0;
+    for ((scale, rates), y) in scales.iter_mut().zip(rates).zip(y) {
+        *scale = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
+        most = if *scale > most { *scale } else { most };
+    }
+    for scale in scales {
+        let size = if *scale > LEAST_SCALE * most { *scale } else { LEAST_SCALE * most };
+        *scale = if size > 0.0 { 1.0 / size } else { 0.0 };
+    }
+}
+
+/// Iterates the stages from `stages.rates` on until nothing changes.
+#[inline(always)]
+fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
+    let Work { table, form, machine, state, stages, t, h } = work;
+    let (code, registers) = machine.parts();
+    let outputs = code.output_registers();
+    let evaluated = form.evaluated();
+    let second_order = matches!(form, Form::SecondOrder(_));
+    let (y, rest) = state.all();
+    let (h, h2) = (V::splat(*h), V::splat(*h * *h));
+    let passed = V::load(table.c) * h;
+    registers[code.variables()] = (passed + V::splat(*t)).store();
+    let mut last = f64::INFINITY;
+    for iteration in 0..MOST_ITERATIONS {
+        let mut change = V::zero();
+        for i in 0..evaluated {
+            let from = if second_order { evaluated + i } else { i };
+            let rates = &stages.rates[i];
+            let number =
+                combined::<V>(&table.a, rates).multiply_add(h, V::splat(rest[from])) + V::splat(y[from]);
+            change = change.max((number - V::load(stages.numbers[i])).abs() * V::splat(stages.scales[i]));
+            stages.numbers[i] = number.store();
+            registers[from] = number.store();
+            if second_order {
+                let drift = passed.multiply_add(V::splat(y[from]), V::splat(rest[i]));
+                let place = combined::<V>(&table.a2, rates).multiply_add(h2, drift) + V::splat(y[i]);
+                registers[i] = place.store();
+            }
+        }
+        let change = largest(change.store());
+        if iteration > 0 {
+            let stands = change >= last;
+            if change == 0.0
+                || (stands && change < ROUND_OFF)
+                || (stands && iteration > 12 && change < STAGNATION)
+            {
+                return Iterated { converged: true, evaluations: iteration };
+            }
+            if !change.is_finite() || (stands && iteration > 20) {
+                return Iterated { converged: false, evaluations: iteration };
+            }
+        }
+        // The first change is from the numbers of another step, and tells nothing.
+        last = if iteration > 0 { change } else { f64::INFINITY };
+        execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
+        for i in 0..evaluated {
+            stages.rates[i] = registers[usize::from(outputs[i])];
+        }
+        if iteration == 0 {
+            set_scales(
+                &mut stages.scales,
+                &stages.rates,
+                if second_order { &y[evaluated..] } else { y },
+                work.h,
+            );
+        }
+    }
+    Iterated { converged: false, evaluations: MOST_ITERATIONS }
+}
+
+/// Writes the state at the end of the step.
+#[inline(always)]
+fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
+    let Work { table, form, state, stages, h, .. } = work;
+    let evaluated = form.evaluated();
+    let (y, rest) = state.all();
+    let (next, next_rest) = next.all_mut();
+    let mut put = |index: usize, change: f64| {
+        let sum = y[index] + change;
+        let moved = sum - y[index];
+        next_rest[index] = (y[index] - (sum - moved)) + (change - moved);
+        next[index] = sum;
+    };
+    let weighted = |weights: &[Lanes; 2], rates: &Lanes| {
+        let rates = V::load(*rates);
+        let low = V::load(weights[1]) * rates;
+        V::load(weights[0]).multiply_add(rates, low).store().horizontal_sum()
+    };
+    for i in 0..evaluated {
+        let rates = &stages.rates[i];
+        match form {
+            Form::FirstOrder(_) => put(i, weighted(&table.b, rates).mul_add(*h, rest[i])),
+            Form::SecondOrder(_) => {
+                let v = evaluated + i;
+                put(v, weighted(&table.b, rates).mul_add(*h, rest[v]));
+                // h v is kept whole: rounded, it would err at every step to the same side of a slow motion.
+                let drift = y[v] * *h;
+                let lost = y[v].mul_add(*h, -drift);
+                let small = weighted(&table.b2, rates).mul_add(*h * *h, rest[v].mul_add(*h, rest[i] + lost));
+                put(i, drift + small);
+            }
+        }
+    }
+}
+
+/// Where the polynomial through the stages leads, to the stages of the next step or to other places.
+#[inline(always)]
+fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lanes]) {
+    for (to, rates) in to.iter_mut().zip(rates) {
+        *to = combined::<V>(weights, rates).store();
+    }
+}
+
+tiered! {
+    pub(super) fn iterate[][](work: &mut Work<'_>) -> Iterated = iterate_body;
+    pub(super) fn advance[][](work: &Work<'_>, next: &mut State<f64>) -> () = advance_body;
+    pub(super) fn led[][](weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lanes]) -> () = led_body;
+}

@@ -1,0 +1,22 @@
+//! Generalized coordinates: Lagrangians and Hamiltonians as expressions, their equations of motion, and their runs.
+//!
+//! The one idea: a [`Model`] is a graph of expressions and the numbers of the nodes that matter. What is found on the graph
+//! (a cyclic coordinate, a constant mass matrix) is then skipped in the code that runs; nothing is derived twice, and no
+//! matrix is inverted but with numbers.
+
+mod constraints;
+pub mod evaluate;
+mod fixed;
+pub mod gauss;
+mod hamiltonian;
+mod lagrangian;
+pub mod model;
+pub mod motion;
+pub mod projection;
+pub mod run;
+pub mod structure;
+
+pub use model::{Kind, Model, Source};
+
+#[cfg(test)]
+mod tests;

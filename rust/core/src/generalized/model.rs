@@ -1,0 +1,190 @@
+//! A mechanical system in generalized coordinates: where it comes from and what was made of it.
+
+use super::projection::Projection;
+use super::{hamiltonian, lagrangian};
+use crate::error::{Error, Result};
+use crate::expressions::assembler::compile;
+use crate::expressions::program::{LinearSystem, Output};
+use crate::expressions::{Code, Graph, Id};
+use crate::ode::system::{Form, Needs};
+use std::sync::Arc;
+
+/// Of which kind the function is that says all.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// L(q, q̇, t); the state is (q, q̇).
+    Lagrangian,
+    /// H(q, p, t); the state is (q, p).
+    Hamiltonian,
+}
+
+/// What a system is made of: expressions of `2·coordinates` numbers of a state, the time, and parameters.
+#[derive(Clone, Debug)]
+pub struct Source {
+    /// All expressions.
+    pub graph: Graph,
+    /// The kind of function.
+    pub kind: Kind,
+    /// Degrees of freedom before constraints.
+    pub coordinates: usize,
+    /// Parameters.
+    pub parameters: usize,
+    /// The function.
+    pub function: Id,
+    /// Generalized forces that no potential gives, one for each coordinate, or none.
+    pub forces: Vec<Id>,
+    /// Rayleigh's dissipation function R(q̇): the forces −∂R/∂q̇.
+    pub dissipation: Option<Id>,
+    /// Holonomic constraints g(q, t) = 0.
+    pub holonomic: Vec<Id>,
+    /// Nonholonomic ones, a(q, t)·q̇ + b(q, t) = 0.
+    pub nonholonomic: Vec<Id>,
+}
+
+/// A system and what was found about it.
+#[derive(Clone, Debug)]
+pub struct Model {
+    /// What it is made of; its graph has everything else, too.
+    pub source: Source,
+    /// The form of its equations.
+    pub form: Form,
+    /// The systems of linear equations that the rates hang on.
+    pub systems: Vec<LinearSystem>,
+    /// The right-hand side: rates of the first order, accelerations of the second.
+    pub rates: Vec<Output>,
+    /// The multipliers λ of the constraints: the constraint forces are Σ λ ∂g/∂q (of a Lagrangian).
+    pub multipliers: Vec<Output>,
+    /// ∂L/∂q̇ of a Lagrangian, ∂H/∂p of a Hamiltonian: what the state does not have.
+    pub conjugates: Vec<Id>,
+    /// ∂L/∂q, or −∂H/∂q.
+    pub slopes: Vec<Id>,
+    /// ∂²L/∂q̇∂q̇; empty of a Hamiltonian.
+    pub mass: Vec<Vec<Id>>,
+    /// Jacobi's integral Σ q̇ ∂L/∂q̇ − L, or H.
+    pub energy: Id,
+    /// The equations as code.
+    pub code: Arc<Code>,
+    /// Conjugates, energy and multipliers as code.
+    pub columns: Arc<Code>,
+    /// What keeps states on the constraints.
+    pub projection: Option<Projection>,
+}
+
+impl Model {
+    /// Derives the equations.
+    ///
+    /// # Errors
+    /// A function without kinetic energy in a coordinate; constraints on a Hamiltonian; expressions that are too large.
+    pub fn new(source: Source) -> Result<Self> {
+        let derived = match source.kind {
+            Kind::Lagrangian => lagrangian::derive(source)?,
+            Kind::Hamiltonian => hamiltonian::derive(source)?,
+        };
+        let Derived { source, form, systems, rates, multipliers, conjugates, slopes, mass, energy } = derived;
+        let inputs = (2 * source.coordinates, source.parameters);
+        let code = Arc::new(compile(&source.graph, inputs, &systems, &rates)?);
+        let mut outputs: Vec<Output> = conjugates.iter().copied().chain([energy]).map(Output::Node).collect();
+        outputs.extend(&multipliers);
+        let of_columns: &[LinearSystem] = if multipliers.is_empty() { &[] } else { &systems };
+        let columns = Arc::new(compile(&source.graph, inputs, of_columns, &outputs)?);
+        let mut model = Self {
+            source,
+            form,
+            systems,
+            rates,
+            multipliers,
+            conjugates,
+            slopes,
+            mass,
+            energy,
+            code,
+            columns,
+            projection: None,
+        };
+        model.projection = Projection::new(&mut model)?;
+        Ok(model)
+    }
+
+    /// Numbers of a state.
+    pub fn numbers(&self) -> usize {
+        2 * self.source.coordinates
+    }
+
+    /// Other expressions of the same state as code.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub fn function(&self, expressions: &[Id]) -> Result<Code> {
+        let outputs: Vec<Output> = expressions.iter().copied().map(Output::Node).collect();
+        compile(&self.source.graph, (self.numbers(), self.source.parameters), &[], &outputs)
+    }
+
+    /// What its equations look at.
+    pub fn needs(&self) -> Needs {
+        use crate::expressions::Node;
+        let graph = &self.source.graph;
+        let n = self.source.coordinates as u32;
+        let mut roots: Vec<Id> = Vec::new();
+        for system in &self.systems {
+            roots.extend(system.matrix.iter().flatten().chain(&system.right));
+        }
+        roots.extend(self.rates.iter().filter_map(|rate| match rate {
+            Output::Node(id) => Some(*id),
+            Output::Unknown(_) => None,
+        }));
+        Needs {
+            time: graph.any(&roots, |node| matches!(node, Node::Time)),
+            velocity: graph.any(&roots, |node| matches!(node, Node::Variable(index) if *index >= n)),
+            rotation: false,
+        }
+    }
+}
+
+/// What the derivation of either kind gives.
+pub(super) struct Derived {
+    pub(super) source: Source,
+    pub(super) form: Form,
+    pub(super) systems: Vec<LinearSystem>,
+    pub(super) rates: Vec<Output>,
+    pub(super) multipliers: Vec<Output>,
+    pub(super) conjugates: Vec<Id>,
+    pub(super) slopes: Vec<Id>,
+    pub(super) mass: Vec<Vec<Id>>,
+    pub(super) energy: Id,
+}
+
+impl Source {
+    /// The nodes of the first half of a state, and of the second.
+    pub fn halves(&mut self) -> (Vec<Id>, Vec<Id>) {
+        let n = self.coordinates as u32;
+        let first = (0..n).map(|i| self.graph.variable(i)).collect();
+        (first, (n..2 * n).map(|i| self.graph.variable(i)).collect())
+    }
+}
+
+impl Source {
+    /// The Poisson bracket Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q of two functions of (q, p).
+    pub fn poisson(&mut self, f: Id, g: Id) -> Id {
+        let (q, p) = self.halves();
+        let all: Vec<Id> = q.iter().chain(&p).copied().collect();
+        let graph = &mut self.graph;
+        let (f, g) = (graph.gradient(f, &all), graph.gradient(g, &all));
+        let mut terms = Vec::new();
+        for i in 0..q.len() {
+            terms.push((1.0, graph.multiply(f[i], g[q.len() + i])));
+            terms.push((-1.0, graph.multiply(f[q.len() + i], g[i])));
+        }
+        graph.sum(0.0, &terms)
+    }
+}
+
+/// A degenerate function.
+pub(super) fn degenerate(coordinate: usize) -> Error {
+    Error::invalid(
+        "L",
+        format!(
+            "degenerate: the second derivative of L with respect to the velocity of coordinate {coordinate} vanishes \
+             identically, so it has no acceleration; make it a multiplier (constraints=) or drop it"
+        ),
+    )
+}

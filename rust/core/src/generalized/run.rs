@@ -1,0 +1,219 @@
+//! Runs of a model: one trajectory from a start to an end, by any method.
+//!
+//! The one idea: a run is that of [`ode::run`](crate::ode::run), with whatever takes its steps; outputs are read off steps and
+//! never steer them. With constraints every kept step is put back on them ([`projection`]).
+
+use super::fixed::FixedSteps;
+use super::gauss::{self, GaussStep, Steps};
+use super::model::Model;
+use super::motion::Motion;
+use super::projection::{Projected, Projector};
+use crate::error::{Error, Result};
+use crate::expressions::Machine;
+use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::ode::embedded::EmbeddedStep;
+use crate::ode::events::Watch;
+use crate::ode::norm::{Norm, RootMeanSquare};
+use crate::ode::run::{Ending, Recorder, Step, run};
+use crate::ode::state::State;
+use crate::ode::step_control::Rule;
+use crate::ode::system::{Form, System};
+use crate::ode::table::Table;
+use crate::ode::trial::Trial;
+use crate::ode::{Method, Scheme};
+use crate::parallel::Ticker;
+
+/// What takes the steps.
+#[derive(Clone, Copy, Debug)]
+pub enum Integrator {
+    /// Collocation.
+    Gauss(&'static gauss::Method),
+    /// A method of the registry.
+    Table(&'static Method),
+}
+
+/// What is asked of a run.
+#[derive(Clone, Debug)]
+pub struct Request {
+    /// What takes the steps.
+    pub integrator: Integrator,
+    /// The start and the end, either the smaller.
+    pub span: (f64, f64),
+    /// Relative tolerance.
+    pub rtol: f64,
+    /// The step, of methods without step control and of others that are to hold theirs.
+    pub dt: Option<f64>,
+    /// The longest step.
+    pub max_step: Option<f64>,
+    /// Output times; the nodes if not given.
+    pub outputs: Option<Vec<f64>>,
+    /// Whether steps are held where energy is conserved.
+    pub held: bool,
+}
+
+/// What came of it.
+#[derive(Clone, Debug)]
+pub struct Solution {
+    /// How the run ended.
+    pub ending: Ending,
+    /// What ended it, if that was no end.
+    pub failure: Option<String>,
+    /// Times.
+    pub t: Vec<f64>,
+    /// States there, one after another.
+    pub y: Vec<f64>,
+    /// Steps that were kept.
+    pub steps: u64,
+    /// Evaluations.
+    pub evaluations: u64,
+    /// The longest step.
+    pub h: f64,
+}
+
+/// δ of Gauss's methods for a relative tolerance: the error goes about as its square.
+fn delta(rtol: f64) -> f64 {
+    (10.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
+}
+
+/// Runs a model from a state.
+///
+/// # Errors
+/// A step that is missing or is not asked for; a method that does not take such equations.
+pub fn solve(
+    model: &Model,
+    request: &Request,
+    (y0, parameters): (&[f64], &[f64]),
+    ticker: &mut Ticker<'_>,
+) -> Result<Solution> {
+    let (t0, end) = request.span;
+    let mut system = Motion::<f64>::new(model, parameters, t0);
+    let mut state = match model.form {
+        Form::FirstOrder(_) => State::first_order(y0.to_vec()),
+        Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
+    };
+    let mean =
+        RootMeanSquare { atol: vec![request.rtol * 1e-3; y0.len()], rtol: vec![request.rtol; y0.len()] };
+    let norm = Norm::root_mean_square(mean);
+    let max_step = request.max_step.unwrap_or(f64::INFINITY);
+    let mut table = Table::new(request.outputs.as_deref(), false, None, Watch::new(vec![]));
+    if t0 == end {
+        table.still(request.span, y0)?;
+        let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
+        return Ok(Solution {
+            ending: Ending::Finished,
+            failure: None,
+            t,
+            y,
+            steps: 0,
+            evaluations: 0,
+            h: 0.0,
+        });
+    }
+    let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
+    let mut recorder = Counted { table, steps: 0, last: 0.0 };
+    let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
+    let mut collocation = 0;
+    let outcome = match request.integrator {
+        Integrator::Gauss(method) => {
+            let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
+            let machine = Machine::new(model.code.clone(), &lanes);
+            let steps = match request.dt {
+                Some(dt) => Steps::Equal(dt),
+                None => Steps::Chosen { delta: delta(request.rtol), held: request.held },
+            };
+            let trial = GaussStep::new(method, (machine, model.form), drive.state, (steps, max_step), t0);
+            drive.with(trial, projector.take(), &mut recorder, |trial| collocation = trial.evaluations())
+        }
+        Integrator::Table(method) => match &method.scheme {
+            Scheme::Embedded(tableau) => {
+                if request.dt.is_some() {
+                    return Err(Error::invalid(
+                        "dt",
+                        format!("{} chooses its own steps; leave dt out", method.name),
+                    ));
+                }
+                let rule = Rule::new(tableau.error_exponent, max_step);
+                let trial = EmbeddedStep::with_rule(tableau, drive.system, drive.state, rule);
+                drive.with(trial, projector.take(), &mut recorder, |_| {})
+            }
+            _ => {
+                let Some(dt) = request.dt else {
+                    return Err(Error::invalid("dt", format!("{} needs a step dt", method.name)));
+                };
+                let h = if end < t0 { -dt } else { dt };
+                let trial = FixedSteps::new(method, h, drive.system, drive.state)?;
+                drive.with(trial, projector.take(), &mut recorder, |_| {})
+            }
+        },
+    };
+    let (ending, failure) = match outcome {
+        Ok(Ending::StepTooSmall) => {
+            let why =
+                "the step fell below what can be told from the time: a singularity, or a rtol too small";
+            (Ending::StepTooSmall, Some(why.to_owned()))
+        }
+        Ok(Ending::NotFinite) => (
+            Ending::NotFinite,
+            Some("a number became infinite, or none: a singularity of the expressions".to_owned()),
+        ),
+        Ok(ending) => (ending, None),
+        Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
+        Err(error) => return Err(error),
+    };
+    let Counted { mut table, steps, last } = recorder;
+    let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
+    let evaluations = system.evaluations() + collocation;
+    Ok(Solution { ending, failure, t, y, steps, evaluations, h: last })
+}
+
+/// A table that counts steps.
+struct Counted<'a> {
+    table: Table<'a>,
+    steps: u64,
+    /// The longest step.
+    last: f64,
+}
+
+impl Recorder for Counted<'_> {
+    fn start(&mut self, t: f64, y: &[f64]) -> Result<()> {
+        self.table.start(t, y)
+    }
+
+    fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
+        self.steps += 1;
+        let length = (step.to - step.from).abs();
+        self.last = if length > self.last { length } else { self.last };
+        self.table.step(step)
+    }
+}
+
+/// What a run is driven with, whatever takes its steps.
+struct Drive<'a, 'b, 'c> {
+    system: &'a mut Motion<f64>,
+    state: &'a mut State<f64>,
+    norm: &'a Norm<f64>,
+    request: &'a Request,
+    ticker: &'b mut Ticker<'c>,
+}
+
+impl Drive<'_, '_, '_> {
+    /// Runs, on the constraints if there are any, and shows what took the steps.
+    fn with<T: Trial<f64>>(
+        &mut self,
+        mut trial: T,
+        projector: Option<Projector>,
+        recorder: &mut dyn Recorder,
+        mut seen: impl FnMut(&T),
+    ) -> Result<Ending> {
+        let span = (self.request.span, None);
+        let Some(projector) = projector else {
+            let ending = run(&mut trial, self.system, self.state, self.norm, span, recorder, self.ticker);
+            seen(&trial);
+            return ending;
+        };
+        let mut trial = Projected::new(trial, projector, self.state, self.request.span.0);
+        let ending = run(&mut trial, self.system, self.state, self.norm, span, recorder, self.ticker);
+        seen(&trial.inner);
+        ending
+    }
+}
