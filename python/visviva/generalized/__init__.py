@@ -1,7 +1,7 @@
 """Lagrangians and Hamiltonians: an expression in, equations of motion at native speed out.
 
-`Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core makes
-a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a new
+`Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core
+makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a new
 derivation. The names here are those of `visviva` itself.
 """
 

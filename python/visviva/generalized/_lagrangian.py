@@ -30,11 +30,11 @@ class Lagrangian(GeneralizedSystem):
     Parameters
     ----------
     L : sympy.Expr or callable
-        The Lagrangian: an expression, or a function ``L(q, v, t, **parameters)`` of arithmetic and NumPy's functions, called
-        once. Velocity-dependent potentials and explicit times are welcome.
+        The Lagrangian: an expression, or a function ``L(q, v, t, **parameters)`` of arithmetic and NumPy's functions,
+        called once. Velocity-dependent potentials and explicit times are welcome.
     coordinates : sequence
-        As `coordinate` makes them (their velocities are ``theta.diff(vv.time)``), or symbols with ``velocities=``; for a
-        function, names.
+        As `coordinate` makes them (their velocities are ``theta.diff(vv.time)``), or symbols with ``velocities=``; for
+        a function, names.
     velocities : sequence of sympy.Symbol, optional
         The velocities of coordinates that are symbols.
     parameters : dict, optional
@@ -57,8 +57,8 @@ class Lagrangian(GeneralizedSystem):
     Raises
     ------
     InvalidInput
-        For symbols without a value, functions that the core does not know, coordinates without kinetic energy, starts off the
-        constraints.
+        For symbols without a value, functions that the core does not know, coordinates without kinetic energy, starts
+        off the constraints.
 
     References
     ----------
@@ -161,7 +161,8 @@ class Lagrangian(GeneralizedSystem):
                     if not abs(residual) <= _CONSISTENT * scale:
                         raise InvalidInput(
                             "position" if what == "constraint" else "velocity",
-                            f"{what} {index} is {residual:.3g} at the start and not 0; pass consistent='project' to Lagrangian",
+                            f"{what} {index} is {residual:.3g} at the start and not 0; "
+                            "pass consistent='project' to Lagrangian",
                         )
         rates = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
         if not np.all(np.isfinite(rates)):

@@ -5,10 +5,12 @@ A node is ``(operation, arguments, value)``, its arguments the numbers of nodes 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 __all__ = ["FUNCTIONS", "Expression", "Node", "Nodes"]
 

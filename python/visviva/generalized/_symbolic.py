@@ -1,4 +1,4 @@
-"""SymPy's trees as nodes, and nodes as SymPy's trees. SymPy is asked for nothing else: it derives and simplifies nothing."""
+"""SymPy's trees as nodes, and nodes as SymPy's trees. SymPy is asked for nothing else: it derives nothing."""
 
 from __future__ import annotations
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
@@ -14,6 +13,8 @@ from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, trees
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._ensemble import GeneralizedEnsemble
@@ -106,7 +107,7 @@ class GeneralizedSystem:
 
     @property
     def conserved(self) -> list[str]:
-        """What the graph tells to be conserved: ``energy`` (Jacobi's integral, or H), and momenta of cyclic coordinates."""
+        """What the graph tells to be conserved: ``energy`` (Jacobi's integral, or H), momenta of cyclic coordinates."""
         energy = ["energy"] if self._structure["conserves_energy"] else []
         return [*energy, *(f"momentum of {name}" for name in self.cyclic)]
 
@@ -275,9 +276,10 @@ class GeneralizedSystem:
         t : float or array_like, shape (T,)
             The end, or output times in order; they change no step.
         method : str
-            ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where energy is
-            conserved its step is chosen at the start and then held. Or a method of `visviva.methods`: adaptive ones
-            (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not depend on velocities.
+            ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where energy
+            is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`: adaptive ones
+            (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not depend on
+            velocities.
         rtol : float
             Relative tolerance of a step.
         dt : float, optional
@@ -435,8 +437,8 @@ def _method(method: object, separable: bool, dt: float | None, *, constrained: b
     if splits and not separable:
         raise InvalidInput(
             "method",
-            f"{method} needs accelerations that do not depend on velocities (H = p²/2 + V(q)); here they do. gauss16 is "
-            "symplectic all the same; dop853 works too",
+            f"{method} needs accelerations that do not depend on velocities (H = p²/2 + V(q)); here they do. gauss16 "
+            "is symplectic all the same; dop853 works too",
         )
     if splits and constrained:
         raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
