@@ -1,8 +1,8 @@
 """Write the tables of Gauss's collocation methods: ``rust/core/src/generalized/gauss/tables.rs``.
 
-Nodes are the zeros of Legendre's polynomials; every weight is an integral of a Lagrange polynomial, found with 80 digits
-and rounded once. With ``--check`` nothing is written: the exit status says whether the checked-in file equals what is
-computed.
+Nodes are the zeros of Legendre's polynomials; every weight is an integral of a Lagrange polynomial, found with 80
+digits and rounded once. With ``--check`` nothing is written: the exit status says whether the checked-in file equals
+what is computed.
 
     python tools/gauss.py [--check]
 """
@@ -17,10 +17,9 @@ from mpmath import matrix, mp, mpf
 mp.dps = 80
 TABLES = Path(__file__).resolve().parents[1] / "rust/core/src/generalized/gauss/tables.rs"
 WIDTH = 8
-HEADER = """//! Gauss's collocation methods: nodes, weights, what leads on to the next step. Written by `tools/gauss.py`.
+HEADER = """//! Gauss's collocation methods: nodes, weights, what leads on. Written by `tools/gauss.py`.
 //!
-//! W. B. Gragg & H. J. Stetter, J. ACM 11 (1964) 188; J. C. Butcher, Math. Comp. 18 (1964) 50. Lanes beyond the
-//! stages are at the start of the step.
+//! J. C. Butcher, Math. Comp. 18 (1964) 50. Lanes beyond the stages are at the start of the step.
 
 #![allow(clippy::unreadable_literal, clippy::excessive_precision, reason = "generated")]
 

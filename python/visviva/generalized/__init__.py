@@ -1,10 +1,11 @@
 """Lagrangians and Hamiltonians: an expression in, equations of motion at native speed out.
 
 `Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core
-makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a new
-derivation. The names here are those of `visviva` itself.
+makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a
+new derivation. The names here are those of `visviva` itself.
 """
 
+from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSection
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian
@@ -15,6 +16,7 @@ from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._trajectory import GeneralizedTrajectory
 
 __all__ = [
+    "Equilibrium",
     "Expression",
     "GeneralizedEnsemble",
     "GeneralizedEnsembleTrajectory",
@@ -23,6 +25,8 @@ __all__ = [
     "GeneralizedTrajectory",
     "Hamiltonian",
     "Lagrangian",
+    "Linearization",
+    "PoincareSection",
     "coordinate",
     "time",
 ]

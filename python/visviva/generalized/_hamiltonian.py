@@ -8,6 +8,7 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._changes import legendre
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["Hamiltonian"]
 
@@ -91,6 +94,25 @@ class Hamiltonian(GeneralizedSystem):
     def equations(self) -> tuple[list[Any], list[Any]]:
         """q̇ and ṗ as expressions of SymPy."""
         return self._shown("conjugates"), self._shown("slopes")
+
+    def lagrangian(self) -> Lagrangian:
+        """The Lagrangian of the system, at the same state.
+
+        Raises
+        ------
+        InvalidInput
+            For a Hamiltonian that is not quadratic in the momenta.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> hamiltonian = vv.systems.henon_heiles()
+        >>> abs(hamiltonian.lagrangian().energy - hamiltonian.energy) < 1e-15
+        True
+        """
+        made: Any = legendre(self)
+        lagrangian: Lagrangian = made
+        return lagrangian
 
     def poisson(self, f: Any, g: Any) -> Any:
         """The Poisson bracket {f, g} = Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q, as an expression of SymPy.

@@ -9,15 +9,17 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number, whole_number
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
+from visviva.generalized._flow import Flow
 from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, trees
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._ensemble import GeneralizedEnsemble
+    from visviva.generalized._nodes import Node
     from visviva.generalized._plan import GeneralizedPlan
     from visviva.generalized._trajectory import GeneralizedTrajectory
     from visviva.typing import Progress
@@ -27,7 +29,7 @@ __all__ = ["GeneralizedSystem"]
 GAUSS = ("gauss4", "gauss8", "gauss16")
 
 
-class GeneralizedSystem:
+class GeneralizedSystem(Flow):
     """A mechanical system in generalized coordinates, and a state of it: base of `Lagrangian` and `Hamiltonian`.
 
     Attributes
@@ -113,16 +115,18 @@ class GeneralizedSystem:
 
     def _shown(self, name: str) -> list[Any]:
         """Expressions of the core as SymPy's."""
-        nodes, roots = self._model.expressions(name)
+        return self._trees(*self._model.expressions(name))
+
+    def _trees(self, nodes: Sequence[Node], roots: Sequence[int]) -> list[Any]:
         sp = sympy()
         if self._source.symbols is None:
-            second = "v" if self._source.kind == "lagrangian" else "p"
+            letter = "v" if self._source.kind == "lagrangian" else "p"
             first = [sp.Symbol(name) for name in self.coordinates]
-            others = [sp.Symbol(f"{second}_{name}") for name in self.coordinates]
+            second = [sp.Symbol(f"{letter}_{name}") for name in self.coordinates]
             parameters: Any = [sp.Symbol(name) for name in self.parameters]
         else:
-            first, others, parameters = map(list, self._source.symbols)
-        return trees(nodes, roots, [*first, *others], parameters)
+            first, second, parameters = map(list, self._source.symbols)
+        return trees(nodes, roots, [*first, *second], parameters)
 
     # --- States -------------------------------------------------------------------------------------------------
 
@@ -248,7 +252,9 @@ class GeneralizedSystem:
             "rtol": rtol,
             "dt": None if dt is None else number("dt", dt),
             "max_step": None if max_step is None else number("max_step", max_step),
+            "max_steps": 100_000_000,
             "outputs": outputs,
+            "section": None,
         }
         return asked, outputs
 
@@ -276,8 +282,8 @@ class GeneralizedSystem:
         t : float or array_like, shape (T,)
             The end, or output times in order; they change no step.
         method : str
-            ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where energy
-            is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`: adaptive ones
+            ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
+            energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`: adaptive ones
             (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not depend on
             velocities.
         rtol : float

@@ -15,8 +15,12 @@ use visviva_core::expressions::graph::{Graph, Id, Node, number};
 use visviva_core::expressions::program::Output;
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::gauss;
-use visviva_core::generalized::run::{Integrator, Request, Solution, solve};
+use visviva_core::generalized::legendre;
+use visviva_core::generalized::linear::{Linear, modes};
+use visviva_core::generalized::one_freedom::OneFreedom;
+use visviva_core::generalized::run::{Integrator, Request, Section, Solution, solve};
 use visviva_core::generalized::structure::{MassMatrix, Structure};
+use visviva_core::generalized::variation::variational;
 use visviva_core::generalized::{Kind, Model, Source};
 use visviva_core::ode::run::Ending;
 use visviva_core::parallel::{for_chunks, thread_count};
@@ -312,6 +316,118 @@ impl GeneralizedModel {
         Ok((places, velocities, moved(py, state, &[length])?))
     }
 
+    /// The equilibria that Newton's method reaches from starts (S, n), `None` where it reaches none.
+    fn equilibria(
+        &self,
+        py: Python<'_>,
+        t: f64,
+        starts: Array<'_>,
+        parameters: Array<'_>,
+    ) -> PyResult<Vec<Option<Vec<f64>>>> {
+        let mut model = self.copy();
+        let n = model.source.coordinates;
+        let (starts, _) = copied("position", &starts, [None, Some(n)])?;
+        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
+        compute(py, 0, None, |ticker| {
+            let linear = Linear::new(&mut model)?;
+            let find = |start: &[f64]| {
+                ticker.tick()?;
+                Ok(linear.equilibrium(t, start, &parameters))
+            };
+            starts.chunks(n).map(find).collect::<Result<Vec<_>>>()
+        })?
+        .whole(py)
+    }
+
+    /// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
+    fn linearized<'py>(
+        &self,
+        py: Python<'py>,
+        t: f64,
+        position: Array<'py>,
+        parameters: Array<'py>,
+    ) -> PyResult<Bound<'py, PyDict>> {
+        let mut model = self.copy();
+        let n = model.source.coordinates;
+        let (position, _) = copied("position", &position, [Some(n)])?;
+        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
+        let (at, found) = compute(py, 0, None, |_| {
+            let at = Linear::new(&mut model)?.matrices(t, &position, &parameters);
+            let found = modes(&at, n)?;
+            Ok((at, found))
+        })?
+        .whole(py)?;
+        let result = PyDict::new(py);
+        result.set_item("mass", moved(py, at.mass, &[n, n])?)?;
+        result.set_item("damping", moved(py, at.damping, &[n, n])?)?;
+        result.set_item("stiffness", moved(py, at.stiffness, &[n, n])?)?;
+        result.set_item("forces", moved(py, at.forces, &[n])?)?;
+        result.set_item("eigenvalues", found.eigenvalues)?;
+        result.set_item(
+            "symmetric",
+            match found.symmetric {
+                None => None,
+                Some((squares, modes)) => Some((moved(py, squares, &[n])?, moved(py, modes, &[n, n])?)),
+            },
+        )?;
+        Ok(result)
+    }
+
+    /// Of one coordinate: turning points, period and action of the oscillation; with a turn, (period, action) of a rotation.
+    fn oscillation(
+        &self,
+        py: Python<'_>,
+        t: f64,
+        state: Array<'_>,
+        parameters: Array<'_>,
+        turn: Option<f64>,
+    ) -> PyResult<(f64, f64, f64, f64)> {
+        let mut model = self.copy();
+        let (state, _) = copied("state", &state, [Some(model.numbers())])?;
+        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
+        compute(py, 0, None, |_| {
+            let mut of = OneFreedom::new(&mut model, &state, &parameters, t)?;
+            if let Some(turn) = turn {
+                let [period, action] = of.rotation(turn)?;
+                return Ok((f64::NAN, f64::NAN, period, action));
+            }
+            let found = of.oscillation()?;
+            Ok((found.turning.0, found.turning.1, found.period, found.action))
+        })?
+        .whole(py)
+    }
+
+    /// Legendre's transform: nodes; the function, then the forces.
+    fn legendre(&self, py: Python<'_>) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
+        let source =
+            self.with(|model| legendre::transformed(&model.source)).map_err(|error| raised(py, error))?;
+        let roots: Vec<Id> = [source.function].into_iter().chain(source.forces.iter().copied()).collect();
+        Ok(shown(&source.graph, &roots))
+    }
+
+    /// A Lagrangian's parts of second, first and no degree in the velocities.
+    fn by_degree(&self) -> (Vec<NodeParts>, Vec<u32>) {
+        self.with(|model| {
+            let roots = legendre::by_degree(&mut model.source);
+            shown(&model.source.graph, &roots)
+        })
+    }
+
+    /// Routh's function without these coordinates: nodes; the function, then the velocities of those coordinates.
+    fn routhian(&self, py: Python<'_>, cyclic: Vec<usize>) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
+        let reduced = self.with(|model| legendre::routhian(&model.source, &cyclic));
+        let (source, velocities) = reduced.map_err(|error| raised(py, error))?;
+        let roots: Vec<Id> = [source.function].into_iter().chain(velocities).collect();
+        Ok(shown(&source.graph, &roots))
+    }
+
+    /// The same system with the flow's derivatives in its state.
+    fn variational(&self, py: Python<'_>) -> PyResult<Self> {
+        let model = self.copy();
+        let model = compute(py, 0, None, |_| variational(&model))?.whole(py)?;
+        Ok(Self { model: Mutex::new(model) })
+    }
+
     /// Runs states (B, 2n) with parameters (B, p) from a time to another.
     #[pyo3(signature = (asked, states, parameters, threads, progress))]
     fn run<'py>(
@@ -323,11 +439,11 @@ impl GeneralizedModel {
         threads: Option<i64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let model = self.copy();
+        let mut model = self.copy();
         let (states, [members, _]) = copied("states", &states, [None, Some(model.numbers())])?;
         let (parameters, _) =
             copied("parameters", &parameters, [Some(members), Some(model.source.parameters)])?;
-        let request = asked.request(py, &model)?;
+        let request = asked.request(py, &mut model)?;
         let threads = thread_count(threads).map_err(|error| raised(py, error))?;
         let (numbers, count) = (model.numbers(), model.source.parameters);
         let worked = compute(py, members as u64, progress.as_ref(), |ticker| {
@@ -358,11 +474,14 @@ struct Asked<'py> {
     rtol: f64,
     dt: Option<f64>,
     max_step: Option<f64>,
+    max_steps: u64,
     outputs: Option<Array<'py>>,
+    /// Nodes, a root among them, and a direction: whose zeros are wanted.
+    section: Option<(Vec<NodeParts>, u32, f64)>,
 }
 
 impl Asked<'_> {
-    fn request(&self, py: Python<'_>, model: &Model) -> PyResult<Request> {
+    fn request(&self, py: Python<'_>, model: &mut Model) -> PyResult<Request> {
         let integrator =
             match gauss::method(&self.method) {
                 Some(method) => Integrator::Gauss(method),
@@ -371,12 +490,20 @@ impl Asked<'_> {
                 })?),
             };
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
+        let section = self.section.as_ref().map(|(nodes, root, direction)| {
+            let ids = added(&mut model.source.graph, nodes)?;
+            let code = Arc::new(model.function(&[chosen(&ids, *root)?])?);
+            Ok(Section { code, direction: *direction })
+        });
+        let section = section.transpose().map_err(|error| raised(py, error))?;
         Ok(Request {
+            section,
             integrator,
             span: self.span,
             rtol: self.rtol,
             dt: self.dt,
             max_step: self.max_step,
+            max_steps: self.max_steps,
             outputs,
             held: Structure::of(model).conserves_energy,
         })
@@ -410,6 +537,14 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
     let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
     let y: Vec<f64> = solutions.iter().flat_map(|solution| solution.y.iter().copied()).collect();
     let rows = t.len();
+    let crossings: Vec<usize> = solutions.iter().map(|solution| solution.crossings.t.len()).collect();
+    let at: Vec<f64> = solutions.iter().flat_map(|solution| solution.crossings.t.iter().copied()).collect();
+    let there: Vec<f64> =
+        solutions.iter().flat_map(|solution| solution.crossings.y.iter().copied()).collect();
+    let found = at.len();
+    result.set_item("crossings", crossings)?;
+    result.set_item("crossing_times", moved(py, at, &[found])?)?;
+    result.set_item("crossing_states", moved(py, there, &[found, numbers])?)?;
     result.set_item("lengths", lengths)?;
     result.set_item("t", moved(py, t, &[rows])?)?;
     result.set_item("y", moved(py, y, &[rows, numbers])?)?;

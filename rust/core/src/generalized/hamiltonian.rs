@@ -37,6 +37,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
         conjugates,
         slopes,
         mass: vec![],
+        right: vec![],
         energy,
     })
 }

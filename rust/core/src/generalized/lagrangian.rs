@@ -59,7 +59,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
         let (systems, rates) = solved_in_blocks(&mut source, &mass, &right);
         (systems, rates, vec![])
     } else {
-        let system = constraints::bordered(&mut source, &mass, right, &motion);
+        let system = constraints::bordered(&mut source, &mass, right.clone(), &motion);
         let constraints = system.right.len() - n;
         let multipliers = (n..n + constraints).map(|index| Output::Unknown(index as u32)).collect();
         (vec![system], (0..n).map(|index| Output::Unknown(index as u32)).collect(), multipliers)
@@ -73,6 +73,7 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
         conjugates: momenta,
         slopes,
         mass,
+        right,
         energy,
     })
 }

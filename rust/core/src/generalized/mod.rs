@@ -5,16 +5,21 @@
 //! matrix is inverted but with numbers.
 
 mod constraints;
+mod elimination;
 pub mod evaluate;
 mod fixed;
 pub mod gauss;
 mod hamiltonian;
 mod lagrangian;
+pub mod legendre;
+pub mod linear;
 pub mod model;
 pub mod motion;
+pub mod one_freedom;
 pub mod projection;
 pub mod run;
 pub mod structure;
+pub mod variation;
 
 pub use model::{Kind, Model, Source};
 

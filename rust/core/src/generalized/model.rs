@@ -60,6 +60,10 @@ pub struct Model {
     pub slopes: Vec<Id>,
     /// ∂²L/∂q̇∂q̇; empty of a Hamiltonian.
     pub mass: Vec<Vec<Id>>,
+    /// What M q̈ is equal to; empty of a Hamiltonian.
+    pub right: Vec<Id>,
+    /// Numbers of a state.
+    pub numbers: usize,
     /// Jacobi's integral Σ q̇ ∂L/∂q̇ − L, or H.
     pub energy: Id,
     /// The equations as code.
@@ -80,7 +84,8 @@ impl Model {
             Kind::Lagrangian => lagrangian::derive(source)?,
             Kind::Hamiltonian => hamiltonian::derive(source)?,
         };
-        let Derived { source, form, systems, rates, multipliers, conjugates, slopes, mass, energy } = derived;
+        let Derived { source, form, systems, rates, multipliers, conjugates, slopes, mass, right, energy } =
+            derived;
         let inputs = (2 * source.coordinates, source.parameters);
         let code = Arc::new(compile(&source.graph, inputs, &systems, &rates)?);
         let mut outputs: Vec<Output> = conjugates.iter().copied().chain([energy]).map(Output::Node).collect();
@@ -96,6 +101,8 @@ impl Model {
             conjugates,
             slopes,
             mass,
+            right,
+            numbers: inputs.0,
             energy,
             code,
             columns,
@@ -107,7 +114,7 @@ impl Model {
 
     /// Numbers of a state.
     pub fn numbers(&self) -> usize {
-        2 * self.source.coordinates
+        self.numbers
     }
 
     /// Other expressions of the same state as code.
@@ -150,6 +157,7 @@ pub(super) struct Derived {
     pub(super) conjugates: Vec<Id>,
     pub(super) slopes: Vec<Id>,
     pub(super) mass: Vec<Vec<Id>>,
+    pub(super) right: Vec<Id>,
     pub(super) energy: Id,
 }
 

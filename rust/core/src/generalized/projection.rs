@@ -94,7 +94,7 @@ impl Projector {
     /// The residuals at a state: of the holonomic constraints, and of the rates of all.
     pub fn residuals(&mut self, t: f64, y: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let n = self.of.coordinates;
-        let mut of = |machine: &mut Machine<f64>, count: usize| {
+        let of = |machine: &mut Machine<f64>, count: usize| {
             machine.state().copy_from_slice(y);
             machine.run(t);
             (0..count).map(|index| machine.output(n + index)).collect()

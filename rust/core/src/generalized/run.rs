@@ -9,10 +9,10 @@ use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
 use crate::error::{Error, Result};
-use crate::expressions::Machine;
+use crate::expressions::{Code, Machine};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::embedded::EmbeddedStep;
-use crate::ode::events::Watch;
+use crate::ode::events::{Condition, Events, Watch, Zeros};
 use crate::ode::norm::{Norm, RootMeanSquare};
 use crate::ode::run::{Ending, Recorder, Step, run};
 use crate::ode::state::State;
@@ -22,6 +22,7 @@ use crate::ode::table::Table;
 use crate::ode::trial::Trial;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
+use std::sync::Arc;
 
 /// What takes the steps.
 #[derive(Clone, Copy, Debug)]
@@ -45,10 +46,36 @@ pub struct Request {
     pub dt: Option<f64>,
     /// The longest step.
     pub max_step: Option<f64>,
+    /// The most steps.
+    pub max_steps: u64,
     /// Output times; the nodes if not given.
     pub outputs: Option<Vec<f64>>,
     /// Whether steps are held where energy is conserved.
     pub held: bool,
+    /// A function of the state whose zeros are wanted.
+    pub section: Option<Section>,
+}
+
+/// Zeros of an expression on the way.
+#[derive(Clone, Debug)]
+pub struct Section {
+    /// The expression.
+    pub code: Arc<Code>,
+    /// Upwards if positive, downwards if negative, else both.
+    pub direction: f64,
+}
+
+/// A section at work.
+struct Crossings {
+    machine: Machine<f64>,
+}
+
+impl Events for Crossings {
+    fn value(&mut self, _: usize, t: f64, y: &[f64]) -> Result<f64> {
+        let mut found = [0.0];
+        self.machine.evaluate(t, y, &mut found);
+        Ok(found[0])
+    }
 }
 
 /// What came of it.
@@ -68,6 +95,8 @@ pub struct Solution {
     pub evaluations: u64,
     /// The longest step.
     pub h: f64,
+    /// The zeros of the section, if there is one.
+    pub crossings: Zeros,
 }
 
 /// δ of Gauss's methods for a relative tolerance: the error goes about as its square.
@@ -95,7 +124,15 @@ pub fn solve(
         RootMeanSquare { atol: vec![request.rtol * 1e-3; y0.len()], rtol: vec![request.rtol; y0.len()] };
     let norm = Norm::root_mean_square(mean);
     let max_step = request.max_step.unwrap_or(f64::INFINITY);
-    let mut table = Table::new(request.outputs.as_deref(), false, None, Watch::new(vec![]));
+    let mut crossings = request
+        .section
+        .as_ref()
+        .map(|section| Crossings { machine: Machine::new(section.code.clone(), parameters) });
+    let conditions =
+        request.section.iter().map(|section| Condition { direction: section.direction, last: None });
+    let watch = Watch::new(conditions.collect());
+    let events = crossings.as_mut().map(|crossings| crossings as &mut dyn Events);
+    let mut table = Table::new(request.outputs.as_deref(), false, events, watch);
     if t0 == end {
         table.still(request.span, y0)?;
         let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
@@ -107,10 +144,11 @@ pub fn solve(
             steps: 0,
             evaluations: 0,
             h: 0.0,
+            crossings: Zeros::default(),
         });
     }
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
-    let mut recorder = Counted { table, steps: 0, last: 0.0 };
+    let mut recorder = Counted { table, steps: 0, last: 0.0, most: request.max_steps };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut collocation = 0;
     let outcome = match request.integrator {
@@ -160,10 +198,19 @@ pub fn solve(
         Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
         Err(error) => return Err(error),
     };
-    let Counted { mut table, steps, last } = recorder;
+    let Counted { mut table, steps, last, .. } = recorder;
     let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
     let evaluations = system.evaluations() + collocation;
-    Ok(Solution { ending, failure, t, y, steps, evaluations, h: last })
+    Ok(Solution {
+        ending,
+        failure,
+        t,
+        y,
+        steps,
+        evaluations,
+        h: last,
+        crossings: table.into_zeros().pop().unwrap_or_default(),
+    })
 }
 
 /// A table that counts steps.
@@ -172,6 +219,8 @@ struct Counted<'a> {
     steps: u64,
     /// The longest step.
     last: f64,
+    /// The most steps.
+    most: u64,
 }
 
 impl Recorder for Counted<'_> {
@@ -180,6 +229,12 @@ impl Recorder for Counted<'_> {
     }
 
     fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
+        if self.steps == self.most {
+            return Err(Error::Convergence {
+                message: format!("{} steps do not reach the end; pass a larger max_steps", self.most),
+                time: step.from,
+            });
+        }
         self.steps += 1;
         let length = (step.to - step.from).abs();
         self.last = if length > self.last { length } else { self.last };

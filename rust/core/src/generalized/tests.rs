@@ -61,8 +61,10 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         rtol: 1e-12,
         dt: None,
         max_step: None,
+        max_steps: u64::MAX,
         outputs: Some(vec![end]),
         held: true,
+        section: None,
     };
     let control = Control::default();
     let start = std::time::Instant::now();

@@ -52,6 +52,12 @@ pub fn method(name: &str) -> Option<&'static Method> {
     METHODS.iter().find(|method| method.name == name)
 }
 
+/// Nodes on 0 … 1 and weights of the quadrature of order 16.
+pub(super) fn quadrature() -> (&'static [f64; WIDTH], &'static [f64; WIDTH]) {
+    let table = &tables::GAUSS16;
+    (&table.c.0, &table.b[0].0)
+}
+
 impl Table {
     /// The polynomial through the stages at these fractions of the step: a row for what each stage contributes.
     fn at(&self, fractions: &Lanes) -> [Lanes; WIDTH] {

@@ -1,7 +1,6 @@
-//! Gauss's collocation methods: nodes, weights, what leads on to the next step. Written by `tools/gauss.py`.
+//! Gauss's collocation methods: nodes, weights, what leads on. Written by `tools/gauss.py`.
 //!
-//! W. B. Gragg & H. J. Stetter, J. ACM 11 (1964) 188; J. C. Butcher, Math. Comp. 18 (1964) 50. Lanes beyond the
-//! stages are at the start of the step.
+//! J. C. Butcher, Math. Comp. 18 (1964) 50. Lanes beyond the stages are at the start of the step.
 
 #![allow(clippy::unreadable_literal, clippy::excessive_precision, reason = "generated")]
 

@@ -1,0 +1,262 @@
+"""What a system is near a state, over a period, and through a section: the results of its methods."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["Equilibrium", "Linearization", "PoincareSection"]
+
+#: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
+_ON_THE_AXIS = 1e-7
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Equilibrium:
+    """A place where the system stays.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n,)
+    stable : bool
+        Whether small motions about it stay small, as the linear equations tell.
+    frequencies : ndarray
+        Angular frequencies of small oscillations, ascending.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [(round(float(e.position[0]), 6), e.stable) for e in vv.systems.pendulum().equilibria()]
+    [(-3.141593, False), (0.0, True), (3.141593, False)]
+    """
+
+    position: NDArray[np.float64]
+    stable: bool
+    frequencies: NDArray[np.float64]
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False)
+class Linearization:
+    """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n,)
+    mass, damping, stiffness : ndarray, shape (n, n)
+        M, C (with gyroscopic terms) and K.
+    eigenvalues : ndarray of complex, shape (2n,)
+        λ of motions as exp(λ t).
+    frequencies : ndarray
+        Angular frequencies of what oscillates, ascending.
+    modes : ndarray, shape (n, n), or None
+        Rows with ξᵀ M ξ = 1, in the order of the squared frequencies; None with damping or gyroscopic terms.
+    squares : ndarray, shape (n,), or None
+        Squared frequencies, those of unstable modes negative.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> small = vv.systems.pendulum(g=9.81, l=2.0).linearize(at=[0.0])
+    >>> bool(abs(small.frequencies[0] - (9.81 / 2.0) ** 0.5) < 1e-15), small.stable
+    (True, True)
+    """
+
+    position: NDArray[np.float64]
+    mass: NDArray[np.float64]
+    damping: NDArray[np.float64]
+    stiffness: NDArray[np.float64]
+    eigenvalues: NDArray[np.complex128]
+    modes: NDArray[np.float64] | None
+    squares: NDArray[np.float64] | None
+
+    @property
+    def frequencies(self) -> NDArray[np.float64]:
+        """Angular frequencies of what oscillates, ascending."""
+        if self.squares is not None:
+            return np.sqrt(self.squares[self.squares > 0.0])
+        imaginary = np.sort(self.eigenvalues.imag)
+        return imaginary[imaginary > _ON_THE_AXIS * np.abs(self.eigenvalues).max()]
+
+    @property
+    def stable(self) -> bool:
+        """Whether no small motion grows, as the linear equations tell; one that neither grows nor returns counts."""
+        if self.squares is not None:
+            return bool(np.all(self.squares >= -(_ON_THE_AXIS**2) * np.abs(self.squares).max()))
+        return bool(np.all(self.eigenvalues.real <= _ON_THE_AXIS * np.abs(self.eigenvalues).max()))
+
+    def at(self, t: ArrayLike, displacement: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
+        """Small motions at any time, exactly.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            Times.
+        displacement, velocity : array_like, shape (n,)
+            ξ and ξ̇ at t = 0.
+
+        Returns
+        -------
+        ndarray, shape (T, n) or (n,)
+
+        Raises
+        ------
+        InvalidInput
+            With damping or gyroscopic terms.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> small = vv.systems.coupled_oscillators().linearize()
+        >>> small.at(0.0, [1.0, 0.0], [0.0, 0.0]).round(12)
+        array([1., 0.])
+        """
+        if self.modes is None or self.squares is None:
+            raise InvalidInput(
+                "t", "modes move by themselves only without damping and gyroscopic terms; run the system"
+            )
+        n = len(self.position)
+        start, rate = float_array("displacement", displacement, (n,)), float_array("velocity", velocity, (n,))
+        weights = self.modes @ self.mass
+        times = np.asarray(float_array("t", t, None))[..., None]
+        root = np.sqrt(np.abs(self.squares))
+        still = root == 0.0
+        safe = np.where(still, 1.0, root)
+        grows = self.squares < 0.0
+        even = np.where(grows, np.cosh(np.where(grows, root, 0.0) * times), np.cos(np.where(grows, 0.0, root) * times))
+        odd = np.where(grows, np.sinh(np.where(grows, root, 0.0) * times), np.sin(np.where(grows, 0.0, root) * times))
+        amplitudes = even * (weights @ start) + np.where(still, times, odd / safe) * (weights @ rate)
+        moved: NDArray[np.float64] = amplitudes @ self.modes
+        return moved
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, eq=False)
+class PoincareSection:
+    """Where a motion passes through a section.
+
+    Attributes
+    ----------
+    t : ndarray, shape (C,)
+    position, momentum : ndarray, shape (C, n)
+    coordinates : tuple of str
+
+    Examples
+    --------
+    >>> import sympy as sp, visviva as vv
+    >>> section = vv.systems.henon_heiles().poincare("x", t=100.0)
+    >>> section.position.shape[1], float(abs(section.position[:, 0]).max()) < 1e-13
+    (2, True)
+    """
+
+    t: NDArray[np.float64]
+    position: NDArray[np.float64]
+    momentum: NDArray[np.float64]
+    coordinates: tuple[str, ...]
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def plot(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:
+        """Draw the points of a coordinate and its momentum.
+
+        Parameters
+        ----------
+        name : str, optional
+            The coordinate; the last if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        InvalidInput
+            For a coordinate that is not there.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.henon_heiles().poincare("x", t=50.0).plot("y").get_xlabel()
+        'y'
+        """
+        from visviva.plot import axes
+
+        name = self.coordinates[-1] if name is None else name
+        if name not in self.coordinates:
+            raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.coordinates)}")
+        index = self.coordinates.index(name)
+        ax = axes(ax)
+        ax.plot(self.position[:, index], self.momentum[:, index], ".", markersize=2)
+        ax.set_xlabel(name)
+        ax.set_ylabel(f"momentum of {name}")
+        return ax
+
+
+def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
+    """Small motions of a Lagrangian about a place."""
+    n = len(system.coordinates)
+    place = system._start()[:n] if at is None else float_array("at", at, (n,))
+    found = system._model.linearized(system.t0, place, system._values)
+    scale = np.abs(found["stiffness"]).max() * (1.0 + np.abs(place).max())
+    if np.abs(found["forces"]).max() > 1e-8 * max(scale, 1e-300):
+        worst = int(np.argmax(np.abs(found["forces"])))
+        raise InvalidInput(
+            "at",
+            f"expected an equilibrium, but a force of {found['forces'][worst]:.3g} acts on "
+            f"{system.coordinates[worst]!r} there; see equilibria()",
+        )
+    symmetric = found["symmetric"]
+    return Linearization(
+        place,
+        found["mass"],
+        found["damping"],
+        found["stiffness"],
+        np.array([complex(*value) for value in found["eigenvalues"]]),
+        None if symmetric is None else symmetric[1],
+        None if symmetric is None else symmetric[0],
+    )
+
+
+def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
+    """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
+    n = len(system.coordinates)
+    if near is None:
+        side = max(2, int(2000 ** (1.0 / n)))
+        line = np.linspace(-np.pi, np.pi, min(side, 25))
+        # Not on the symmetry lines themselves, where Newton's method may be caught.
+        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
+        starts = np.stack([axis.ravel() for axis in grid], axis=1)
+    else:
+        starts = np.atleast_2d(float_array("near", near, None))
+        if starts.shape[1] != n:
+            raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
+    found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
+    places: list[NDArray[np.float64]] = []
+    for place in found:
+        if place is None or (near is None and np.abs(place).max() > np.pi + 1e-6):
+            continue
+        # What is 0 but for round-off is shown as such.
+        candidate = np.where(np.abs(place) < 1e-14, 0.0, place)
+        if not any(np.allclose(candidate, other, rtol=1e-8, atol=1e-8) for other in places):
+            places.append(candidate)
+    results = []
+    for place in sorted(places, key=tuple):
+        small = linearization(system, place)
+        results.append(Equilibrium(place, small.stable, small.frequencies))
+    return results

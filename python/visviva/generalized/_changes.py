@@ -1,0 +1,197 @@
+"""Other descriptions of a system: Hamiltonians of Lagrangians and back, Routh's function, the flow's derivatives."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva.errors import ConvergenceError, InvalidInput
+from visviva.generalized._source import Source, _label
+from visviva.generalized._symbolic import sympy, time
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._system import GeneralizedSystem
+
+__all__ = ["boundary_value", "flow_jacobian", "legendre", "lyapunov_exponents", "routhian"]
+
+#: The most steps of a run, and of one that tries a velocity.
+MOST_STEPS = 100_000_000
+_MOST_STEPS_OF_A_TRIAL = 20_000
+
+
+def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
+    """Give the Hamiltonian of a Lagrangian, or the Lagrangian of a Hamiltonian, at the same state."""
+    from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._lagrangian import Lagrangian
+
+    source = system._source
+    to_hamiltonian = source.kind == "lagrangian"
+    nodes, roots = system._model.legendre()
+    symbols = source.symbols
+    if symbols is not None:
+        sp = sympy()
+        if to_hamiltonian:
+            second = tuple(sp.Symbol(f"p_{name}") for name in source.names)
+        elif any(isinstance(each, sp.Symbol) for each in symbols[0]):
+            second = tuple(sp.Symbol(f"v_{name}") for name in source.names)
+        else:
+            second = tuple(each.diff(time._sympy_()) for each in symbols[0])
+        symbols = (symbols[0], second, symbols[2])
+    description = source.description | {
+        "kind": "hamiltonian" if to_hamiltonian else "lagrangian",
+        "nodes": nodes,
+        "function": roots[0],
+        "forces": roots[1:],
+    }
+    made = Source(description["kind"], source.names, symbols, source.parameters, description)
+    other: GeneralizedSystem = object.__new__(Hamiltonian if to_hamiltonian else Lagrangian)
+    second_half = None
+    if system.position is not None:
+        columns = system._model.columns(np.array([system.t0]), system._start()[None, :], system._values[None, :])
+        second_half = columns[0, : len(source.names)]
+    other._prepare(made, list(system.parameters.values()), (system.position, second_half, system.t0))
+    return other
+
+
+def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float] | None) -> GeneralizedSystem:
+    """Give Routh's function without cyclic coordinates, their momenta as parameters ``p_<name>``."""
+    from visviva.generalized._lagrangian import Lagrangian
+
+    source, n = system._source, len(system.coordinates)
+    if source.description["forces"] or source.description["dissipation"] is not None or system._constraints():
+        raise InvalidInput("L", "Routh's function is that of a Lagrangian without further forces and constraints")
+    given = dict.fromkeys(system.cyclic) if momenta is None else {_label(k): v for k, v in momenta.items()}
+    for name in given:
+        if name not in system.coordinates:
+            raise InvalidInput("momenta", f"there is no coordinate {name!r}; there are {list(system.coordinates)}")
+        if name not in system.cyclic:
+            raise InvalidInput("momenta", f"{name!r} is not cyclic; cyclic are {system.cyclic or 'none'}")
+    if not given:
+        raise InvalidInput("momenta", "no coordinate is cyclic, and there is nothing to reduce")
+    places = [system.coordinates.index(name) for name in given]
+    kept = [index for index in range(n) if index not in places]
+    if not kept:
+        raise InvalidInput("momenta", "all coordinates are cyclic: nothing would be left to run")
+    nodes, roots = system._model.routhian(places)
+    at_start = None
+    if any(value is None for value in given.values()):
+        columns = system._model.columns(np.array([system.t0]), system._start()[None, :], system._values[None, :])
+        at_start = columns[0]
+    values = [
+        at_start[place] if value is None and at_start is not None else value
+        for place, value in zip(places, given.values(), strict=True)
+    ]
+    names = tuple(system.coordinates[index] for index in kept)
+    further = tuple(f"p_{name}" for name in given)
+    symbols = source.symbols
+    if symbols is not None:
+        sp = sympy()
+        first, second, parameters = symbols
+        symbols = (
+            tuple(first[i] for i in kept),
+            tuple(second[i] for i in kept),
+            (*parameters, *(sp.Symbol(name) for name in further)),
+        )
+    description = source.description | {
+        "coordinates": len(kept),
+        "parameters": len(source.parameters) + len(further),
+        "nodes": nodes,
+        "function": roots[0],
+    }
+    made = Source("lagrangian", names, symbols, (*source.parameters, *further), description)
+    other: Lagrangian = object.__new__(Lagrangian)
+    position = None if system.position is None else system.position[kept]
+    other._prepare(made, [*system.parameters.values(), *values], (position, system._second[kept], system.t0))
+    return other
+
+
+def flow_jacobian(
+    system: GeneralizedSystem, t: float, *, rtol: float = 1e-12, method: str = "gauss16", most_steps: int = MOST_STEPS
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Give the state at ``t``, and its derivatives with respect to the state at the start."""
+    n = 2 * len(system.coordinates)
+    asked, _ = system._asked(t, method, rtol, None, None)
+    asked["max_steps"] = most_steps
+    start = np.concatenate([system._start(), np.eye(n).ravel()])
+    model = system._model.variational()
+    result = model.run(asked, start[None, :], system._values[None, :], 1, None)
+    if result["failures"][0] is not None:
+        raise ConvergenceError(result["failures"][0], float(result["t"][-1]))
+    last = result["y"][-1]
+    return last[:n], last[n:].reshape(n, n)
+
+
+def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
+    """Give all exponents, by the variational equations and orthonormal frames."""
+    n = 2 * len(system.coordinates)
+    model = system._model.variational()
+    parts = max(1, round(abs(t - system.t0) / interval))
+    times = np.linspace(system.t0, t, parts + 1)
+    state, frame, sums = system._start(), np.eye(n), np.zeros(n)
+    for begin, end in pairwise(times):
+        asked = {
+            "method": "gauss16",
+            "span": (float(begin), float(end)),
+            "rtol": rtol,
+            "dt": None,
+            "max_step": None,
+            "max_steps": MOST_STEPS,
+            "outputs": np.array([end]),
+            "section": None,
+        }
+        both = np.concatenate([state, frame.ravel()])
+        result = model.run(asked, both[None, :], system._values[None, :], 1, None)
+        if result["failures"][0] is not None:
+            raise ConvergenceError(result["failures"][0], float(begin))
+        last = result["y"][-1]
+        state = last[:n]
+        frame, sizes = np.linalg.qr(last[n:].reshape(n, n))
+        sums += np.log(np.abs(np.diag(sizes)))
+    return np.sort(sums / (t - system.t0))[::-1]
+
+
+def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, rtol: float) -> GeneralizedSystem:
+    """Give the system with the velocities (or momenta) that lead to a place at a time, by Newton's method."""
+    from visviva._arrays import float_array
+
+    n = len(system.coordinates)
+    goal = float_array("position", position, (n,))
+
+    def missed(other: GeneralizedSystem) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+        try:
+            reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
+        except (ConvergenceError, InvalidInput):
+            return np.inf, np.full(n, np.nan), np.eye(2 * n)
+        miss = reached[:n] - goal
+        return float(np.abs(miss).max()), miss, jacobian
+
+    other, (size, miss, jacobian) = system, missed(system)
+    for _ in range(50):
+        if size <= 1e-13 * (1.0 + np.abs(goal).max()):
+            return other
+        try:
+            change = np.linalg.solve(jacobian[:n, n:], miss)
+        except np.linalg.LinAlgError:
+            break
+        # Newton's step, halved until it leads nearer.
+        for _ in range(12):
+            trial = other.at(**{system._second_name: other._second - change})
+            new_size, new_miss, new_jacobian = missed(trial)
+            if new_size < size:
+                break
+            change = 0.5 * change
+        else:
+            # Nearer is what round-off does not allow.
+            if size <= 1e-10 * (1.0 + np.abs(goal).max()):
+                return other
+            break
+        other, size, miss, jacobian = trial, new_size, new_miss, new_jacobian
+    raise ConvergenceError(
+        "no motion through both places was found from this velocity; start with another one, away from conjugate points"
+    )

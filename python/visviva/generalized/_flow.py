@@ -1,0 +1,197 @@
+"""What a system does with its flow: sections, derivatives, exponents, motions through two places."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Self
+
+from visviva._arrays import number
+from visviva.errors import ConvergenceError, InvalidInput
+
+if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._analysis import PoincareSection
+    from visviva.generalized._nodes import Node
+
+__all__ = ["Flow"]
+
+
+class Flow:
+    """Base of `GeneralizedSystem`: the methods that ask for more than a run."""
+
+    __slots__ = ()
+
+    def poincare(
+        self: Any,
+        section: Any,
+        t: float,
+        *,
+        direction: int = 1,
+        method: str = "gauss16",
+        rtol: float = 1e-12,
+        dt: float | None = None,
+    ) -> PoincareSection:
+        """Where the motion passes through a section, to round-off.
+
+        Parameters
+        ----------
+        section : str, sympy.Expr or callable
+            A coordinate that passes 0, or an expression of the state and time that does.
+        t : float
+            The end.
+        direction : {1, -1, 0}
+            Upwards, downwards, or both.
+        method, rtol, dt
+            As in `run`.
+
+        Returns
+        -------
+        PoincareSection
+
+        Raises
+        ------
+        InvalidInput
+            For what cannot be run.
+        ConvergenceError
+            At a singularity.
+
+        References
+        ----------
+        M. Hénon, Physica D 5 (1982) 412: points on the section itself, not interpolated.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> points = vv.systems.henon_heiles().poincare("x", t=200.0)
+        >>> bool(abs(points.position[:, 0]).max() < 1e-13)
+        True
+        """
+        from visviva.generalized._analysis import PoincareSection
+
+        if direction not in (1, -1, 0):
+            raise InvalidInput("direction", f"expected 1, -1 or 0, got {direction!r}")
+        if isinstance(section, str):
+            if section not in self.coordinates:
+                raise InvalidInput("section", f"there is no coordinate {section!r}; there are {list(self.coordinates)}")
+            nodes: list[Node] = [("variable", [], float(self.coordinates.index(section)))]
+            root = 0
+        else:
+            nodes, roots = self._source.nodes("section", [section])
+            root = roots[0]
+        asked, _ = self._asked(number("t", t), method, rtol, dt, None)
+        asked["section"] = (nodes, root, float(direction))
+        self._check_start()
+        result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)
+        times, states = result["crossing_times"], result["crossing_states"]
+        if result["failures"][0] is not None:
+            raise ConvergenceError(result["failures"][0], float(times[-1]) if len(times) else self.t0)
+        n = len(self.coordinates)
+        momentum = states[:, n:]
+        if self._source.kind == "lagrangian" and len(times):
+            momentum = self._model.columns(times, states, self._values[None, :])[:, :n]
+        return PoincareSection(times, states[:, :n], momentum, self.coordinates)
+
+    def flow_jacobian(self: Any, t: float, *, rtol: float = 1e-12) -> NDArray[np.float64]:
+        """Derivatives of the state at a time with respect to the state at the start, by the variational equations.
+
+        Parameters
+        ----------
+        t : float
+            The time.
+        rtol : float
+            As in `run`.
+
+        Returns
+        -------
+        ndarray, shape (2n, 2n)
+            Of a Hamiltonian it is symplectic; its determinant is 1 (Liouville).
+
+        Raises
+        ------
+        InvalidInput
+            With constraints, or more than 16 coordinates.
+        ConvergenceError
+            At a singularity.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> flow = vv.systems.henon_heiles().flow_jacobian(10.0)
+        >>> bool(abs(np.linalg.det(flow) - 1.0) < 1e-12)
+        True
+        """
+        from visviva.generalized._changes import flow_jacobian
+
+        return flow_jacobian(self, number("t", t), rtol=rtol)[1]
+
+    def lyapunov_exponents(self: Any, t: float, *, interval: float = 1.0, rtol: float = 1e-12) -> NDArray[np.float64]:
+        """Lyapunov's exponents over a time, the largest first.
+
+        Parameters
+        ----------
+        t : float
+            The end.
+        interval : float
+            The time after which small differences are made orthonormal again.
+        rtol : float
+            As in `run`.
+
+        Returns
+        -------
+        ndarray, shape (2n,)
+
+        Raises
+        ------
+        InvalidInput
+            As `flow_jacobian`.
+
+        References
+        ----------
+        G. Benettin, L. Galgani, A. Giorgilli & J.-M. Strelcyn, Meccanica 15 (1980) 9.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> exponents = vv.systems.henon_heiles().lyapunov_exponents(50.0)
+        >>> bool(abs(exponents.sum()) < 1e-12)
+        True
+        """
+        from visviva.generalized._changes import lyapunov_exponents
+
+        interval, t = number("interval", interval), number("t", t)
+        if interval <= 0.0:
+            raise InvalidInput("interval", f"expected a positive number, got {interval!r}")
+        if t == self.t0:
+            raise InvalidInput("t", f"expected another time than the start, {self.t0:g}")
+        return lyapunov_exponents(self, t, interval=interval, rtol=rtol)
+
+    def boundary_value(self, t: float, position: ArrayLike, *, rtol: float = 1e-12) -> Self:
+        """The system with the velocities (or momenta) at the start that lead to a place at a time.
+
+        Parameters
+        ----------
+        t : float
+            The time of arrival.
+        position : array_like, shape (n,)
+            The place.
+        rtol : float
+            As in `run`.
+
+        Raises
+        ------
+        ConvergenceError
+            If Newton's method finds no such motion from the present velocity.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> thrown = vv.systems.pendulum(position=[0.0], velocity=[1.0]).boundary_value(0.5, [0.4])
+        >>> thrown.run(0.5).position[-1].round(12)
+        array([0.4])
+        """
+        from visviva.generalized._changes import boundary_value
+
+        system: Any = self
+        found: Self = boundary_value(system, number("t", t), position, rtol=rtol)
+        return found

@@ -1,0 +1,156 @@
+//! Near a state: equilibria, and the linear equations of small motions about them.
+//!
+//! The one idea: at rest nothing is left of the equations but F(q) = 0, whose zeros Newton's method finds; the derivatives
+//! there, M, C and K of M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
+
+use super::model::{Kind, Model};
+use crate::error::{Error, Result};
+use crate::expressions::{Code, Id, Machine};
+use nalgebra::{DMatrix, DVector};
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Newton's steps to an equilibrium.
+const MOST_STEPS: u32 = 100;
+/// Corrections below this, relative to the place, are round-off.
+const FOUND: f64 = 1e-13;
+
+/// Codes of forces at rest and of the matrices of small motions.
+#[derive(Clone, Debug)]
+pub struct Linear {
+    n: usize,
+    /// F (n), ∂F/∂q (n × n), ∂F/∂v (n × n), M (n × n).
+    code: Arc<Code>,
+}
+
+/// The matrices of M ξ̈ + C ξ̇ + K ξ = 0, row by row.
+#[derive(Clone, Debug)]
+pub struct Matrices {
+    /// M.
+    pub mass: Vec<f64>,
+    /// C, with damping and gyroscopic terms.
+    pub damping: Vec<f64>,
+    /// K.
+    pub stiffness: Vec<f64>,
+    /// F at the place: zero at an equilibrium.
+    pub forces: Vec<f64>,
+}
+
+impl Linear {
+    /// Of a Lagrangian without constraints.
+    ///
+    /// # Errors
+    /// Another system; expressions that are too large.
+    pub fn new(model: &mut Model) -> Result<Self> {
+        if model.source.kind != Kind::Lagrangian || !model.multipliers.is_empty() {
+            return Err(Error::invalid(
+                "L",
+                "small motions are those of a Lagrangian without constraints; transform or eliminate first",
+            ));
+        }
+        let n = model.source.coordinates;
+        let (q, v) = model.source.halves();
+        let graph = &mut model.source.graph;
+        let one = graph.constant(1.0);
+        let mut outputs: Vec<Id> = model.right.clone();
+        for numbers in [&q, &v] {
+            let mut columns = Vec::new();
+            for &number in numbers {
+                columns.push(graph.tangent(&model.right, &HashMap::from([(number, one)])));
+            }
+            for i in 0..n {
+                outputs.extend(columns.iter().map(|column| column[i]));
+            }
+        }
+        outputs.extend(model.mass.iter().flatten());
+        Ok(Self { n, code: Arc::new(model.function(&outputs)?) })
+    }
+
+    /// The matrices at a place, at rest.
+    pub fn matrices(&self, t: f64, q: &[f64], parameters: &[f64]) -> Matrices {
+        let n = self.n;
+        let mut machine = Machine::new(self.code.clone(), parameters);
+        let mut state = q.to_vec();
+        state.resize(2 * n, 0.0);
+        let mut found = vec![0.0; self.code.outputs()];
+        machine.evaluate(t, &state, &mut found);
+        let block = |index: usize, sign: f64| -> Vec<f64> {
+            found[n + index * n * n..n + (index + 1) * n * n].iter().map(|x| sign * x).collect()
+        };
+        Matrices {
+            forces: found[..n].to_vec(),
+            stiffness: block(0, -1.0),
+            damping: block(1, -1.0),
+            mass: block(2, 1.0),
+        }
+    }
+
+    /// The equilibrium that Newton's method reaches from a place, if it reaches one.
+    pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<Vec<f64>> {
+        let n = self.n;
+        let mut q = start.to_vec();
+        for _ in 0..MOST_STEPS {
+            let at = self.matrices(t, &q, parameters);
+            let slope = DMatrix::from_row_slice(n, n, &at.stiffness);
+            let correction = slope.lu().solve(&DVector::from_column_slice(&at.forces))?;
+            let mut largest = 0.0;
+            for (q, correction) in q.iter_mut().zip(correction.iter()) {
+                if !correction.is_finite() {
+                    return None;
+                }
+                *q += correction;
+                let size = correction.abs() / (1.0 + q.abs());
+                largest = if size > largest { size } else { largest };
+            }
+            if largest < FOUND {
+                return Some(q);
+            }
+        }
+        None
+    }
+}
+
+/// The eigenvalues of small motions as (real, imaginary), and, where they are those of a symmetric pair M, K with M positive
+/// definite and no C, squared frequencies, ascending, with modes (row by row) that are orthonormal in M.
+pub struct Modes {
+    /// Of exp(λ t).
+    pub eigenvalues: Vec<(f64, f64)>,
+    /// Squared frequencies and modes.
+    pub symmetric: Option<(Vec<f64>, Vec<f64>)>,
+}
+
+/// Small motions of these matrices.
+///
+/// # Errors
+/// A singular mass matrix.
+pub fn modes(matrices: &Matrices, n: usize) -> Result<Modes> {
+    let [mass, damping, stiffness] = [&matrices.mass, &matrices.damping, &matrices.stiffness]
+        .map(|rows| DMatrix::from_row_slice(n, n, rows));
+    let singular = || Error::invalid("position", "the mass matrix is singular there");
+    let inverse = mass.clone().try_inverse().ok_or_else(singular)?;
+    let mut first_order = DMatrix::zeros(2 * n, 2 * n);
+    first_order.view_mut((0, n), (n, n)).fill_with_identity();
+    first_order.view_mut((n, 0), (n, n)).copy_from(&(-(&inverse * &stiffness)));
+    first_order.view_mut((n, n), (n, n)).copy_from(&(-(&inverse * &damping)));
+    let eigenvalues = first_order.complex_eigenvalues().iter().map(|z| (z.re, z.im)).collect();
+    let scale = stiffness.amax();
+    let is_symmetric = (&stiffness - stiffness.transpose()).amax() <= 1e-12 * scale;
+    let symmetric =
+        (damping.amax() == 0.0 && is_symmetric).then(|| mass.clone().cholesky()).flatten().map(|cholesky| {
+            // L⁻¹ K L⁻ᵀ has the squares, and L⁻ᵀ its vectors as modes.
+            let lower = cholesky.l();
+            let half = lower.solve_lower_triangular(&stiffness).unwrap_or_else(|| stiffness.clone());
+            let whole = lower.solve_lower_triangular(&half.transpose()).unwrap_or(half);
+            let whole = (&whole + whole.transpose()) * 0.5;
+            let eigen = whole.symmetric_eigen();
+            let vectors =
+                lower.transpose().solve_upper_triangular(&eigen.eigenvectors).unwrap_or(eigen.eigenvectors);
+            let mut order: Vec<usize> = (0..n).collect();
+            order.sort_by(|&a, &b| eigen.eigenvalues[a].total_cmp(&eigen.eigenvalues[b]));
+            let squares = order.iter().map(|&k| eigen.eigenvalues[k]).collect();
+            let rows =
+                order.iter().flat_map(|&k| vectors.column(k).iter().copied().collect::<Vec<f64>>()).collect();
+            (squares, rows)
+        });
+    Ok(Modes { eigenvalues, symmetric })
+}

@@ -1,0 +1,73 @@
+//! The flow's derivatives: equations of the motion and of what small differences at the start become.
+//!
+//! The one idea: Φ̇ = (∂f/∂y) Φ beside ẏ = f, as one system of the first order, whose right-hand side is made on the graph
+//! like any other; so it runs by every method, and Φ is as good as y.
+
+use super::elimination::solved;
+use super::model::{Kind, Model};
+use crate::error::{Error, Result};
+use crate::expressions::assembler::compile;
+use crate::expressions::program::Output;
+use crate::expressions::{Graph, Id};
+use crate::ode::system::Form;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Coordinates of the largest system: Φ has the square of twice as many numbers.
+const MOST_COORDINATES: usize = 16;
+
+/// The rates of all numbers of a state as expressions.
+pub(super) fn rates_as_nodes(model: &mut Model) -> Vec<Id> {
+    let (_, v) = model.source.halves();
+    let graph = &mut model.source.graph;
+    let mut unknowns = Vec::new();
+    for system in &model.systems {
+        unknowns.extend(solved(graph, &system.matrix, &system.right));
+    }
+    let evaluated = model.rates.iter().map(|rate| match *rate {
+        Output::Node(id) => id,
+        Output::Unknown(index) => unknowns[index as usize],
+    });
+    match (model.form, model.source.kind) {
+        (Form::FirstOrder(_), _) => evaluated.collect(),
+        (Form::SecondOrder(_), Kind::Hamiltonian | Kind::Lagrangian) => {
+            v.iter().copied().chain(evaluated).collect()
+        }
+    }
+}
+
+/// A model whose state is (y, Φ), Φ row by row.
+///
+/// # Errors
+/// Constraints; more coordinates than there is room for.
+pub fn variational(model: &Model) -> Result<Model> {
+    let mut model = model.clone();
+    let n = model.numbers();
+    if !model.multipliers.is_empty() || model.source.coordinates > MOST_COORDINATES {
+        return Err(Error::invalid(
+            "L",
+            format!(
+                "the flow's derivatives are those of up to {MOST_COORDINATES} coordinates without constraints"
+            ),
+        ));
+    }
+    let mut rates = rates_as_nodes(&mut model);
+    let graph: &mut Graph = &mut model.source.graph;
+    let state: Vec<Id> = (0..n as u32).map(|i| graph.variable(i)).collect();
+    let entries: Vec<Id> = (0..(n * n) as u32).map(|k| graph.variable(n as u32 + k)).collect();
+    let mut columns = Vec::with_capacity(n);
+    for j in 0..n {
+        let direction: HashMap<Id, Id> = (0..n).map(|i| (state[i], entries[i * n + j])).collect();
+        columns.push(graph.tangent(&rates, &direction));
+    }
+    for i in 0..n {
+        rates.extend(columns.iter().map(|column| column[i]));
+    }
+    model.rates = rates.into_iter().map(Output::Node).collect();
+    model.systems = vec![];
+    model.numbers = n + n * n;
+    model.form = Form::FirstOrder(model.numbers);
+    let inputs = (model.numbers, model.source.parameters);
+    model.code = Arc::new(compile(&model.source.graph, inputs, &[], &model.rates)?);
+    Ok(model)
+}
