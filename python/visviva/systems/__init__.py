@@ -48,3 +48,7 @@ __all__ = [
     "spring_pendulum",
     "swinging_atwood",
 ]
+
+
+def __dir__() -> list[str]:
+    return __all__

@@ -22,7 +22,7 @@ __all__ = ["central_force", "charged_particle", "henon_heiles"]
 def charged_particle(
     *,
     m: float = 1.0,
-    e: float = 1.0,
+    charge: float = 1.0,
     E: ArrayLike = (0.5, 0.0, 0.0),
     B: ArrayLike = (0.0, 0.0, 1.0),
     position: ArrayLike = (0.0, 0.0, 0.0),
@@ -35,8 +35,8 @@ def charged_particle(
 
     Parameters
     ----------
-    m, e : float
-        Mass and charge.
+    m, charge : float
+        Mass m and charge e.
     E, B : array_like, shape (3,)
         Electric and magnetic field.
     position, velocity : array_like, shape (3,)
@@ -62,15 +62,15 @@ def charged_particle(
     """
     electric, magnetic = float_array("E", E, (3,)), float_array("B", B, (3,))
 
-    def function(q: Any, v: Any, _: Any, m: Any, e: Any, **fields: Any) -> Any:
+    def function(q: Any, v: Any, _: Any, m: Any, charge: Any, **fields: Any) -> Any:
         Ex, Ey, Ez, Bx, By, Bz = fields.values()
         # ṙ·(B × r) = B·(r × ṙ)
         turning = Bx * (q[1] * v[2] - q[2] * v[1]) + By * (q[2] * v[0] - q[0] * v[2]) + Bz * (q[0] * v[1] - q[1] * v[0])
         kinetic = m * (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) / 2
-        return kinetic + e * (Ex * q[0] + Ey * q[1] + Ez * q[2]) + e * turning / 2
+        return kinetic + charge * (Ex * q[0] + Ey * q[1] + Ez * q[2]) + charge * turning / 2
 
     names = ("Ex", "Ey", "Ez", "Bx", "By", "Bz")
-    values = checked(m=m, e=e) | dict(zip(names, [*electric.tolist(), *magnetic.tolist()], strict=True))
+    values = checked(m=m, charge=charge) | dict(zip(names, [*electric.tolist(), *magnetic.tolist()], strict=True))
     return Lagrangian(function, ["x", "y", "z"], parameters=values, position=position, velocity=velocity)
 
 

@@ -273,7 +273,7 @@ def cart_pendulum(
     g: float = 9.81,
     l: float = 1.0,
     m: float = 1.0,
-    M: float = 2.0,
+    cart: float = 2.0,
     position: ArrayLike = (0.0, 1.0),
     velocity: ArrayLike = (0.0, 0.0),
 ) -> Lagrangian:
@@ -283,8 +283,8 @@ def cart_pendulum(
 
     Parameters
     ----------
-    g, l, m, M : float
-        Gravity; length and mass of the pendulum; mass of the cart.
+    g, l, m, cart : float
+        Gravity; length and mass of the pendulum; mass M of the cart.
     position, velocity : array_like, shape (2,)
         The place x of the cart and θ from the downward vertical, and their rates.
 
@@ -307,14 +307,14 @@ def cart_pendulum(
     True
     """
     return Lagrangian(
-        lambda q, v, _, g, l, m, M: (
-            (M + m) * v[0] ** 2 / 2
+        lambda q, v, _, g, l, m, cart: (
+            (cart + m) * v[0] ** 2 / 2
             + m * l * v[0] * v[1] * np.cos(q[1])
             + m * l**2 * v[1] ** 2 / 2
             + m * g * l * np.cos(q[1])
         ),
         ["x", "theta"],
-        parameters=checked(g=g, l=l, m=m, M=M),
+        parameters=checked(g=g, l=l, m=m, cart=cart),
         position=position,
         velocity=velocity,
     )

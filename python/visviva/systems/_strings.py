@@ -73,18 +73,18 @@ def swinging_atwood(
     *,
     g: float = 9.81,
     m: float = 1.0,
-    M: float = 3.0,
+    counterweight: float = 3.0,
     position: ArrayLike = (1.0, 1.5),
     velocity: ArrayLike = (0.0, 0.0),
 ) -> Lagrangian:
     """Swinging Atwood's machine: one mass swings, the other is its counterweight.
 
-    L = (M + m) ṙ²/2 + m r² θ̇²/2 − g r (M − m cos θ). For M = 3 m it is integrable, else it may be chaotic.
+    L = (M + m) ṙ²/2 + m r² θ̇²/2 − g r (M − m cos θ) with the counterweight M. For M = 3 m it is integrable, else it may be chaotic.
 
     Parameters
     ----------
-    g, m, M : float
-        Gravity, the mass that swings, and the counterweight.
+    g, m, counterweight : float
+        Gravity, the mass that swings, and the other.
     position, velocity : array_like, shape (2,)
         Distance r from the pulley and θ from the downward vertical, and their rates.
 
@@ -105,11 +105,13 @@ def swinging_atwood(
     True
     """
     return Lagrangian(
-        lambda q, v, _, g, m, M: (
-            (M + m) * v[0] ** 2 / 2 + m * q[0] ** 2 * v[1] ** 2 / 2 - g * q[0] * (M - m * np.cos(q[1]))
+        lambda q, v, _, g, m, counterweight: (
+            (counterweight + m) * v[0] ** 2 / 2
+            + m * q[0] ** 2 * v[1] ** 2 / 2
+            - g * q[0] * (counterweight - m * np.cos(q[1]))
         ),
         ["r", "theta"],
-        parameters=checked(g=g, m=m, M=M),
+        parameters=checked(g=g, m=m, counterweight=counterweight),
         position=position,
         velocity=velocity,
     )

@@ -7,7 +7,7 @@ from visviva._arrays import number, positive
 __all__ = ["checked"]
 
 #: Masses and lengths: without them there is no motion, or none that has a name.
-_POSITIVE = ("m", "m1", "m2", "M", "l", "l1", "l2", "length", "R")
+_POSITIVE = ("m", "m1", "m2", "cart", "counterweight", "l", "l1", "l2", "length", "R")
 
 
 def checked(**values: object) -> dict[str, float]:
