@@ -1,8 +1,8 @@
 """Lagrangians and Hamiltonians: an expression in, equations of motion at native speed out.
 
 `Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core
-makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a new
-derivation. The names here are those of `visviva` itself.
+makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a
+new derivation. The names here are those of `visviva` itself.
 """
 
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
@@ -29,4 +29,4 @@ __all__ = [
 
 
 def __dir__() -> list[str]:
-    return __all__
+    return list(__all__)

@@ -79,7 +79,8 @@ def swinging_atwood(
 ) -> Lagrangian:
     """Swinging Atwood's machine: one mass swings, the other is its counterweight.
 
-    L = (M + m) ṙ²/2 + m r² θ̇²/2 − g r (M − m cos θ) with the counterweight M. For M = 3 m it is integrable, else it may be chaotic.
+    L = (M + m) ṙ²/2 + m r² θ̇²/2 − g r (M − m cos θ) with the counterweight M. For M = 3 m it is integrable, else it may
+    be chaotic.
 
     Parameters
     ----------
