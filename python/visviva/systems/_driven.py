@@ -124,7 +124,7 @@ def moving_pivot(
 ) -> Lagrangian:
     """Pendulum whose pivot goes round an ellipse, or along a line: x = X cos Ωt, y = Y sin Ωt.
 
-    L = m [(ẋ + l θ̇ cos θ)² + (ẏ + l θ̇ sin θ)²]/2 − m g (y − l cos θ), so l θ̈ = −(g + ÿ) sin θ − ẍ cos θ.
+    L = m l² θ̇²/2 + m l [(g + ÿ) cos θ − ẍ sin θ], up to a derivative with respect to time.
 
     Parameters
     ----------
@@ -151,13 +151,13 @@ def moving_pivot(
     >>> shaken.autonomous, shaken.conserved
     (False, [])
     """
-    return Lagrangian(
-        _on_a_pivot,
-        ["theta"],
-        parameters=checked(g=g, l=l, m=m, X=X, Y=Y, Omega=Omega),
-        position=position,
-        velocity=velocity,
-    )
+
+    def function(q: Any, v: Any, t: Any, g: Any, l: Any, m: Any, X: Any, Y: Any, Omega: Any) -> Any:
+        x, y = -X * Omega**2 * np.cos(Omega * t), -Y * Omega**2 * np.sin(Omega * t)
+        return m * l**2 * v[0] ** 2 / 2 + m * l * ((g + y) * np.cos(q[0]) - x * np.sin(q[0]))
+
+    values = checked(g=g, l=l, m=m, X=X, Y=Y, Omega=Omega)
+    return Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity)
 
 
 @known_keywords
@@ -173,7 +173,7 @@ def kapitza(
 ) -> Lagrangian:
     """Kapitza's pendulum: the pivot vibrates along the vertical, y = a cos Ωt, and upside down it may stand.
 
-    L = m l² θ̇²/2 + m l θ̇ ẏ sin θ + m g l cos θ, without what moves nothing. The upper place is stable if a² Ω² > 2 g l
+    L = m l² θ̇²/2 + m l (g + ÿ) cos θ, up to a derivative with respect to time. The upper place is stable if a² Ω² > 2 g l
     (for a ≪ l).
 
     Parameters
@@ -204,15 +204,8 @@ def kapitza(
     """
 
     def function(q: Any, v: Any, t: Any, g: Any, l: Any, m: Any, a: Any, Omega: Any) -> Any:
-        rising = -a * Omega * np.sin(Omega * t)
-        return m * l**2 * v[0] ** 2 / 2 + m * l * v[0] * rising * np.sin(q[0]) + m * g * l * np.cos(q[0])
+        y = -a * Omega**2 * np.cos(Omega * t)
+        return m * l**2 * v[0] ** 2 / 2 + m * l * (g + y) * np.cos(q[0])
 
     values = checked(g=g, l=l, m=m, a=a, Omega=Omega)
     return Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity)
-
-
-def _on_a_pivot(q: Any, v: Any, t: Any, g: Any, l: Any, m: Any, X: Any, Y: Any, Omega: Any) -> Any:
-    sine, cosine = np.sin(Omega * t), np.cos(Omega * t)
-    x = l * v[0] * np.cos(q[0]) - X * Omega * sine
-    y = l * v[0] * np.sin(q[0]) + Y * Omega * cosine
-    return m * (x**2 + y**2) / 2 - m * g * (Y * sine - l * np.cos(q[0]))
