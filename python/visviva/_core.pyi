@@ -376,3 +376,38 @@ def top_motion(
     rates: tuple[float, float, float],
     t: NDArray[np.float64],
 ) -> NDArray[np.float64]: ...
+
+# Operation, the places of its arguments among the nodes before it, and a value.
+_Node: TypeAlias = tuple[str, list[int], float]
+
+@final
+class GeneralizedModel:
+    def __new__(cls, described: dict[str, Any]) -> GeneralizedModel: ...
+    def structure(self) -> dict[str, Any]: ...
+    def expressions(self, name: str) -> tuple[list[_Node], list[int]]: ...
+    def poisson(self, nodes: list[_Node], roots: tuple[int, int]) -> tuple[list[_Node], list[int]]: ...
+    def evaluate(
+        self,
+        nodes: list[_Node],
+        roots: list[int],
+        t: NDArray[np.float64],
+        states: NDArray[np.float64],
+        parameters: NDArray[np.float64],
+    ) -> NDArray[np.float64]: ...
+    def columns(
+        self, t: NDArray[np.float64], states: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> NDArray[np.float64]: ...
+    def rates(
+        self, t: NDArray[np.float64], states: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> NDArray[np.float64]: ...
+    def projected(
+        self, t: float, state: NDArray[np.float64], parameters: NDArray[np.float64]
+    ) -> tuple[list[float], list[float], NDArray[np.float64]]: ...
+    def run(
+        self,
+        asked: dict[str, Any],
+        states: NDArray[np.float64],
+        parameters: NDArray[np.float64],
+        threads: int | None,
+        progress: Callable[[int, int], object] | None,
+    ) -> dict[str, Any]: ...

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
     from visviva.trajectory import Trajectory
 
-__all__ = ["new_figure", "plot_trajectory"]
+__all__ = ["axes_or_new", "new_figure", "plot_trajectory"]
 
 # More points than this cannot be told apart in a figure and make the file large.
 _POINTS = 4000
@@ -40,6 +40,17 @@ def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = 
     figure = Figure(figsize=size, layout="constrained")
     kinds = ["3d" if panel in solid else "rectilinear" for panel in range(panels)]
     return figure, [figure.add_subplot(1, panels, at, projection=kind) for at, kind in enumerate(kinds, start=1)]
+
+
+def axes_or_new(axes: Axes | None) -> Axes:
+    """The axes that were given, or those of a new figure.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If there are none and matplotlib is not installed.
+    """
+    return new_figure(1, (5.5, 4.0))[1][0] if axes is None else axes
 
 
 def plot_trajectory(trajectory: Trajectory) -> Figure:

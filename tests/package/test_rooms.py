@@ -10,15 +10,15 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "rust" / "core" / "src"
 
-# numerics ← ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering ← closed_forms, conservation
-# ← scene.
+# numerics ← expressions, ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering
+# ← closed_forms, conservation ← scene.
 # Rooms of one floor do not know each other.
 FLOORS = (
     ("error",),
     ("words",),
     ("numerics",),
     ("memory", "parallel", "units"),
-    ("ode", "potentials"),
+    ("expressions", "ode", "potentials"),
     ("forces",),
     ("nbody", "rigid", "generalized"),
     ("central",),

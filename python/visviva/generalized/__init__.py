@@ -30,3 +30,7 @@ __all__ = [
     "coordinate",
     "time",
 ]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

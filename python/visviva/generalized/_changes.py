@@ -181,7 +181,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
             break
         # Newton's step, halved until it leads nearer.
         for _ in range(12):
-            trial = other.at(**{system._second_name: other._second - change})
+            trial = other._at(None, other._second - change)
             new_size, new_miss, new_jacobian = missed(trial)
             if new_size < size:
                 break

@@ -47,7 +47,8 @@ class GeneralizedEnsemble:
         second: ArrayLike | None = None,
         parameters: Mapping[Any, ArrayLike] | None = None,
     ) -> None:
-        n, sizes = len(system.coordinates), dict[str, int]()
+        n = len(system.coordinates)
+        sizes: dict[str, tuple[int, str]] = {}
         halves = [
             None if value is None else float_array(name, value, ("B", n), sizes)
             for name, value in (("position", position), (system._second_name, second))
@@ -62,7 +63,7 @@ class GeneralizedEnsemble:
             raise InvalidInput(
                 "position", f"expected position, {system._second_name} or parameters of the copies, got none"
             )
-        members = int(sizes["B"])
+        members = sizes["B"][0]
         if halves[0] is None:
             halves[0] = np.tile(system._start()[:n], (members, 1))
         if halves[1] is None:
@@ -80,7 +81,7 @@ class GeneralizedEnsemble:
         n = len(self.system.coordinates)
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
-        return self.system.at(position=state[:n], parameters=values, **{self.system._second_name: state[n:]})
+        return self.system._at(state[:n], state[n:], values)
 
     def run(
         self,

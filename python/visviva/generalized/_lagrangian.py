@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._hamiltonian import Hamiltonian
 
 __all__ = ["Lagrangian"]
@@ -75,8 +76,8 @@ class Lagrangian(GeneralizedSystem):
     >>> L = l**2 * theta.diff(vv.time) ** 2 / 2 + g * l * sp.cos(theta)
     >>> pendulum = vv.Lagrangian(L, [theta], parameters={g: 9.81, l: 1.0}, position=[3.0])
     >>> pendulum.run(t=10.0).position.round(6)
-    array([[ 3.      ],
-           [-2.694211]])
+    array([[3.      ],
+           [2.925056]])
 
     Without SymPy:
 
@@ -137,7 +138,9 @@ class Lagrangian(GeneralizedSystem):
         return float(self._columns_at_start()[len(self.coordinates)])
 
     def _columns_at_start(self) -> NDArray[np.float64]:
-        return self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
+        columns = self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])
+        first: NDArray[np.float64] = columns[0]
+        return first
 
     @property
     def mass_matrix(self) -> Any:
@@ -321,6 +324,68 @@ class Lagrangian(GeneralizedSystem):
     def degrees_of_freedom(self) -> int:
         """Coordinates less constraints, which are independent of each other."""
         return len(self.coordinates) - self._constraints()
+
+    def at(
+        self,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        parameters: Mapping[Any, float] | None = None,
+        t0: float | None = None,
+    ) -> Self:
+        """The same system from another start, or with other parameters; nothing is derived again.
+
+        Parameters
+        ----------
+        position, velocity : array_like, shape (n,), optional
+            The new start.
+        parameters : dict, optional
+            New values of some parameters.
+        t0 : float, optional
+            The time of the start.
+
+        Raises
+        ------
+        InvalidInput
+            For another shape, or a parameter that is not there.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum().at(position=[2.0]).position
+        array([2.])
+        """
+        return self._at(position, velocity, parameters, t0)
+
+    def ensemble(
+        self,
+        *,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
+        parameters: Mapping[Any, ArrayLike] | None = None,
+    ) -> GeneralizedEnsemble:
+        """Many copies, from starts or with parameters of their own.
+
+        Parameters
+        ----------
+        position, velocity : array_like, shape (B, n), optional
+            The starts.
+        parameters : dict, optional
+            Values (B,) of some parameters.
+
+        Raises
+        ------
+        InvalidInput
+            For shapes that do not go together, or parameters that are not there.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> many = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 3.0, 30)[:, None])
+        >>> many.run(t=10.0).position.shape
+        (30, 2, 1)
+        """
+        return self._ensemble(position, velocity, parameters)
 
     def _check_start(self) -> None:
         state = self._start()

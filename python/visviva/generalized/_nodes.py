@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, TypeAlias
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -53,6 +54,7 @@ class Nodes:
         return self.add("constant", (), float(value))
 
 
+@known_keywords
 class Expression:
     """A number of a system as an expression: arithmetic and NumPy's functions record what is done with it.
 

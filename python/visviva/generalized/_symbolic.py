@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._nodes import FUNCTIONS, Node, Nodes
 
@@ -85,6 +86,7 @@ class _Time:
 time: Any = _Time()
 
 
+@known_keywords
 def coordinate(names: str) -> Any:
     """Generalized coordinates: functions of the time, as SymPy's ``dynamicsymbols`` makes them.
 

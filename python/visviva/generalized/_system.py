@@ -8,6 +8,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, whole_number
+from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._flow import Flow
 from visviva.generalized._source import Source, _label
@@ -29,6 +30,7 @@ __all__ = ["GeneralizedSystem"]
 GAUSS = ("gauss4", "gauss8", "gauss16")
 
 
+@known_keywords
 class GeneralizedSystem(Flow):
     """A mechanical system in generalized coordinates, and a state of it: base of `Lagrangian` and `Hamiltonian`.
 
@@ -130,48 +132,20 @@ class GeneralizedSystem(Flow):
 
     # --- States -------------------------------------------------------------------------------------------------
 
-    def at(
+    def _at(
         self,
-        *,
-        position: ArrayLike | None = None,
+        position: ArrayLike | None,
+        second: ArrayLike | None,
         parameters: Mapping[Any, float] | None = None,
         t0: float | None = None,
-        **second: ArrayLike | None,
     ) -> Self:
-        """The same system from another start, or with other parameters; nothing is derived again.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (n,), optional
-            The new start; of a Hamiltonian ``momentum`` instead of ``velocity``.
-        parameters : dict, optional
-            New values of some parameters.
-        t0 : float, optional
-            The time of the start.
-
-        Raises
-        ------
-        InvalidInput
-            For another shape, or a parameter that is not there.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.pendulum().at(position=[2.0]).position
-        array([2.])
-        """
-        unknown = [name for name in second if name != self._second_name]
-        if unknown:
-            raise InvalidInput(unknown[0], f"expected position, {self._second_name}, parameters or t0")
         other = object.__new__(type(self))
-        values = self._with_parameters(parameters)
-        new_second = second.get(self._second_name)
         state = (
             self.position if position is None else position,
-            self._second if new_second is None else new_second,
+            self._second if second is None else second,
             self.t0 if t0 is None else t0,
         )
-        other._prepare(self._source, values, state, self._model)
+        other._prepare(self._source, self._with_parameters(parameters), state, self._model)
         return other
 
     def _with_parameters(self, changed: Mapping[Any, Any] | None) -> list[Any]:
@@ -211,9 +185,9 @@ class GeneralizedSystem(Flow):
 
         Examples
         --------
-        >>> import sympy as sp, visviva as vv
-        >>> theta = vv.coordinate("theta")
-        >>> vv.systems.pendulum(position=[0.5]).evaluate(sp.sin(theta)).round(6)
+        >>> import numpy as np, visviva as vv
+        >>> pendulum = vv.systems.pendulum(position=[0.5])
+        >>> pendulum.evaluate(lambda q, v, t, l, **others: l * np.sin(q[0])).round(6)
         array([0.479426])
         """
         nodes, roots = self._source.nodes("expressions", expressions)
@@ -283,9 +257,9 @@ class GeneralizedSystem(Flow):
             The end, or output times in order; they change no step.
         method : str
             ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
-            energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`: adaptive ones
-            (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not depend on
-            velocities.
+            energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`:
+            adaptive ones (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not
+            depend on velocities.
         rtol : float
             Relative tolerance of a step.
         dt : float, optional
@@ -378,46 +352,20 @@ class GeneralizedSystem(Flow):
         asked, _ = self._asked(t, method, rtol, dt, max_step)
         return GeneralizedPlan._of(self, asked)
 
-    def ensemble(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
-        **second: ArrayLike | None,
+    def _ensemble(
+        self, position: ArrayLike | None, second: ArrayLike | None, parameters: Mapping[Any, ArrayLike] | None
     ) -> GeneralizedEnsemble:
-        """Many copies, from starts or with parameters of their own.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (B, n), optional
-            The starts; of a Hamiltonian ``momentum`` instead of ``velocity``.
-        parameters : dict, optional
-            Values (B,) of some parameters.
-
-        Raises
-        ------
-        InvalidInput
-            For shapes that do not go together, or parameters that are not there.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> many = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 3.0, 30)[:, None])
-        >>> many.run(t=10.0).position.shape
-        (30, 2, 1)
-        """
         from visviva.generalized._ensemble import GeneralizedEnsemble
 
-        unknown = [name for name in second if name != self._second_name]
-        if unknown:
-            raise InvalidInput(unknown[0], f"expected position, {self._second_name} or parameters")
-        return GeneralizedEnsemble(self, position, second.get(self._second_name), parameters)
+        return GeneralizedEnsemble(self, position, second, parameters)
 
 
 def _method(method: object, separable: bool, dt: float | None, *, constrained: bool) -> str:
-    from visviva.integrators import methods
+    from visviva.integrators import Method, methods
 
-    known = {each.name: each for each in methods()}
+    known: dict[str, Method] = {each.name: each for each in methods()}
+    if isinstance(method, Method):
+        method = method.name
     if not isinstance(method, str) or (method not in GAUSS and method not in known):
         if isinstance(method, str):
             from visviva._keywords import did_you_mean

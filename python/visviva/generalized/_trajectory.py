@@ -141,7 +141,7 @@ class GeneralizedTrajectory:
         if not len(self.t):
             raise InvalidInput("final", "the run has no state")
         last = self._states[-1]
-        return self.system.at(position=last[:n], t0=float(self.t[-1]), **{self.system._second_name: last[n:]})
+        return self.system._at(last[:n], last[n:], t0=float(self.t[-1]))
 
     def conservation(self) -> dict[str, float]:
         """The largest relative change of what is conserved; of what is zero, the change itself.
@@ -186,9 +186,9 @@ class GeneralizedTrajectory:
         >>> ax.get_xlabel()
         't'
         """
-        from visviva.plot import axes
+        from visviva.plot import axes_or_new
 
-        ax = axes(ax)
+        ax = axes_or_new(ax)
         for index, name in enumerate(self.system.coordinates):
             ax.plot(self.t, self.position[:, index], label=name)
         ax.set_xlabel("t")
@@ -223,10 +223,10 @@ class GeneralizedTrajectory:
         >>> ax.get_xlabel()
         'theta'
         """
-        from visviva.plot import axes
+        from visviva.plot import axes_or_new
 
         name = self.system.coordinates[0] if name is None else name
-        ax = axes(ax)
+        ax = axes_or_new(ax)
         ax.plot(self[name], self.momentum[:, self.system.coordinates.index(name)])
         ax.set_xlabel(name)
         ax.set_ylabel(f"momentum of {name}")

@@ -17,6 +17,8 @@ pub struct Motion<S> {
     /// The system's time at the start of the run.
     t0: S,
     evaluations: u64,
+    /// Whether equations of the second order are shown as those of the first, velocities being rates.
+    flat: bool,
 }
 
 impl<S: Width> Motion<S> {
@@ -28,7 +30,14 @@ impl<S: Width> Motion<S> {
             needs: model.needs(),
             t0,
             evaluations: 0,
+            flat: false,
         }
+    }
+
+    /// As equations of the first order, whose errors are measured number by number.
+    #[must_use]
+    pub fn flat(self) -> Self {
+        Self { flat: true, ..self }
     }
 
     fn evaluate(&mut self, t: S, results: &mut [S]) {
@@ -42,7 +51,7 @@ impl<S: Width> Motion<S> {
 
 impl<S: Width + Element> System<S> for Motion<S> {
     fn form(&self) -> Form {
-        self.form
+        if self.flat { Form::FirstOrder(self.form.len()) } else { self.form }
     }
 
     fn needs(&self) -> Needs {
@@ -55,7 +64,14 @@ impl<S: Width + Element> System<S> for Motion<S> {
 
     fn rate(&mut self, t: &S, y: &[S], rate: &mut [S], _: &mut Ticker<'_>) -> Result<()> {
         self.machine.state().copy_from_slice(y);
-        self.evaluate(*t, rate);
+        match self.form {
+            Form::FirstOrder(_) => self.evaluate(*t, rate),
+            Form::SecondOrder(n) => {
+                let (first, second) = rate.split_at_mut(n);
+                first.copy_from_slice(&y[n..]);
+                self.evaluate(*t, second);
+            }
+        }
         Ok(())
     }
 

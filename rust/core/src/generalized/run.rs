@@ -116,7 +116,10 @@ pub fn solve(
 ) -> Result<Solution> {
     let (t0, end) = request.span;
     let mut system = Motion::<f64>::new(model, parameters, t0);
-    let mut state = match model.form {
+    if matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })) {
+        system = system.flat();
+    }
+    let mut state = match system.form() {
         Form::FirstOrder(_) => State::first_order(y0.to_vec()),
         Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
     };
