@@ -87,7 +87,7 @@ fn all_chosen(ids: &[Id], indices: &[u32]) -> Result<Vec<Id>> {
 fn shown(graph: &Graph, roots: &[Id]) -> (Vec<NodeParts>, Vec<u32>) {
     let mut places = std::collections::HashMap::new();
     let mut nodes: Vec<NodeParts> = Vec::new();
-    let mut push = |nodes: &mut Vec<NodeParts>, operation: &str, arguments: Vec<u32>, value: f64| {
+    let push = |nodes: &mut Vec<NodeParts>, operation: &str, arguments: Vec<u32>, value: f64| {
         nodes.push((operation.to_owned(), arguments, value));
         (nodes.len() - 1) as u32
     };

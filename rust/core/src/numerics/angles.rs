@@ -1,12 +1,15 @@
 //! Sine, cosine and the angle of a vector for one `f64`, the same bits on every machine.
 //!
 //! The one idea: reduce by π/2 (or by a table of arctangents) carried to 106 bits or more, then a Taylor series.
-//! Measured errors: sine and cosine 0.77 ulp, angles 1.4 ulp for |x| ≤ 2^20 · π/2; beyond, |x|·3e-33 is added.
+//! Measured errors: sine and cosine 0.77 ulp, angles 1.4 ulp for |x| ≤ 2^20 · π/2; beyond,
+//! |x|·3e-33 is added, up to 2^50, from where on nothing is lost.
 
 use super::double_double::DoubleDouble;
 use core::f64::consts::{FRAC_2_PI, FRAC_PI_2, PI};
 
 const HALF_PI: DoubleDouble = DoubleDouble::new(FRAC_PI_2, 6.123_233_995_736_766e-17);
+/// From here on angles are reduced as whole numbers.
+const HUGE: f64 = 1_125_899_906_842_624.0; // 2^50
 const HALF_PI_THIRD: f64 = -1.497_384_904_859_169_8e-33;
 
 /// arctan(k/8), k = 0…8, as (high, low).
@@ -46,14 +49,23 @@ fn sin_cos_reduced(x: f64, low: f64) -> (f64, f64) {
 
 /// (sin x, cos x); NaN for what is not finite.
 pub fn sin_cos(x: f64) -> (f64, f64) {
-    if !x.is_finite() || x.abs() > 1e300 {
+    if !x.is_finite() {
         return (f64::NAN, f64::NAN);
+    }
+    if x.abs() >= HUGE {
+        let (quarters, left) = huge::reduced(x.abs());
+        let (sine, cosine) = turned(quarters, sin_cos_reduced(left.high(), left.low()));
+        return (if x < 0.0 { -sine } else { sine }, cosine);
     }
     let n = (x * FRAC_2_PI).round();
     let mut reduced = DoubleDouble::from(x) - HALF_PI * DoubleDouble::from(n);
     reduced -= DoubleDouble::product(n, HALF_PI_THIRD);
-    let (sine, cosine) = sin_cos_reduced(reduced.high(), reduced.low());
-    match n.rem_euclid(4.0) as u8 {
+    turned(n.rem_euclid(4.0) as u8, sin_cos_reduced(reduced.high(), reduced.low()))
+}
+
+/// (sin, cos) so many quarter turns further.
+fn turned(quarters: u8, (sine, cosine): (f64, f64)) -> (f64, f64) {
+    match quarters {
         0 => (sine, cosine),
         1 => (cosine, -sine),
         2 => (-sine, -cosine),
@@ -124,5 +136,6 @@ pub fn atan(x: f64) -> f64 {
     atan2(x, 1.0)
 }
 
+mod huge;
 #[cfg(test)]
 mod tests;

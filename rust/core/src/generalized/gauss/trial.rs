@@ -36,7 +36,12 @@ pub enum Steps {
     /// All alike.
     Equal(f64),
     /// So that δ is about this; held after the first ones, or not.
-    Chosen { delta: f64, held: bool },
+    Chosen {
+        /// What δ is to be.
+        delta: f64,
+        /// Whether a step is held.
+        held: bool,
+    },
 }
 
 /// A collocation method at work on one trajectory.
