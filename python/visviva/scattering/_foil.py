@@ -224,7 +224,7 @@ class Foil:
         ...                forced_angle=np.radians(60), tally={"cm_angle": np.radians([60, 90, 180])})
         >>> value, error = out["cm_angle"].fraction()
         >>> f"{value[1]:.2e}"  # a few in a hundred thousand turn back
-        '1.70e-05'
+        '1.74e-05'
         """
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
         first, count, key = _which(first_event, n_events, seed)
@@ -358,7 +358,7 @@ class Foil:
         >>> import visviva as vv
         >>> foil = vv.scattering.Foil("silicon", 1.0)
         >>> round(float(foil.range("alpha", 5.486e6, lowest_energy=1e3)))
-        29
+        31
         """
         return self._losses(ion, energy, positive("lowest_energy", lowest_energy)) / 1e4
 
