@@ -67,3 +67,20 @@ def test_the_table_of_materials():
         assert 0.02 < foil.material.number_density < 0.2
         out = foil.run("alpha", beam_energy=5e6, n_events=20, seed=1)
         assert out.transmitted + out.reflected + out.stopped == 20
+
+
+def test_measured_losses():
+    """A table of the formula's own numbers is the formula: what is between two of a hundred, to 1e-3."""
+    foil = S.Foil("aluminum", 1.0)
+    energy = np.geomspace(1e3, 1e7, 400)
+    told = S.Foil("aluminum", 1.0, stopping=(energy, foil.stopping_power("alpha", energy)))
+    between = np.geomspace(1.1e3, 9e6, 77)
+    assert told.stopping_power("alpha", between) == pytest.approx(foil.stopping_power("alpha", between), rel=1e-3)
+    asked = {"beam_energy": 5e6, "n_events": 50, "seed": 1, "tally": "transmitted_energy"}
+    assert told.run("alpha", **asked).transmitted == 50
+    for wrong in ((energy, energy[1:]), (energy[::-1], energy), (energy, 0.0 * energy), "table", ([1.0], [1.0])):
+        with pytest.raises(vv.InvalidInput) as caught:
+            S.Foil("aluminum", 1.0, stopping=wrong)
+        assert caught.value.argument == "stopping"
+    with pytest.raises(vv.InvalidInput, match=r"stopping: expected losses up to 20000000.0, got a table that ends at"):
+        told.run("alpha", **(asked | {"beam_energy": 2e7}))

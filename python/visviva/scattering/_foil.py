@@ -13,8 +13,8 @@ from visviva._arrays import number, positive, positive_array, whole_number
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
-from visviva.scattering._foil_material import Ion, Material, ion_of, material_of
+from visviva.potentials import Potential
+from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally
 from visviva.scattering._monte_carlo import _tallies, _which
 
@@ -27,7 +27,6 @@ if TYPE_CHECKING:
 
 __all__ = ["Foil"]
 
-_E2 = 14.399645478  # e²/4πε₀ in eV Å
 _SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
 _TALLIES = ("transmitted_angle", "transmitted_energy", "reflected_angle", "reflected_energy", "stopped_depth")
 
@@ -54,11 +53,13 @@ class Foil:
         Between an ion and an atom: the name of a screening function (``"zbl"``, ``"moliere"``, ``"kr_c"``,
         ``"lenz_jensen"``, ``"thomas_fermi"``; see `potentials.ScreenedCoulomb.between`), ``"coulomb"`` for bare nuclei,
         or V(r) itself in eV and Å, of each element in turn where there are several.
-    stopping : {"joined", "bethe", "lindhard_scharff", "none"}, optional
+    stopping : {"joined", "bethe", "lindhard_scharff", "none"} or tuple of array_like, optional
         What electrons take. ``"lindhard_scharff"``: in proportion to the speed, right for slow ions. ``"bethe"``: right
         for fast ones, 2mv² ≫ I, continued in proportion to the speed below its greatest value. ``"joined"``, for all
         energies: 1/S is the sum of both inverses, with Bethe's logarithm continued as Biersack and Haggmark did; within
-        some 10 % of measured losses of protons and alphas above 0.3 MeV. ``"none"``: nothing.
+        10 % of what is measured of protons and alphas from 1 MeV per nucleon on, and within 20 % below. ``"none"``:
+        nothing. Where more is known, ``(energy, loss)``: increasing energies in eV and what is lost there in eV/µm,
+        between which logarithms are straight lines; below the first the loss is in proportion to the speed.
     minimum_angle : float, optional
         Collisions that turn by less, in the center-of-mass frame, are left out. It is an angle and no energy, so that
         small angles are not biased (Mendenhall and Weller). It should be small against the width of what comes through.
@@ -86,7 +87,7 @@ class Foil:
     material: Material
     thickness: float
     potential: Any = "zbl"
-    stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] = "joined"
+    stopping: Any = "joined"
     minimum_angle: float = 1e-4
 
     def __init__(
@@ -95,7 +96,7 @@ class Foil:
         thickness: float,
         *,
         potential: str | Potential | Sequence[Potential] = "zbl",
-        stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] = "joined",
+        stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] | tuple[ArrayLike, ArrayLike] = "joined",
         minimum_angle: float = 1e-4,
     ) -> None:
         made = material_of(material)
@@ -116,7 +117,7 @@ class Foil:
             "material": made,
             "thickness": positive("thickness", thickness),
             "potential": potential,
-            "stopping": str(stopping),
+            "stopping": stopping if isinstance(stopping, str) else losses_of(stopping),
             "minimum_angle": number("minimum_angle", minimum_angle),
         }
         for name, value in given.items():
@@ -127,19 +128,21 @@ class Foil:
         """What the core is told."""
         made = self.material
         if isinstance(self.potential, str):
-            potentials = [_between(self.potential, ion.atomic_number, other) for other in made.atomic_number]
+            potentials = [screened(self.potential, ion.atomic_number, other) for other in made.atomic_number]
         else:
             potentials = list(self.potential)
         excitations = made.mean_excitation_energy or (np.nan,) * len(potentials)
+        columns = zip(made.atomic_number, made.mass, made.fraction, excitations, potentials, strict=True)
+        named = ("atomic_number", "mass", "fraction", "excitation", "potential")
         return {
-            "atomic_numbers": list(made.atomic_number),
-            "masses": list(made.mass),
-            "fractions": list(made.fraction),
-            "excitations": list(excitations),
-            "potentials": [potential._to_core() for potential in potentials],
+            "elements": [
+                dict(zip(named, (*numbers, potential._to_core()), strict=True)) for *numbers, potential in columns
+            ],
             "density": made.density,
             "thickness": self.thickness * 1e4,
-            "stopping": self.stopping,
+            "stopping": self.stopping
+            if isinstance(self.stopping, str)
+            else [(energy, loss / 1e4) for energy, loss in zip(*self.stopping, strict=True)],
             "minimum_angle": self.minimum_angle,
         }
 
@@ -236,7 +239,7 @@ class Foil:
         with callback(progress) as report:
             done, stopped, units, told, fates, columns = _core.foil_run(
                 foil=self._described(hit.ion),
-                run=_described(hit),
+                run=hit._to_core(),
                 n_events=count,
                 seed=key,
                 first_event=first,
@@ -295,7 +298,7 @@ class Foil:
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
         first, _, key = _which(event, 1, seed)
         numbers, directions, elements, end = _core.foil_history(
-            foil=self._described(hit.ion), run=_described(hit), seed=key, event=first
+            foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
         )
         fate, angle, energy, depth, weight = end
         return {
@@ -389,21 +392,3 @@ class Foil:
             raise InvalidInput("collisions", f"expected one of multiple, single, got {collisions!r}{hint}")
         forced = None if forced_angle is None else number("forced_angle", forced_angle)
         return Bombardment(self, ion_of(ion), energy, lowest, number("incidence", incidence), str(collisions), forced)
-
-
-def _between(name: str, first: float, second: float) -> Potential:
-    if name == "coulomb":
-        return Coulomb(_E2 * first * second)
-    made: Potential = ScreenedCoulomb.between(first, second, name)
-    return made
-
-
-def _described(hit: Bombardment) -> dict[str, Any]:
-    return {
-        "ion": (hit.ion.atomic_number, hit.ion.mass),
-        "beam_energy": hit.beam_energy,
-        "lowest_energy": hit.lowest_energy,
-        "incidence": hit.incidence,
-        "single": hit.collisions == "single",
-        "forced_angle": hit.forced_angle,
-    }

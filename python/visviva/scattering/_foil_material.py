@@ -10,8 +10,11 @@ import numpy as np
 from visviva._arrays import float_array, positive
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
+from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
 
-__all__ = ["Ion", "Material", "ion_of", "material_of"]
+__all__ = ["Ion", "Material", "ion_of", "losses_of", "material_of", "screened"]
+
+_E2 = 14.399645478  # e²/4πε₀ in eV Å
 
 # Standard atomic weights: IUPAC 2021 (T. Prohaska et al., Pure Appl. Chem. 94 (2022) 573).
 _WEIGHTS = {
@@ -196,3 +199,21 @@ def ion_of(given: object) -> Ion:
         hint = did_you_mean(given, _IONS) if isinstance(given, str) else ""
         raise InvalidInput("ion", f"expected an Ion or one of {', '.join(_IONS)}, got {given!r}{hint}")
     return Ion(*_IONS[given])
+
+
+def losses_of(stopping: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Give the table of a stopping that is measured."""
+    if not isinstance(stopping, tuple) or len(stopping) != 2:
+        raise InvalidInput("stopping", f"expected a name or a tuple (energy, loss) of two lists, got {stopping!r}")
+    energy, loss = (float_array("stopping", column, (None,)) for column in stopping)
+    if len(energy) != len(loss):
+        raise InvalidInput("stopping", f"expected a loss at each of {len(energy)} energies, got {len(loss)}")
+    return tuple(energy.tolist()), tuple(loss.tolist())
+
+
+def screened(name: Any, first: float, second: float) -> Potential:
+    """Give the potential between two nuclei with that screening, in eV and Å."""
+    if name == "coulomb":
+        return Coulomb(_E2 * first * second)
+    made: Potential = ScreenedCoulomb.between(first, second, name)
+    return made

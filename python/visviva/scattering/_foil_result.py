@@ -73,6 +73,16 @@ class Bombardment:
     collisions: str
     forced_angle: float | None
 
+    def _to_core(self) -> dict[str, Any]:
+        return {
+            "ion": (self.ion.atomic_number, self.ion.mass),
+            "beam_energy": self.beam_energy,
+            "lowest_energy": self.lowest_energy,
+            "incidence": self.incidence,
+            "single": self.collisions == "single",
+            "forced_angle": self.forced_angle,
+        }
+
 
 def _fraction(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) -> tuple[Any, Any]:
     """The mean weight of an event and the variance of the sum of all."""
@@ -146,11 +156,10 @@ class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
         same = (self.name, self.units, self.n_events) == (other.name, other.units, other.n_events)
         return same and np.array_equal(self.edges, other.edges) and np.array_equal(self.sums, other.sums)
 
-    def __add__(self, other: FoilTally) -> FoilTally:
-        if not isinstance(other, FoilTally):
-            return NotImplemented
-        if self.name != other.name or self.units != other.units or not np.array_equal(self.edges, other.edges):
-            raise InvalidInput("other", f"expected a tally of {self.name} with the same edges, got one of {other.name}")
+    def _joined(self, other: FoilTally) -> FoilTally:
+        """Of both; that no event is in both is the result's to see."""
+        if self.units != other.units or not np.array_equal(self.edges, other.edges):
+            raise InvalidInput("other", f"expected {self.name} with the same edges")
         return replace(self, sums=self.sums + other.sums, n_events=self.n_events + other.n_events)
 
 
@@ -281,8 +290,8 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
             raise InvalidInput("other", f"expected one of {self.bombardment}, got one of {other.bombardment}")
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        tallies = tuple(self[name] + other[name] for name in self)
         events = _merged((*self.events, *other.events))
+        tallies = tuple(self[name]._joined(other[name]) for name in self)
         return replace(self, events=events, sums=self.sums + other.sums, tallies=tallies)
 
     def __radd__(self, other: int) -> FoilResult:

@@ -10,7 +10,7 @@ use pyo3::types::PyDict;
 use visviva_core::Result;
 use visviva_core::parallel::thread_count;
 use visviva_core::scattering::foil::{
-    Beam, Element, Fate, Foil, Model, Projectile, Quantity, Run, Slot, Weights, number_densities,
+    Beam, Element, Fate, Foil, Model, Projectile, Quantity, Run, Slot, Stopping, Weights, number_densities,
 };
 
 use super::monte_carlo::Bins;
@@ -24,18 +24,32 @@ type Counted<'py> = (u64, bool, (f64, f64), (f64, f64, usize), Whole<'py>, Vec<T
 /// Of each collision seven numbers, its directions, with which element; and what became of the ion.
 type History<'py> = (Column<'py>, Column<'py>, Whole<'py>, (String, f64, f64, f64, f64));
 
+/// What electrons take: the name of a model, or energies with losses.
+#[derive(FromPyObject)]
+enum Told {
+    Name(String),
+    Table(Vec<[f64; 2]>),
+}
+
+/// One element of a foil.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+struct DescribedElement<'py> {
+    atomic_number: f64,
+    mass: f64,
+    fraction: f64,
+    excitation: f64,
+    potential: Bound<'py, PyDict>,
+}
+
 /// A foil as it is described.
 #[derive(FromPyObject)]
 #[pyo3(from_item_all)]
 pub(crate) struct Described<'py> {
-    atomic_numbers: Vec<f64>,
-    masses: Vec<f64>,
-    fractions: Vec<f64>,
-    excitations: Vec<f64>,
-    potentials: Vec<Bound<'py, PyDict>>,
+    elements: Vec<DescribedElement<'py>>,
     density: f64,
     thickness: f64,
-    stopping: String,
+    stopping: Told,
     minimum_angle: f64,
 }
 
@@ -53,18 +67,22 @@ pub(crate) struct DescribedRun {
 
 impl Described<'_> {
     fn taken(self, py: Python<'_>) -> PyResult<Foil> {
-        let densities = number_densities(self.density, &self.masses, &self.fractions);
+        let column = |of: fn(&DescribedElement<'_>) -> f64| self.elements.iter().map(of).collect::<Vec<_>>();
+        let densities = number_densities(self.density, &column(|one| one.mass), &column(|one| one.fraction));
         let mut elements = Vec::new();
-        for (at, potential) in self.potentials.iter().enumerate() {
+        for (one, density) in self.elements.iter().zip(densities) {
             elements.push(Element {
-                atomic_number: self.atomic_numbers[at],
-                mass: self.masses[at],
-                density: densities[at],
-                excitation: self.excitations[at],
-                potential: described_potential(potential)?,
+                atomic_number: one.atomic_number,
+                mass: one.mass,
+                density,
+                excitation: one.excitation,
+                potential: described_potential(&one.potential)?,
             });
         }
-        let stopping = Model::named(&self.stopping).map_err(|error| raised(py, error))?;
+        let stopping = match self.stopping {
+            Told::Name(name) => Stopping::Formula(Model::named(&name).map_err(|error| raised(py, error))?),
+            Told::Table(rows) => Stopping::Table(rows),
+        };
         let foil = Foil { elements, thickness: self.thickness, stopping, minimum_angle: self.minimum_angle };
         foil.check().map_err(|error| raised(py, error))?;
         Ok(foil)

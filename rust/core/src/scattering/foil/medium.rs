@@ -3,7 +3,7 @@
 use super::angles::{Angles, Source, reach};
 use super::octaves::Octaves;
 use super::slowing::{PARTS, Slowing};
-use super::stopping::{Atoms, Model, Projectile, check};
+use super::stopping::{Atoms, Projectile};
 use super::{Element, Foil, Run};
 use crate::numerics::angles::sin_cos;
 use crate::numerics::elementary::{Exponential, cbrt, ln};
@@ -54,8 +54,8 @@ const LONGER: f64 = 1.25;
 impl Medium {
     pub(super) fn new(foil: &Foil, run: &Run, threads: usize, ticker: &mut Ticker<'_>) -> Result<Self> {
         let atoms = foil.atoms();
-        check(foil.stopping, &atoms)?;
-        let slowing = Slowing::new(foil.stopping, run.ion, &atoms, run.lowest, run.energy);
+        foil.stopping.reaches(&atoms, run.energy)?;
+        let slowing = Slowing::new(&foil.stopping, run.ion, &atoms, run.lowest, run.energy);
         let octaves = Octaves::new(run.lowest, run.energy, PARTS);
         let total: f64 = foil.elements.iter().map(|element| element.density).sum();
         // A disc to each atom of a layer that is as thick as atoms are apart: no one collides with two at once.
@@ -218,26 +218,30 @@ impl Foil {
         };
         self.elements.iter().map(of).collect()
     }
+    /// What electrons take, and the atoms they are of, up to the largest of some energies.
+    fn up_to(&self, energy: &[f64]) -> Result<Vec<Atoms>> {
+        let atoms = self.atoms();
+        self.stopping.reaches(&atoms, energy.iter().copied().fold(0.0, f64::max))?;
+        Ok(atoms)
+    }
     /// S(E) in eV/Å at energies in eV.
     ///
     /// # Errors
-    /// `InvalidInput` naming `mean_excitation_energy`.
+    /// `InvalidInput` naming `mean_excitation_energy`, or `stopping` for a table that ends before.
     pub fn losses(&self, ion: Projectile, energy: &[f64]) -> Result<Vec<f64>> {
-        let atoms = self.atoms();
-        check(self.stopping, &atoms)?;
-        Ok(energy.iter().map(|energy| super::stopping::loss(self.stopping, ion, &atoms, *energy)).collect())
+        let atoms = self.up_to(energy)?;
+        Ok(energy.iter().map(|energy| self.stopping.loss(ion, &atoms, *energy)).collect())
     }
     /// How far an ion goes until its energy is `lowest`, by electrons alone: ∫dE/S in Å.
     ///
     /// # Errors
     /// As [`losses`](Self::losses); `InvalidInput` naming `stopping` where there is none.
     pub fn ranges(&self, ion: Projectile, energy: &[f64], lowest: f64) -> Result<Vec<f64>> {
-        let atoms = self.atoms();
-        check(self.stopping, &atoms)?;
-        if self.stopping == Model::Nothing {
+        let atoms = self.up_to(energy)?;
+        if self.stopping.is_nothing() {
             return Err(Error::invalid("stopping", "expected one that stops, got 'none'"));
         }
-        let inverse = |energy: f64| 1.0 / super::stopping::loss(self.stopping, ion, &atoms, energy);
+        let inverse = |energy: f64| 1.0 / self.stopping.loss(ion, &atoms, energy);
         let range = |energy: &f64| {
             // In u = √E, in which dE/S is smooth down to 0: 2u/S du by Gauss's rule of three points.
             let (from, to) = (lowest.sqrt(), energy.sqrt());

@@ -26,7 +26,7 @@ mod tally;
 mod walk;
 
 pub use medium::number_densities;
-pub use stopping::{Atoms, Model, Projectile};
+pub use stopping::{Atoms, Model, Projectile, Stopping};
 pub use tally::{Counts, MOST_EVENTS, Quantity, Slot, Weights};
 pub use walk::{Ended, Fate, Met};
 
@@ -68,7 +68,7 @@ pub struct Foil {
     /// In Å.
     pub thickness: f64,
     /// What electrons take.
-    pub stopping: Model,
+    pub stopping: Stopping,
     /// Collisions that turn by less, in the frame of the center of mass, are left out.
     pub minimum_angle: f64,
 }
@@ -134,6 +134,7 @@ impl Foil {
             }
         }
         positive("thickness", self.thickness)?;
+        self.stopping.check()?;
         between("minimum_angle", self.minimum_angle, 1e-12..0.5, "an angle from 1e-12 to 0.5")
     }
 }
@@ -249,24 +250,22 @@ impl Beam {
             let bound = |chunk: u64| first + (EVENTS_PER_CHUNK * chunk).min(events);
             let chunks = events.div_ceil(EVENTS_PER_CHUNK);
             let parts = for_chunks(threads, chunks as usize, ticker, |chunk, ticker| {
-                let mut counts = Counts::new(tallies);
-                let mut done = 0;
+                let mut ends = Vec::new();
                 for event in bound(chunk as u64)..bound(chunk as u64 + 1) {
                     match self.medium.follow(Draws::new(seed, event), &mut |_| (), ticker) {
-                        Ok(ended) => counts.count(tallies, &ended, weights),
+                        Ok(ended) => ends.push(ended),
                         Err(Error::Interrupted) => break,
                         Err(error) => return Err(error),
                     }
-                    done += 1;
                     ticker.control().count(1);
                 }
-                Ok((done, counts))
+                Ok(ends)
             })?;
-            for (chunk, (done, counts)) in parts.into_iter().enumerate() {
-                counted.counts.add(&counts);
-                counted.events += done;
+            for (chunk, ends) in parts.into_iter().enumerate() {
+                ends.iter().for_each(|ended| counted.counts.count(tallies, ended, weights));
+                counted.events += ends.len() as u64;
                 // Behind the first chunk that is not whole nothing is adjacent any more.
-                if done < bound(chunk as u64 + 1) - bound(chunk as u64) {
+                if (ends.len() as u64) < bound(chunk as u64 + 1) - bound(chunk as u64) {
                     return if counted.events == 0 { Err(Error::Interrupted) } else { Ok(counted) };
                 }
             }

@@ -7,8 +7,8 @@
 //! Fano, Annu. Rev. Nucl. Sci. 13 (1963) 1, eq. 17; J. P. Biersack, L. G. Haggmark, Nucl. Instrum. Methods 174 (1980)
 //! 257, eqs. 12–14. Constants: CODATA 2018.
 
-use crate::numerics::elementary::{cbrt, ln};
-use crate::words::unknown;
+use crate::numerics::elementary::{Exponential, cbrt, ln};
+use crate::words::{number, unknown};
 use crate::{Error, Result};
 use core::f64::consts::{E, PI};
 
@@ -81,26 +81,85 @@ pub struct Atoms {
     pub excitation: f64,
 }
 
-/// Refuses what a model lacks.
-///
-/// # Errors
-/// `InvalidInput` naming `mean_excitation_energy` where it is needed and not known.
-pub(super) fn check(model: Model, atoms: &[Atoms]) -> Result<()> {
-    match atoms.iter().find(|atoms| model.needs_excitation() && atoms.excitation.is_nan()) {
-        None => Ok(()),
-        Some(atoms) => Err(Error::invalid(
-            "mean_excitation_energy",
-            format!(
-                "expected that of atomic number {}, which the stopping 'bethe' and 'joined' need, got None; give it in eV, \
-                 or choose 'lindhard_scharff' or 'none'",
-                atoms.atomic_number
-            ),
-        )),
+/// What electrons take: a formula, or what was measured.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Stopping {
+    /// Of a model.
+    Formula(Model),
+    /// Energies in eV, increasing, and the losses there in eV/Å: between them straight lines of the logarithms, below the
+    /// first in proportion to the speed.
+    Table(Vec<[f64; 2]>),
+}
+
+impl Stopping {
+    /// Whether nothing is taken.
+    pub(super) fn is_nothing(&self) -> bool {
+        *self == Self::Formula(Model::Nothing)
+    }
+    /// Refuses what is no table.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `stopping`.
+    pub(super) fn check(&self) -> Result<()> {
+        let Self::Table(rows) = self else { return Ok(()) };
+        let positive = |row: &[f64; 2]| row.iter().all(|x| *x > 0.0 && x.is_finite());
+        if rows.len() >= 2 && rows.iter().all(positive) && rows.windows(2).all(|two| two[0][0] < two[1][0]) {
+            return Ok(());
+        }
+        Err(Error::invalid(
+            "stopping",
+            "expected two or more increasing energies, and a positive loss at each",
+        ))
+    }
+    /// Refuses what it lacks: mean excitation energies, or a table as far as that energy.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `mean_excitation_energy` or `stopping`.
+    pub(super) fn reaches(&self, atoms: &[Atoms], energy: f64) -> Result<()> {
+        match self {
+            Self::Table(rows) => match rows.last() {
+                Some([last, _]) if *last < energy => Err(Error::invalid(
+                    "stopping",
+                    format!(
+                        "expected losses up to {}, got a table that ends at {}",
+                        number(energy),
+                        number(*last)
+                    ),
+                )),
+                _ => Ok(()),
+            },
+            Self::Formula(model) => match atoms.iter().find(|atoms| atoms.excitation.is_nan()) {
+                Some(atoms) if model.needs_excitation() => Err(Error::invalid(
+                    "mean_excitation_energy",
+                    format!(
+                        "expected that of atomic number {}, which the stopping 'bethe' and 'joined' need, got None; \
+                         give it in eV, or choose 'lindhard_scharff' or 'none'",
+                        atoms.atomic_number
+                    ),
+                )),
+                _ => Ok(()),
+            },
+        }
+    }
+    /// The loss in eV/Å at an energy in eV.
+    pub(super) fn loss(&self, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
+        match self {
+            Self::Formula(model) => loss(*model, ion, atoms, energy),
+            Self::Table(rows) => tabulated(rows, energy),
+        }
     }
 }
 
+fn tabulated(rows: &[[f64; 2]], energy: f64) -> f64 {
+    let after = rows.partition_point(|row| row[0] <= energy).min(rows.len() - 1);
+    let Some(before) = after.checked_sub(1) else { return rows[0][1] * (energy / rows[0][0]).sqrt() };
+    let ([from, low], [to, high]) = (rows[before], rows[after]);
+    let part = ln(energy / from) / ln(to / from);
+    low * Exponential::exp(part * ln(high / low))
+}
+
 /// The loss in eV/Å at an energy in eV.
-pub(super) fn loss(model: Model, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
+fn loss(model: Model, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
     let part = energy / (ion.mass * MASS_UNIT);
     // β²γ² is kept apart from β²: neither cancels for slow ions.
     let impulse = part * (part + 2.0);
@@ -157,6 +216,17 @@ fn continued(ion: Projectile, atoms: &Atoms, beta2: f64, impulse: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn tables_are_straight_in_logarithms() {
+        let table = Stopping::Table(vec![[1e3, 2.0], [1e5, 8.0], [1e6, 4.0]]);
+        let at = |energy| table.loss(ALPHA, &[], energy);
+        assert!((at(1e4) - 4.0).abs() < 1e-14 && at(1e3) == 2.0 && (at(1e6) - 4.0).abs() < 1e-14);
+        assert!((at(250.0) - 1.0).abs() < 1e-15 && table.check().is_ok());
+        assert!(table.reaches(&[], 1e6).is_ok() && table.reaches(&[], 1.01e6).is_err());
+        assert!(Stopping::Table(vec![[1.0, 1.0], [1.0, 2.0]]).check().is_err());
+        assert!(Stopping::Table(vec![[1.0, 1.0], [2.0, 0.0]]).check().is_err());
+    }
 
     const ALPHA: Projectile = Projectile { atomic_number: 2.0, mass: 4.001_506_179 };
     const GOLD: Atoms = Atoms { atomic_number: 79.0, density: 0.059_07, excitation: 790.0 };

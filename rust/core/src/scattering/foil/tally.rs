@@ -88,8 +88,7 @@ pub struct Slot {
 }
 
 impl Slot {
-    /// Adds another.
-    pub fn add(&mut self, other: Self) {
+    fn add(&mut self, other: Self) {
         self.count += other.count;
         self.weight += other.weight;
         self.square += other.square;
@@ -143,13 +142,6 @@ impl Counts {
             if let Some(value) = quantity.of(ended) {
                 slots[edges.slot(value)].add(slot);
             }
-        }
-    }
-    /// Adds others of the same tallies.
-    pub(super) fn add(&mut self, other: &Self) {
-        let mine = self.tallies.iter_mut().flatten().chain(&mut self.fates);
-        for (slot, more) in mine.zip(other.tallies.iter().flatten().chain(&other.fates)) {
-            slot.add(*more);
         }
     }
 }
