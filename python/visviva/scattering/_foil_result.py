@@ -305,7 +305,7 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         return f"<FoilResult: {self.n_events} events, {parts}>"
 
     def plot(self) -> Figure:
-        """Draw every tally, with a band of one standard error.
+        """Draw every tally that has counted something, with a band of one standard error.
 
         Returns
         -------
@@ -318,8 +318,9 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         """
         from visviva.plot import new_figure
 
-        figure, panels = new_figure(len(self.tallies), (4.5 * len(self.tallies), 4.0))
-        for axes, tally in zip(panels, self.tallies, strict=True):
+        drawn = [tally for tally in self.tallies if tally.counts.any()] or self.tallies
+        figure, panels = new_figure(len(drawn), (4.5 * len(drawn), 4.0))
+        for axes, tally in zip(panels, drawn, strict=True):
             value, error = tally.fraction()
             angle = tally.name.endswith("angle")
             edges = np.degrees(tally.edges) if angle else tally.edges
