@@ -385,6 +385,36 @@ REFUSED = {
 }
 
 
+def test_relativistic_ions_are_refused():
+    foil = S.Foil("gold", 0.1)
+    with pytest.raises(vv.InvalidInput, match="beam_energy: expected at most a tenth of the ion's rest energy"):
+        foil.run("proton", beam_energy=1e8, n_events=1, seed=1)
+    with pytest.raises(vv.InvalidInput, match=r"energy: expected at most 10\.0 times the ion's rest energy"):
+        foil.stopping_power("proton", [1e6, 1e10])
+
+
+@pytest.mark.parametrize(
+    "potential",
+    [
+        vv.potentials.Plummer(30.0, 0.3),  # a hill that protons pass over, and as they slow down do not
+        vv.potentials.SoftSphere(3000.0, 1.0, 6),
+        vv.potentials.LennardJones(0.01, 2.0),
+        vv.potentials.HardSphere(0.5),
+        vv.potentials.Coulomb(-50.0),
+    ],
+)
+def test_any_potential(potential):
+    foil = S.Foil("carbon", 0.01, potential=potential, stopping="none")
+    hill = isinstance(potential, vv.potentials.Plummer)
+    energy, lowest = (110.0, 90.0) if hill else (1e4, 5e3)
+    way = foil.history("proton", beam_energy=energy, seed=1, lowest_energy=lowest)
+    share = 12.011 / (12.011 + 1.007276466621)
+    found = S.deflect(potential, energy=way["energy"][:, 0] * share, impact_parameter=way["impact_parameter"])
+    folded = np.arccos(np.cos(found.angle))
+    assert len(folded)
+    assert np.allclose(way["cm_angle"], folded, rtol=1e-4, atol=2e-8)
+
+
 @pytest.mark.parametrize("argument", REFUSED)
 def test_bad_input_is_refused_by_name(argument):
     with pytest.raises(vv.InvalidInput) as caught:

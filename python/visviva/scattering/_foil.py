@@ -173,7 +173,7 @@ class Foil:
         ion : Ion or str
             What flies: see `Ion`.
         beam_energy : float
-            In eV.
+            In eV; at most a tenth of the ion's rest energy.
         n_events : int
             How many ions, at least 1 and at most 2³⁹.
         seed : int
@@ -213,8 +213,7 @@ class Foil:
         Raises
         ------
         InvalidInput
-            For any argument out of range, by name; a potential that captures, or whose deflections cannot be tabulated
-            to 4e-6 in sin²(ψ/2).
+            For any argument out of range, by name; a potential that captures.
         Interrupted
             After Ctrl-C. Its ``.result`` holds the events counted until then, from ``first_event`` without a gap (None
             if there are none yet): with a run of the rest it adds up to the whole, bit for bit.
@@ -329,7 +328,8 @@ class Foil:
         Raises
         ------
         InvalidInput
-            For an energy that is not positive, or a mean excitation energy that is needed and not known.
+            For an energy that is not positive or more than ten times the ion's rest energy (there is no density effect
+            in the formula), or a mean excitation energy that is needed and not known.
 
         Examples
         --------

@@ -160,7 +160,7 @@ impl Atom {
         let Projectile { mass, .. } = run.ion;
         let share = Collision::new(mass, element.mass)?.relative_share();
         let deflector = Source::deflector(&element.potential)?;
-        let source = Source { deflector: &deflector, threads };
+        let source = Source { deflector: &deflector, minimum: foil.minimum_angle, threads };
         let mut relative: Vec<f64> =
             (0..octaves.cells()).map(|cell| octaves.bounds(cell).0.max(run.lowest) * share).collect();
         let cuts = if run.single {
@@ -230,6 +230,15 @@ impl Foil {
     /// `InvalidInput` naming `mean_excitation_energy`, or `stopping` for a table that ends before.
     pub fn losses(&self, ion: Projectile, energy: &[f64]) -> Result<Vec<f64>> {
         let atoms = self.up_to(energy)?;
+        if let Some(energy) = energy.iter().find(|energy| **energy > FASTEST * ion.rest_energy()) {
+            let message = format!(
+                "expected at most {} times the ion's rest energy of {}, got {}",
+                number(FASTEST),
+                number(ion.rest_energy()),
+                number(*energy)
+            );
+            return Err(Error::invalid("energy", message));
+        }
         Ok(energy.iter().map(|energy| self.stopping.loss(ion, &atoms, *energy)).collect())
     }
     /// How far an ion goes until its energy is `lowest`, by electrons alone: ∫dE/S in Å.
@@ -262,6 +271,8 @@ impl Foil {
     }
 }
 
+/// Beyond, the electrons' density effect leaves nothing of Bethe's formula.
+const FASTEST: f64 = 10.0;
 /// √(3/5): Gauss's outer points.
 const GAUSS: f64 = 0.774_596_669_241_483_4;
 /// Pieces of a range.

@@ -45,6 +45,9 @@ use std::sync::Arc;
 const EVENTS_PER_CHUNK: u64 = 2048;
 const CHUNKS_PER_THREAD: u64 = 32;
 
+/// The largest energy, as a part of the ion's rest energy.
+const FASTEST: f64 = 0.1;
+
 /// One element of a foil.
 #[derive(Clone, Debug)]
 pub struct Element {
@@ -152,6 +155,14 @@ impl Run {
                 number(self.lowest)
             );
             return Err(Error::invalid("lowest_energy", message));
+        }
+        if self.energy > FASTEST * self.ion.rest_energy() {
+            let message = format!(
+                "expected at most a tenth of the ion's rest energy, {}: collisions are not relativistic; got {}",
+                number(self.ion.rest_energy()),
+                number(self.energy)
+            );
+            return Err(Error::invalid("beam_energy", message));
         }
         between("incidence", self.incidence, 0.0..1.55, "an angle from 0 to 1.55 between beam and normal")?;
         match self.forced_angle {

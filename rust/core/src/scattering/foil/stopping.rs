@@ -70,6 +70,13 @@ pub struct Projectile {
     pub mass: f64,
 }
 
+impl Projectile {
+    /// In eV.
+    pub(super) fn rest_energy(self) -> f64 {
+        self.mass * MASS_UNIT
+    }
+}
+
 /// The atoms of one element whose electrons take it.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Atoms {
@@ -160,7 +167,7 @@ fn tabulated(rows: &[[f64; 2]], energy: f64) -> f64 {
 
 /// The loss in eV/Å at an energy in eV.
 fn loss(model: Model, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
-    let part = energy / (ion.mass * MASS_UNIT);
+    let part = energy / ion.rest_energy();
     // β²γ² is kept apart from β²: neither cancels for slow ions.
     let impulse = part * (part + 2.0);
     let beta2 = impulse / ((1.0 + part) * (1.0 + part));

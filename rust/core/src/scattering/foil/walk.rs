@@ -5,6 +5,7 @@
 //! it would be wider than atoms are apart, as wide as that. A disc is a choice of which collisions to leave out and no
 //! approximation to those that are in: it may change from flight to flight.
 
+use super::angles::captures;
 use super::draws::{Draws, FORCED, MOST_STEPS};
 use super::medium::{Atom, Medium};
 use crate::numerics::angles::{atan2, sin_cos};
@@ -94,8 +95,11 @@ impl Ion {
         }
     }
     /// Meets an atom; gives what there is to tell of it.
-    fn meet(&mut self, atom: &Atom, element: usize, b: f64, azimuth: f64) -> Met {
+    fn meet(&mut self, atom: &Atom, element: usize, b: f64, azimuth: f64) -> Result<Met> {
         let (sine, cosine) = atom.angles.half(self.energy * atom.share, b);
+        if sine.is_nan() {
+            return Err(captures(self.energy * atom.share));
+        }
         let (square, complement) = (sine * sine, cosine * cosine);
         // Of velocities in units of the speed: along, across; p − q = (m₁ − m₂)/(m₁ + m₂).
         let excess = 1.0 - 2.0 * atom.share;
@@ -103,7 +107,7 @@ impl Ion {
         let before = (self.energy, self.direction);
         self.energy *= complement + excess * excess * square;
         self.direction = turned(self.direction, along, across, azimuth);
-        Met {
+        Ok(Met {
             depth: self.depth,
             path: self.path,
             element,
@@ -111,7 +115,7 @@ impl Ion {
             cm_angle: 2.0 * atan2(sine, cosine),
             energy: [before.0, self.energy],
             direction: [before.1, self.direction],
-        }
+        })
     }
 }
 
@@ -144,31 +148,37 @@ impl Medium {
         match (self.forced, self.single) {
             (Some(forced), true) => {
                 ticker.tick()?;
-                Ok(self.once(ion, forced, draws, watch))
+                self.once(ion, forced, draws, watch)
             }
             (forced, _) => self.often(ion, forced, draws, watch, ticker),
         }
     }
     /// The forced collision.
-    fn force(&self, ion: &mut Ion, forced: (f64, f64), draws: Draws) -> (Met, f64) {
+    fn force(&self, ion: &mut Ion, forced: (f64, f64), draws: Draws) -> Result<(Met, f64)> {
         let share = draws.uniform(FORCED + 1);
         // One element needs no draw.
         let which = if self.atoms.len() > 1 { draws.uniform(FORCED + 3) } else { 0.0 };
         let (atom, at, b, weight) = self.met_forced(forced, which, share);
-        let met = ion.meet(atom, at, b, draws.uniform(FORCED + 2));
+        let met = ion.meet(atom, at, b, draws.uniform(FORCED + 2))?;
         ion.cm_angle = met.cm_angle;
-        (met, weight)
+        Ok((met, weight))
     }
     /// One collision between two straight ways.
-    fn once(&self, mut ion: Ion, forced: (f64, f64), draws: Draws, watch: &mut impl FnMut(&Met)) -> Ended {
+    fn once(
+        &self,
+        mut ion: Ion,
+        forced: (f64, f64),
+        draws: Draws,
+        watch: &mut impl FnMut(&Met),
+    ) -> Result<Ended> {
         let way = draws.uniform(FORCED) * forced.0;
         let (energy, left) = self.slowing.along(ion.energy, way, self.lowest);
         (ion.energy, ion.path) = (energy, way - left);
         ion.depth = ion.path * ion.direction[2];
         if energy < self.lowest {
-            return ion.ended(self, Fate::Missed, 0.0);
+            return Ok(ion.ended(self, Fate::Missed, 0.0));
         }
-        let (met, weight) = self.force(&mut ion, forced, draws);
+        let (met, weight) = self.force(&mut ion, forced, draws)?;
         watch(&met);
         let slope = ion.direction[2];
         let way = if slope > 0.0 { self.thickness - ion.depth } else { ion.depth } / slope.abs();
@@ -176,11 +186,11 @@ impl Medium {
         ion.energy = energy;
         if energy < self.lowest || slope == 0.0 {
             ion.depth = (ion.depth + (way.min(FAR) - left) * slope).clamp(0.0, self.thickness);
-            return ion.ended(self, Fate::Stopped, weight);
+            return Ok(ion.ended(self, Fate::Stopped, weight));
         }
         let fate = if slope > 0.0 { Fate::Transmitted } else { Fate::Reflected };
         ion.depth = if slope > 0.0 { self.thickness } else { 0.0 };
-        ion.ended(self, fate, weight)
+        Ok(ion.ended(self, fate, weight))
     }
     /// As many collisions as there are, one of them forced or none.
     fn often(
@@ -226,7 +236,7 @@ impl Medium {
             (ion.depth, ion.path) = (depth, ion.path + length);
             if let Some((_, forced)) = pending.filter(|_| length == to_forced) {
                 pending = None;
-                let (met, of_this) = self.force(&mut ion, forced, draws);
+                let (met, of_this) = self.force(&mut ion, forced, draws)?;
                 // None before it.
                 weight = of_this * Exponential::exp(-forced.1 * ion.path);
                 watch(&met);
@@ -234,7 +244,7 @@ impl Medium {
                 let which = if self.atoms.len() > 1 { draws.uniform(first + 3) } else { 0.0 };
                 let (atom, at, b) = self.met(cell, which, draws.uniform(first + 1));
                 if pending.is_none() || b >= atom.forced {
-                    watch(&ion.meet(atom, at, b, draws.uniform(first + 2)));
+                    watch(&ion.meet(atom, at, b, draws.uniform(first + 2))?);
                 }
             } else if length == FAR {
                 // Along the surface for ever.

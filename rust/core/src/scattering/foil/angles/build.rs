@@ -9,17 +9,18 @@ use crate::scattering::deflection::{Deflection, Deflector, Status};
 use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::{FRAC_PI_2, PI};
+use std::sync::Arc;
 
 /// The largest error of sin²(ψ/2) that a table may have.
 const MOST_ERROR: f64 = 4e-6;
 /// What series are refined to, as a part of the largest angle nearby.
 const AIM: f64 = 1e-6;
-/// Below this no angle of its own is meant.
-const SMALLEST: f64 = 1e-10;
+/// Below this part of the minimum angle none is meant.
+const SMALLEST: f64 = 1e-4;
 /// Intervals are halved so often at most.
 const DEEPEST: u32 = 22;
 /// More pieces than this in one cell are no smooth function.
-const MOST_PIECES: usize = 400;
+const MOST_PIECES: usize = 200;
 /// Places, of energy and of b, at which a series is tried.
 const TRIED: [[f64; 2]; 10] = [
     [-0.97, -0.93],
@@ -39,7 +40,7 @@ const CERTIFYING: u64 = 64;
 const PER_OCTAVE: i32 = 4;
 const OCTAVES: i32 = 40;
 /// Of the quadrature.
-const TOLERANCE: f64 = 1e-9;
+const TOLERANCE: f64 = 1e-12;
 
 /// The largest impact parameters, up to `cap`, that still turn by an angle: one for each energy; 0 where none does.
 pub(in crate::scattering::foil) fn reach(
@@ -92,10 +93,8 @@ impl<'a> Source<'a> {
         self.deflector.deflect(&energy, &b, false, self.threads, ticker)
     }
     /// Of a potential.
-    pub(in crate::scattering::foil) fn deflector(
-        potential: &std::sync::Arc<dyn Potential>,
-    ) -> Result<Deflector> {
-        Deflector::new(potential, TOLERANCE)
+    pub(in crate::scattering::foil) fn deflector(potential: &Arc<dyn Potential>) -> Result<Arc<Deflector>> {
+        Deflector::new(potential, TOLERANCE).map(Arc::new)
     }
 }
 
@@ -103,9 +102,9 @@ impl Angles {
     /// Between two energies of relative motion, as far out as `radius` says of what lies between two energies.
     ///
     /// # Errors
-    /// `InvalidInput` naming `potential` for one that captures or whose deflections a table cannot hold; `Interrupted`.
+    /// `InvalidInput` naming `potential` for one that captures; `Interrupted`.
     pub(in crate::scattering::foil) fn build(
-        potential: &std::sync::Arc<dyn Potential>,
+        potential: &Arc<dyn Potential>,
         source: &Source<'_>,
         (lowest, highest): (f64, f64),
         radius: &(dyn Fn(f64, f64) -> f64 + Sync),
@@ -118,19 +117,25 @@ impl Angles {
         let built = for_chunks(source.threads, octaves.cells(), ticker, |cell, ticker| {
             let (from, to) = octaves.bounds(cell);
             let source = Source { threads: 1, ..*source };
-            let made = Cell::build(&source, (from, to), radius(from, to), ticker)?;
+            let mut made = Cell::build(&source, (from, to), radius(from, to), ticker)?;
             let error = made.certified(&source, (from, to), cell as u64, ticker)?;
+            if error > MOST_ERROR {
+                made.pieces.clear();
+                return Ok((made, 0.0));
+            }
             Ok((made, error))
         })?;
         let error = built.iter().fold(0.0_f64, |worst, (_, error)| worst.max(*error));
         let cells = built.into_iter().map(|(cell, _)| cell).collect();
-        Ok(Self::Table(Table { octaves, cells, error }))
+        Ok(Self::Table(Table { octaves, cells, error, deflector: Arc::clone(source.deflector) }))
     }
 }
 
-fn refused(energy: f64, why: &str) -> Error {
+/// What is refused.
+pub(in crate::scattering::foil) fn captures(energy: f64) -> Error {
     let message = format!(
-        "expected one with a smooth deflection function, but at {} eV of relative motion {why}",
+        "expected one that captures nothing, since ions that fall into an atom have no way on, but at {} eV of relative \
+         motion it does",
         number(energy)
     );
     Error::invalid("potential", message)
@@ -151,7 +156,7 @@ impl Cell {
         while let Some((from, to, depth)) = pending.pop() {
             ticker.tick()?;
             if done.len() + pending.len() > MOST_PIECES {
-                return Err(refused(middle, "its deflections do not fit into a table"));
+                return Ok(cell);
             }
             let (series, right) = cell.piece(source, bounds, (from, to), ticker)?;
             if right || depth >= DEEPEST {
@@ -186,7 +191,7 @@ impl Cell {
             places.iter().map(|(energy, part)| (*energy, part * self.b_max)).collect();
         let found = source.deflections(&pairs, ticker)?;
         if found.iter().any(|found| found.status == Status::Captured) {
-            return Err(refused(bounds.0, "it captures; ions that fall into an atom have no way on"));
+            return Err(captures(bounds.0));
         }
         let ratio = |at: usize| found[at].angle / self.reference(places[at].0, places[at].1);
         let mut series = [[0.0; IN_ENERGY]; IN_B];
@@ -206,7 +211,7 @@ impl Cell {
         let right = TRIED.iter().enumerate().all(|(tried, [y, x])| {
             let at = IN_B * IN_ENERGY + tried;
             let off = sum(&series, *y, *x) * self.reference(places[at].0, places[at].1) - found[at].angle;
-            off.abs() <= AIM * largest + SMALLEST + 4.0 * found[at].error
+            off.abs() <= AIM * largest + SMALLEST * source.minimum + 4.0 * found[at].error
         });
         Ok((series, right))
     }
@@ -219,6 +224,9 @@ impl Cell {
         which: u64,
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
+        if self.pieces.is_empty() {
+            return Ok(0.0);
+        }
         let random = |i: u64| {
             draw(key(0x666f_696c), 2 * CERTIFYING * which + i).number() as f64 / (1_u64 << 53) as f64
         };
@@ -233,9 +241,6 @@ impl Cell {
             (square(self.angle(place, *energy, *part)) - square(found.angle)).abs()
         });
         let worst = worst.fold(0.0_f64, f64::max);
-        if worst > MOST_ERROR {
-            return Err(refused(from, &format!("its table is off by {} in sin²(ψ/2)", number(worst))));
-        }
         Ok(worst)
     }
 }

@@ -2,15 +2,19 @@
 //!
 //! As an [event table](crate::scattering::event_table) of one energy, in two variables: the ratio of ψ to the deflection of
 //! a Coulomb center with the same slope head-on is a Chebyshev series in both, octave by octave of the energy in halves,
-//! intervals of b halved until the series is right between its points. Of V = k/r there is the closed form.
+//! intervals of b halved until the series is right between its points. Cells in which that leads nowhere, since ψ is not
+//! smooth in the energy (the top of a hill that ions pass over), go without: each angle is found by quadrature, in a
+//! hundred times the time. Of V = k/r there is the closed form.
 
 mod build;
 
 use super::octaves::Octaves;
 use crate::numerics::angles::{atan2, sin_cos};
+use crate::parallel::{Control, Ticker};
 use crate::scattering::deflection::Deflector;
+use std::sync::Arc;
 
-pub(super) use build::reach;
+pub(super) use build::{captures, reach};
 
 /// Coefficients in the energy, of half an octave or less.
 const IN_ENERGY: usize = 6;
@@ -30,6 +34,7 @@ struct Cell {
     scale: f64,
     /// Where intervals begin, and the end, as parts of b_max.
     starts: Vec<f64>,
+    /// None where each angle is found on its own.
     pieces: Vec<Series>,
 }
 
@@ -47,10 +52,11 @@ pub(super) struct Table {
     octaves: Octaves,
     cells: Vec<Cell>,
     error: f64,
+    deflector: Arc<Deflector>,
 }
 
 impl Angles {
-    /// Sine and cosine of |ψ|/2.
+    /// Sine and cosine of |ψ|/2; NaN of what is captured.
     #[inline]
     pub(super) fn half(&self, energy: f64, b: f64) -> (f64, f64) {
         match self {
@@ -90,6 +96,11 @@ impl Table {
         let cell = self.octaves.cell(energy);
         let place = self.octaves.place(cell, energy);
         let cell = &self.cells[cell];
+        if cell.pieces.is_empty() {
+            let control = Control::new(0);
+            let found = self.deflector.deflect(&[energy], &[b], false, 1, &mut Ticker::quiet(&control));
+            return found.ok().and_then(|found| found.first().map(|found| found.angle)).unwrap_or(f64::NAN);
+        }
         cell.angle(place, energy, b / cell.b_max)
     }
 }
@@ -124,7 +135,9 @@ fn sum(series: &Series, y: f64, x: f64) -> f64 {
 
 /// What the deflections are of.
 pub(super) struct Source<'a> {
-    pub(super) deflector: &'a Deflector,
+    pub(super) deflector: &'a Arc<Deflector>,
+    /// The minimum angle.
+    pub(super) minimum: f64,
     pub(super) threads: usize,
 }
 

@@ -17,7 +17,7 @@ fn the_table_is_right_between_its_points() {
     let ticker = &mut Ticker::quiet(&control);
     let potential = screened();
     let deflector = Source::deflector(&potential).unwrap();
-    let source = Source { deflector: &deflector, threads: 1 };
+    let source = Source { deflector: &deflector, minimum: 1e-6, threads: 1 };
     let angles = Angles::build(&potential, &source, (7e3, 7.7e6), &|_, _| 1.0, ticker).unwrap();
     assert!(angles.error() < 4e-6 && angles.bytes() < 2_000_000, "{} {}", angles.error(), angles.bytes());
     let Angles::Table(table) = &angles else { panic!("no table") };
