@@ -72,6 +72,9 @@ def test_angles_are_those_of_the_deflection_function():
     assert np.allclose(way["cm_angle"], found.angle, rtol=1e-5, atol=1e-9)
     assert way["cm_angle"].min() > 0.5e-4
     assert way["cm_angle"].max() > 0.1
+    # Discs hold all that turn by the minimum angle and little more.
+    below = way["cm_angle"] < 1e-4
+    assert 0 < below.sum() < 0.1 * len(below)
 
 
 def test_without_collisions_the_range_is_the_integral():
@@ -147,6 +150,28 @@ def test_single_collisions_follow_rutherford():
     assert np.array_equal(
         out["reflected_angle"].sums[1:-1] + out["transmitted_angle"].sums[1:-1], out["lab_angle"].sums[1:-1]
     )
+
+
+def test_elements_take_their_parts():
+    """Electrum: the expected number of single collisions past 90° is the sum of both metals'.
+
+    And of discs of one size, each takes as many collisions as it has atoms.
+    """
+    alloy = S.Material(14.0, [79, 47], [196.96657, 107.8682], [3, 1], mean_excitation_energy=[790.0, 470.0])
+    foil = S.Foil(alloy, 0.3, potential="coulomb", stopping="none", minimum_angle=2e-3)
+    asked = {"beam_energy": 5e6, "seed": 3, "collisions": "single", "forced_angle": 1.0}
+    out = foil.run("alpha", n_events=200_000, tally={"cm_angle": [0.0, np.pi / 2, np.pi]}, **asked)
+    value, error = out["cm_angle"].fraction()
+    expected = 0.0
+    for number, mass, part in ((79, 196.96657, 0.75), (47, 107.8682, 0.25)):
+        kappa = 2 * number * 14.399645478 / (2 * 5e6 / (1 + 4.001506179127 / mass))
+        expected += np.pi * kappa**2 * part * alloy.number_density * 3000.0
+    assert abs(value[1] - expected) < 4.0 * error[1] < 0.02 * expected
+    metals = np.concatenate(
+        [foil.history("alpha", beam_energy=5e4, seed=1, event=event)["element"] for event in range(30)]
+    )
+    spread = np.sqrt(0.25 * 0.75 / len(metals))
+    assert abs(np.mean(metals == 0) - 0.75) < 4.0 * spread < 0.04
 
 
 def test_forced_collisions_count_what_happens_by_itself():
@@ -317,7 +342,10 @@ def test_draws_are_where_they_are_written_down():
         radius.append(way["impact_parameter"][0] / np.sqrt(uniform[1]))
     assert path[0] == pytest.approx(path[1], rel=1e-14)
     assert radius[0] == pytest.approx(radius[1], rel=1e-14)
-    # And the mean way is that of the disc.
+    # The disc holds what turns by the minimum angle, and little more: a cell of energies is 6 %, and 3 % are beside.
+    kappa = 2 * 79 * 14.399645478 / (2 * 1e6 / (1 + 4.001506179127 / 196.96657))
+    assert 1.0 < radius[0] / (kappa / np.tan(2.5e-3)) < 1.1
+    # And the mean way is that of it.
     number = foil.material.number_density
     assert path[0] * 1e4 == pytest.approx(1.0 / (number * np.pi * radius[0] ** 2), rel=1e-14)
 

@@ -175,7 +175,8 @@ impl Atom {
             forced = reach(&source, &[left * share], angle, cap, ticker)?[0];
             if forced > 0.0 {
                 let back = reach(&source, &[run.energy * share], FRAC_PI_2, cap, ticker)?[0];
-                knee = (back / forced).powi(2).clamp(1e-9, 1.0);
+                // What turns nothing back has no knee.
+                knee = if back > 0.0 { (back / forced).powi(2).clamp(1e-6, 1.0) } else { 1.0 };
             }
         }
         let radius = |from: f64, to: f64| {
