@@ -175,6 +175,31 @@ def monte_carlo(
         ]
     ],
 ]: ...
+def check_foil(foil: dict[str, Any]) -> None: ...
+def foil_run(
+    *,
+    foil: dict[str, Any],
+    run: dict[str, Any],
+    n_events: int,
+    seed: int,
+    first_event: int,
+    tallies: list[tuple[str, int | NDArray[np.float64]]],
+    threads: int | None,
+    progress: Callable[[int, int], object] | None,
+) -> tuple[
+    int,
+    bool,
+    tuple[float, float],
+    tuple[float, float, int],
+    NDArray[np.uint64],
+    list[tuple[str, NDArray[np.float64], NDArray[np.uint64]]],
+]: ...
+def foil_history(
+    *, foil: dict[str, Any], run: dict[str, Any], seed: int, event: int
+) -> tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.uint64], tuple[str, float, float, float, float]]: ...
+def foil_stopping(
+    *, foil: dict[str, Any], ion: tuple[float, float], energy: NDArray[np.float64], lowest: float | None
+) -> NDArray[np.float64]: ...
 def scattering_structure(
     description: dict[str, Any], energy: float
 ) -> tuple[list[tuple[float, float]], list[tuple[float, float, float]]]: ...

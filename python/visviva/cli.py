@@ -1,4 +1,4 @@
-"""The command line: ``visviva demo``, ``toutatis``, ``dzhanibekov``, ``methods``, ``stress`` and ``info``."""
+"""The command line: ``visviva demo``, ``geiger-marsden``, ``toutatis``, ``methods``, ``stress``, ``info`` and more."""
 
 from __future__ import annotations
 
@@ -59,6 +59,12 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("--events", type=_finite, default=1e8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
+    foil = commands.add_parser("geiger-marsden", help="alpha particles through silver and gold, against 1913")
+    _output(foil)
+    foil.add_argument("--events", type=_finite, default=4e5, help="alpha particles for each metal (default: 4e5)")
+    foil.add_argument("--thickness", type=_finite, default=0.2, help="of the foils, in µm (default: 0.2)")
+    foil.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
+    foil.set_defaults(command=_geiger_marsden)
     toutatis = commands.add_parser("toutatis", help="the asteroid that tumbles, against what radar saw of it")
     _output(toutatis)
     toutatis.add_argument("--days", type=_finite, default=42.0, help="how long to follow it (default: 42)")
@@ -95,6 +101,13 @@ def _demo(options: argparse.Namespace) -> None:
     print()
     pictures += rutherford(options.output, int(options.events), options.threads)
     _say(pictures)
+
+
+def _geiger_marsden(options: argparse.Namespace) -> None:
+    from visviva.geiger_marsden import geiger_marsden
+
+    options.output.mkdir(parents=True, exist_ok=True)
+    _say(geiger_marsden(options.output, int(options.events), options.thickness, options.threads))
 
 
 def _toutatis(options: argparse.Namespace) -> None:

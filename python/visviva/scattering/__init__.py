@@ -25,6 +25,9 @@ from visviva.scattering._energies import (
     threshold_energy,
     two_branch_energy,
 )
+from visviva.scattering._foil import Foil
+from visviva.scattering._foil_material import Ion, Material
+from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
 from visviva.scattering._kinematics import (
     cm_angle,
     cm_angle_from_recoil,
@@ -47,11 +50,18 @@ from visviva.scattering._tally import Beam, CrossSection, JointTally, Spectrum, 
 
 __all__ = [
     "Beam",
+    "Bombardment",
     "CrossSection",
     "Deflection",
     "DeflectionStatus",
+    "Foil",
+    "FoilResult",
+    "FoilTally",
+    "Fraction",
     "Glory",
+    "Ion",
     "JointTally",
+    "Material",
     "Moderation",
     "MonteCarlo",
     "Orbit",

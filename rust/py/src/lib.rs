@@ -87,6 +87,8 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::deflection::deflections;
     #[pymodule_export]
+    use crate::scattering::foil::{check_foil, foil_history, foil_run, foil_stopping};
+    #[pymodule_export]
     use crate::scattering::kinematics::{kinematics, moderation, special_energy};
     #[pymodule_export]
     use crate::scattering::monte_carlo::{monte_carlo, scattering_events};

@@ -8,8 +8,8 @@
 //! - counter words 0 and 1 are event/2, low word first: a block serves an even event (output words 0 and 1) and
 //!   the odd one after it (output words 2 and 3), 64 bits each, low word first, of which the upper 53 count;
 //! - counter word 2 is the number of the draw within its event, from 0;
-//! - counter word 3 is the stream: 0 is the events' own; any other use of random numbers under the same seed takes
-//!   another, so that it can never meet the draws of an event.
+//! - counter word 3 is the stream: 0 is the events' own, 1 that of ions in a foil; any other use of random numbers under
+//!   the same seed takes another, so that it can never meet the draws of an event.
 //!
 //! A new need takes a new draw or a new stream and changes no number of those in use.
 //! Source: Salmon, Moraes, Dror & Shaw, *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011).

@@ -4,6 +4,7 @@ pub mod contact;
 pub mod cross_sections;
 pub mod deflection;
 pub mod event_table;
+pub mod foil;
 pub mod histogram;
 pub mod impact;
 pub mod kinematics;

@@ -5,5 +5,6 @@ pub(crate) mod closed_forms;
 pub(crate) mod collisions;
 pub(crate) mod cross_sections;
 pub(crate) mod deflection;
+pub(crate) mod foil;
 pub(crate) mod kinematics;
 pub(crate) mod monte_carlo;

@@ -1,0 +1,394 @@
+"""Ions through amorphous matter: what is asked for, checked, and followed by the core."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import number, positive, positive_array, whole_number
+from visviva._keywords import did_you_mean, known_keywords
+from visviva._progress import callback
+from visviva.errors import Interrupted, InvalidInput
+from visviva.potentials import Potential
+from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
+from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally
+from visviva.scattering._monte_carlo import _tallies, _which
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva._progress import Progress
+
+__all__ = ["Foil"]
+
+_SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
+_TALLIES = ("transmitted_angle", "transmitted_energy", "reflected_angle", "reflected_energy", "stopped_depth")
+
+
+@known_keywords
+@dataclass(frozen=True)
+class Foil:
+    """A foil of amorphous matter, through which ions are followed collision by collision.
+
+    Energies are in eV, lengths of the foil in µm, masses in u, angles in radians; a potential is in eV and Å.
+
+    An ion flies straight, an exponentially distributed way, and electrons slow it down; then an atom turns it. The
+    impact parameter is uniform over the disc of all collisions that turn by ``minimum_angle`` or more, as wide at most
+    as atoms are apart; the azimuth is uniform. Not in the model: straggling of the electronic loss, channeling,
+    displacement of target atoms, and relativistic kinematics of the collisions.
+
+    Parameters
+    ----------
+    material : Material or str
+        What it is made of: see `Material`.
+    thickness : float
+        In µm.
+    potential : str, Potential or sequence of Potential, optional
+        Between an ion and an atom: the name of a screening function (``"zbl"``, ``"moliere"``, ``"kr_c"``,
+        ``"lenz_jensen"``, ``"thomas_fermi"``; see `potentials.ScreenedCoulomb.between`), ``"coulomb"`` for bare nuclei,
+        or V(r) itself in eV and Å, of each element in turn where there are several.
+    stopping : {"joined", "bethe", "lindhard_scharff", "none"} or tuple of array_like, optional
+        What electrons take. ``"lindhard_scharff"``: in proportion to the speed, right for slow ions. ``"bethe"``: right
+        for fast ones, 2mv² ≫ I, continued in proportion to the speed below its greatest value. ``"joined"``, for all
+        energies: 1/S is the sum of both inverses, with Bethe's logarithm continued as Biersack and Haggmark did; within
+        10 % of what is measured of protons and alphas from 1 MeV per nucleon on, and within 20 % below. ``"none"``:
+        nothing. Where more is known, ``(energy, loss)``: increasing energies in eV and what is lost there in eV/µm,
+        between which logarithms are straight lines; below the first the loss is in proportion to the speed.
+    minimum_angle : float, optional
+        Collisions that turn by less, in the center-of-mass frame, are left out. It is an angle and no energy, so that
+        small angles are not biased (Mendenhall and Weller). It should be small against the width of what comes through.
+
+    Raises
+    ------
+    InvalidInput
+        For any argument out of range, by name.
+
+    References
+    ----------
+    J. F. Ziegler, J. P. Biersack, U. Littmark, *The Stopping and Range of Ions in Solids* (1985); J. Lindhard,
+    M. Scharff, Phys. Rev. 124 (1961) 128; J. P. Biersack, L. G. Haggmark, Nucl. Instrum. Methods 174 (1980) 257;
+    M. H. Mendenhall, R. A. Weller, Nucl. Instrum. Methods B 227 (2005) 420.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> foil = vv.scattering.Foil("gold", 0.4)
+    >>> out = foil.run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+    >>> out.transmitted + out.reflected + out.stopped
+    1000
+    """
+
+    material: Material
+    thickness: float
+    potential: Any = "zbl"
+    stopping: Any = "joined"
+    minimum_angle: float = 1e-4
+
+    def __init__(
+        self,
+        material: Material | str,
+        thickness: float,
+        *,
+        potential: str | Potential | Sequence[Potential] = "zbl",
+        stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] | tuple[ArrayLike, ArrayLike] = "joined",
+        minimum_angle: float = 1e-4,
+    ) -> None:
+        made = material_of(material)
+        several = len(made.atomic_number)
+        if isinstance(potential, str):
+            if potential not in (*_SCREENINGS, "coulomb"):
+                known = ", ".join((*_SCREENINGS, "coulomb"))
+                hint = did_you_mean(potential, (*_SCREENINGS, "coulomb"))
+                raise InvalidInput("potential", f"expected one of {known}, or a Potential, got {potential!r}{hint}")
+        else:
+            each = (potential,) if isinstance(potential, Potential) else potential
+            if not isinstance(each, Sequence) or not all(isinstance(one, Potential) for one in each):
+                raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {potential!r}")
+            if len(each) != several:
+                raise InvalidInput("potential", f"expected one for each of {several} elements, got {len(each)}")
+            potential = tuple(each)
+        given = {
+            "material": made,
+            "thickness": positive("thickness", thickness),
+            "potential": potential,
+            "stopping": stopping if isinstance(stopping, str) else losses_of(stopping),
+            "minimum_angle": number("minimum_angle", minimum_angle),
+        }
+        for name, value in given.items():
+            object.__setattr__(self, name, value)
+        _core.check_foil(self._described(Ion(1.0, 1.0)))
+
+    def _described(self, ion: Ion) -> dict[str, Any]:
+        """What the core is told."""
+        made = self.material
+        if isinstance(self.potential, str):
+            potentials = [screened(self.potential, ion.atomic_number, other) for other in made.atomic_number]
+        else:
+            potentials = list(self.potential)
+        excitations = made.mean_excitation_energy or (np.nan,) * len(potentials)
+        columns = zip(made.atomic_number, made.mass, made.fraction, excitations, potentials, strict=True)
+        named = ("atomic_number", "mass", "fraction", "excitation", "potential")
+        return {
+            "elements": [
+                dict(zip(named, (*numbers, potential._to_core()), strict=True)) for *numbers, potential in columns
+            ],
+            "density": made.density,
+            "thickness": self.thickness * 1e4,
+            "stopping": self.stopping
+            if isinstance(self.stopping, str)
+            else [(energy, loss / 1e4) for energy, loss in zip(*self.stopping, strict=True)],
+            "minimum_angle": self.minimum_angle,
+        }
+
+    def run(
+        self,
+        ion: Ion | str,
+        *,
+        beam_energy: float,
+        n_events: int,
+        seed: int,
+        tally: str | Iterable[str] | Mapping[str, Any] = _TALLIES,
+        bins: int = 180,
+        incidence: float = 0.0,
+        lowest_energy: float | None = None,
+        collisions: Literal["multiple", "single"] = "multiple",
+        forced_angle: float | None = None,
+        threads: int | None = None,
+        first_event: int = 0,
+        progress: Progress = False,
+    ) -> FoilResult:
+        """Send ions and count what comes through, what comes back and what stops.
+
+        Event i takes its random numbers from stream 1 of Philox 4x32-10 with ``seed`` as the key: counts do not depend
+        on threads, processor or partition, and results of separate ranges of events add up to that of the whole.
+
+        Parameters
+        ----------
+        ion : Ion or str
+            What flies: see `Ion`.
+        beam_energy : float
+            In eV; at most a tenth of the ion's rest energy.
+        n_events : int
+            How many ions, at least 1 and at most 2³⁹.
+        seed : int
+            0 to 2⁶⁴ − 1.
+        tally : str, iterable of str, or mapping, optional
+            What to count: ``"transmitted_angle"``, ``"reflected_angle"``, ``"lab_angle"`` (of both) from the beam's
+            direction, ``"transmitted_energy"`` and ``"reflected_energy"`` in eV, ``"stopped_depth"`` in µm, and of a
+            forced collision ``"cm_angle"``; one name, several, or ``{name: edges}``, where a whole number in place of
+            edges is a number of equal bins.
+        bins : int, optional
+            Number of equal bins, over all possible values, of each tally that is given by its name only.
+        incidence : float, optional
+            Angle between the beam and the foil's normal.
+        lowest_energy : float, optional
+            An ion of less has stopped; by default a thousandth of ``beam_energy``.
+        collisions : {"multiple", "single"}, optional
+            ``"single"``: each ion has the forced collision and no other, and flies straight else. What it stands for is
+            the expected number of such collisions: the limit of a thin foil.
+        forced_angle : float, optional
+            Every ion is made to have one collision, at a uniform place on the first 1.25 straight ways through (1 for
+            ``"single"``), of all those that turn by this center-of-mass angle or more wherever that is, and stands for
+            as many ions as it is likely to, so that ``values()`` are of all that came; large angles are drawn more
+            often than they come. Ions without such a collision are not counted: what is counted is whole where nothing
+            else leads, far enough beyond this angle.
+        threads : int, optional
+            By default ``VISVIVA_THREADS``, else all cores.
+        first_event : int, optional
+            Index of the first event.
+        progress : bool or callable, optional
+            True for a bar, or ``f(done, total)``.
+
+        Returns
+        -------
+        FoilResult
+            ``out["transmitted_angle"].counts``, ``.values()``, ``.variances()``, ``.fraction()``; ``out.transmitted``.
+
+        Raises
+        ------
+        InvalidInput
+            For any argument out of range, by name; a potential that captures.
+        Interrupted
+            After Ctrl-C. Its ``.result`` holds the events counted until then, from ``first_event`` without a gap (None
+            if there are none yet): with a run of the rest it adds up to the whole, bit for bit.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> foil = vv.scattering.Foil("gold", 0.4)
+        >>> out = foil.run("alpha", beam_energy=7.687e6, n_events=20_000, seed=1, collisions="single",
+        ...                forced_angle=np.radians(60), tally={"cm_angle": np.radians([60, 90, 180])})
+        >>> value, error = out["cm_angle"].fraction()
+        >>> f"{value[1]:.2e}"  # a few in a hundred thousand turn back
+        '1.74e-05'
+        """
+        hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
+        first, count, key = _which(first_event, n_events, seed)
+        asked = []
+        for axes in _tallies(tally, whole_number("bins", bins, 1, 2**16)):
+            if len(axes) > 1:
+                raise InvalidInput("tally", f"expected single quantities, got {tuple(name for name, _ in axes)}")
+            asked += axes
+        with callback(progress) as report:
+            done, stopped, units, told, fates, columns = _core.foil_run(
+                foil=self._described(hit.ion),
+                run=hit._to_core(),
+                n_events=count,
+                seed=key,
+                first_event=first,
+                tallies=asked,
+                threads=None if threads is None else whole_number("threads", threads, 1, 1024),
+                progress=report,
+            )
+        tallies = tuple(FoilTally(name, edges, sums, units, done) for name, edges, sums in columns)
+        events = ((key, first, first + done),)
+        result = FoilResult(hit, events, fates, units, tallies, told[0], told[1])
+        if stopped or done < count:
+            raise Interrupted(f"interrupted after {done} of {count} events", result=result)
+        return result
+
+    def history(
+        self,
+        ion: Ion | str,
+        *,
+        beam_energy: float,
+        seed: int,
+        event: int = 0,
+        incidence: float = 0.0,
+        lowest_energy: float | None = None,
+        collisions: Literal["multiple", "single"] = "multiple",
+        forced_angle: float | None = None,
+    ) -> dict[str, Any]:
+        """The way of one of the very ions that `run` counts.
+
+        Parameters
+        ----------
+        ion, beam_energy, seed, incidence, lowest_energy, collisions, forced_angle
+            As of `run`.
+        event : int, optional
+            Which one.
+
+        Returns
+        -------
+        dict
+            Of each collision ``"depth"`` and ``"path"`` until then in µm, ``"element"`` (its place in the material),
+            ``"impact_parameter"`` in Å, ``"cm_angle"``, ``"energy"`` before and after, shape (C, 2), and
+            ``"direction"`` before and after, shape (C, 2, 3), the third component into the foil; and of the end
+            ``"fate"``, ``"final_angle"``, ``"final_energy"``, ``"final_depth"`` and ``"weight"``.
+
+        Raises
+        ------
+        InvalidInput
+            As `run`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> way = vv.scattering.Foil("gold", 0.4).history("alpha", beam_energy=7.687e6, seed=1)
+        >>> way["fate"], bool((way["energy"][:, 1] <= way["energy"][:, 0]).all())
+        ('transmitted', True)
+        """
+        hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
+        first, _, key = _which(event, 1, seed)
+        numbers, directions, elements, end = _core.foil_history(
+            foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
+        )
+        fate, angle, energy, depth, weight = end
+        return {
+            "depth": numbers[:, 0] / 1e4,
+            "path": numbers[:, 1] / 1e4,
+            "element": elements,
+            "impact_parameter": numbers[:, 2].copy(),
+            "cm_angle": numbers[:, 3].copy(),
+            "energy": numbers[:, 4:].copy(),
+            "direction": directions,
+            "fate": fate,
+            "final_angle": angle,
+            "final_energy": energy,
+            "final_depth": depth / 1e4,
+            "weight": weight,
+        }
+
+    def stopping_power(self, ion: Ion | str, energy: ArrayLike) -> NDArray[np.float64]:
+        """What electrons take of an ion, in eV/µm.
+
+        Parameters
+        ----------
+        ion : Ion or str
+            As of `run`.
+        energy : array_like
+            In eV.
+
+        Raises
+        ------
+        InvalidInput
+            For an energy that is not positive or more than ten times the ion's rest energy (there is no density effect
+            in the formula), or a mean excitation energy that is needed and not known.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> round(float(vv.scattering.Foil("silicon", 1.0).stopping_power("alpha", 5.486e6)) / 1e3)  # keV/µm
+        127
+        """
+        return self._losses(ion, energy, None) * 1e4
+
+    def range(self, ion: Ion | str, energy: ArrayLike, *, lowest_energy: float) -> NDArray[np.float64]:
+        """How far an ion goes in µm until electrons alone have slowed it down: ∫dE/S.
+
+        Parameters
+        ----------
+        ion : Ion or str
+            As of `run`.
+        energy : array_like
+            In eV.
+        lowest_energy : float
+            In eV, where the way ends.
+
+        Raises
+        ------
+        InvalidInput
+            As `stopping_power`; for an energy below the lowest, or a foil that stops nothing.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> foil = vv.scattering.Foil("silicon", 1.0)
+        >>> round(float(foil.range("alpha", 5.486e6, lowest_energy=1e3)))
+        31
+        """
+        return self._losses(ion, energy, positive("lowest_energy", lowest_energy)) / 1e4
+
+    def _losses(self, ion: Ion | str, energy: ArrayLike, lowest: float | None) -> NDArray[np.float64]:
+        given = ion_of(ion)
+        energies = positive_array("energy", energy)
+        found = _core.foil_stopping(
+            foil=self._described(given),
+            ion=(given.atomic_number, given.mass),
+            energy=energies.ravel(),
+            lowest=lowest,
+        )
+        return found.reshape(energies.shape)[()]
+
+    def _hit(
+        self,
+        ion: Ion | str,
+        beam_energy: object,
+        lowest_energy: object,
+        incidence: object,
+        collisions: object,
+        forced_angle: object,
+    ) -> Bombardment:
+        energy = number("beam_energy", beam_energy)
+        lowest = energy * 1e-3 if lowest_energy is None else number("lowest_energy", lowest_energy)
+        if collisions not in ("multiple", "single"):
+            hint = did_you_mean(str(collisions), ("multiple", "single"))
+            raise InvalidInput("collisions", f"expected one of multiple, single, got {collisions!r}{hint}")
+        forced = None if forced_angle is None else number("forced_angle", forced_angle)
+        return Bombardment(self, ion_of(ion), energy, lowest, number("incidence", incidence), str(collisions), forced)

@@ -1,0 +1,334 @@
+"""What a foil gives: histograms of ions that came through, came back or stopped, which add up bit for bit."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING, Any, NamedTuple
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.scattering._tally import _merged, is_zero
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from visviva.scattering._foil import Foil
+    from visviva.scattering._foil_material import Ion
+
+__all__ = ["Bombardment", "FoilResult", "FoilTally", "Fraction"]
+
+_FATES = ("transmitted", "reflected", "stopped", "missed")
+_AXES = {
+    "lab_angle": "angle from the beam",
+    "transmitted_angle": "angle from the beam, transmitted",
+    "reflected_angle": "angle from the beam, reflected",
+    "transmitted_energy": "energy of transmitted ions [eV]",
+    "reflected_energy": "energy of reflected ions [eV]",
+    "stopped_depth": "depth of stopped ions [µm]",
+    "cm_angle": "center-of-mass angle of the forced collision",
+}
+
+
+class Fraction(NamedTuple):
+    """A part of all ions, and its standard error."""
+
+    value: Any
+    """As a part of the events."""
+    error: Any
+    """One standard deviation."""
+
+
+@known_keywords
+@dataclass(frozen=True)
+class Bombardment:
+    """A foil and what comes to it: what results must have in common to be added.
+
+    Attributes
+    ----------
+    foil : Foil
+        With its material, potential and stopping.
+    ion : Ion
+        What flies.
+    beam_energy, lowest_energy : float
+        In eV.
+    incidence : float
+        Angle between the beam and the normal.
+    collisions : str
+        ``"multiple"`` or ``"single"``.
+    forced_angle : float or None
+        Least center-of-mass angle of the collision that every ion was made to have.
+    """
+
+    foil: Foil
+    ion: Ion
+    beam_energy: float
+    lowest_energy: float
+    incidence: float
+    collisions: str
+    forced_angle: float | None
+
+    def _to_core(self) -> dict[str, Any]:
+        return {
+            "ion": (self.ion.atomic_number, self.ion.mass),
+            "beam_energy": self.beam_energy,
+            "lowest_energy": self.lowest_energy,
+            "incidence": self.incidence,
+            "single": self.collisions == "single",
+            "forced_angle": self.forced_angle,
+        }
+
+
+def _fraction(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) -> tuple[Any, Any]:
+    """The mean weight of an event and the variance of the sum of all."""
+    weight, square = sums[..., 1] * units[0], sums[..., 2] * units[1]
+    return weight, np.maximum(square - weight**2 / n_events, 0.0)
+
+
+@known_keywords
+@dataclass(frozen=True, eq=False)
+class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
+    """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
+
+    Attributes
+    ----------
+    name : str
+        The quantity.
+    edges : ndarray, shape (B + 1,)
+        Strictly increasing; radians, eV or µm.
+    sums : ndarray of uint64, shape (B + 2, 3)
+        Below the edges, of each bin, and above: events, weights and their squares, the last two in `units`.
+    units : tuple of float
+        Of weights and of squares; 1 where nothing is forced.
+    n_events : int
+        Of the run.
+    """
+
+    name: str
+    edges: NDArray[np.float64]
+    sums: NDArray[np.uint64]
+    units: tuple[float, float]
+    n_events: int
+
+    def __post_init__(self) -> None:
+        for array in (self.edges, self.sums):
+            array.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a pickle does not keep that arrays are read-only
+
+    @property
+    def counts(self) -> NDArray[np.uint64]:
+        """Events per bin."""
+        return self.sums[1:-1, 0]
+
+    @property
+    def underflow(self) -> int:
+        """Events below the first edge."""
+        return int(self.sums[0, 0])
+
+    @property
+    def overflow(self) -> int:
+        """Events above the last edge."""
+        return int(self.sums[-1, 0])
+
+    def values(self) -> NDArray[np.float64]:
+        """How many ions each bin stands for: counts, or with a forced collision the sums of their weights."""
+        return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[0])
+
+    def variances(self) -> NDArray[np.float64]:
+        """Variances of these: the number of events is fixed."""
+        return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
+
+    def fraction(self) -> Fraction:
+        """As a part of all ions that came, bin by bin, with its standard error."""
+        return Fraction(self.values() / self.n_events, np.sqrt(self.variances()) / self.n_events)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FoilTally):
+            return NotImplemented
+        same = (self.name, self.units, self.n_events) == (other.name, other.units, other.n_events)
+        return same and np.array_equal(self.edges, other.edges) and np.array_equal(self.sums, other.sums)
+
+    def _joined(self, other: FoilTally) -> FoilTally:
+        """Of both; that no event is in both is the result's to see."""
+        if self.units != other.units or not np.array_equal(self.edges, other.edges):
+            raise InvalidInput("other", f"expected {self.name} with the same edges")
+        return replace(self, sums=self.sums + other.sums, n_events=self.n_events + other.n_events)
+
+
+@known_keywords
+@dataclass(frozen=True, eq=False)
+class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
+    """The tallies of a run by name. Results of the same bombardment add up, bit for bit, if no event is in both.
+
+    Attributes
+    ----------
+    bombardment : Bombardment
+        The foil and what came to it.
+    events : tuple
+        Which events: sorted (seed, first, end) with end excluded.
+    sums : ndarray of uint64, shape (4, 3)
+        Transmitted, reflected, stopped, and missed ones (without the collision that was to be forced): events, weights
+        and squares, the last two in `units`.
+    units : tuple of float
+        Of weights and of squares; 1 where nothing is forced.
+    tallies : tuple of FoilTally
+        In the order asked for.
+    collisions_across : float
+        How many collisions a straight way through takes on the average, at the beam's energy.
+    table_error : float
+        The largest error of sin²(ψ/2) of the tables, of all places that were tried.
+    """
+
+    bombardment: Bombardment
+    events: tuple[tuple[int, int, int], ...]
+    sums: NDArray[np.uint64]
+    units: tuple[float, float]
+    tallies: tuple[FoilTally, ...]
+    collisions_across: float
+    table_error: float
+
+    def __post_init__(self) -> None:
+        self.sums.setflags(write=False)
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()
+
+    @property
+    def n_events(self) -> int:
+        """Ions that came."""
+        return sum(end - first for _, first, end in self.events)
+
+    @property
+    def next_event(self) -> int:
+        """The ``first_event`` of a run that goes on after this one.
+
+        Raises
+        ------
+        InvalidInput
+            If the events are of several seeds.
+        """
+        if len({seed for seed, _, _ in self.events}) > 1:
+            raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
+        return self.events[-1][2]
+
+    @property
+    def transmitted(self) -> int:
+        """Events that came through."""
+        return int(self.sums[0, 0])
+
+    @property
+    def reflected(self) -> int:
+        """Events that came back."""
+        return int(self.sums[1, 0])
+
+    @property
+    def stopped(self) -> int:
+        """Events that ended in the foil."""
+        return int(self.sums[2, 0])
+
+    @property
+    def missed(self) -> int:
+        """Events whose way ended before the collision that was to be forced; 0 where nothing is forced."""
+        return int(self.sums[3, 0])
+
+    def fraction(self, fate: str) -> Fraction:
+        """What part of the ions was transmitted, reflected or stopped, with its standard error.
+
+        Parameters
+        ----------
+        fate : {"transmitted", "reflected", "stopped"}
+
+        Raises
+        ------
+        InvalidInput
+            For another word.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=5.486e6, n_events=100, seed=1)
+        >>> out.fraction("transmitted")
+        Fraction(value=1.0, error=0.0)
+        """
+        if fate not in _FATES[:3]:
+            raise InvalidInput("fate", f"expected one of {', '.join(_FATES[:3])}, got {fate!r}")
+        weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
+        return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
+
+    def __getitem__(self, name: str) -> FoilTally:
+        for tally in self.tallies:
+            if tally.name == name:
+                return tally
+        raise KeyError(f"no tally {name!r}; this run has {', '.join(self)}")
+
+    def __iter__(self) -> Iterator[str]:
+        return (tally.name for tally in self.tallies)
+
+    def __len__(self) -> int:
+        return len(self.tallies)
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, FoilResult):
+            return NotImplemented
+        names = ("bombardment", "events", "units", "tallies")
+        same = all(getattr(self, name) == getattr(other, name) for name in names)
+        return same and np.array_equal(self.sums, other.sums)
+
+    def __add__(self, other: FoilResult) -> FoilResult:
+        if not isinstance(other, FoilResult):
+            return NotImplemented
+        if self.bombardment != other.bombardment:
+            raise InvalidInput("other", f"expected one of {self.bombardment}, got one of {other.bombardment}")
+        if list(self) != list(other):
+            raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
+        events = _merged((*self.events, *other.events))
+        tallies = tuple(self[name]._joined(other[name]) for name in self)
+        return replace(self, events=events, sums=self.sums + other.sums, tallies=tallies)
+
+    def __radd__(self, other: int) -> FoilResult:
+        """Begin a `sum`."""
+        return self if is_zero(other) else NotImplemented
+
+    def __repr__(self) -> str:
+        parts = ", ".join(
+            f"{count} {name}" for name, count in zip(_FATES, self.sums[:, 0].tolist(), strict=True) if count
+        )
+        return f"<FoilResult: {self.n_events} events, {parts}>"
+
+    def plot(self) -> Figure:
+        """Draw every tally that has counted something, with a band of one standard error.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+        """
+        from visviva.plot import new_figure
+
+        drawn = [tally for tally in self.tallies if tally.counts.any()] or self.tallies
+        figure, panels = new_figure(len(drawn), (4.5 * len(drawn), 4.0))
+        for axes, tally in zip(panels, drawn, strict=True):
+            value, error = tally.fraction()
+            angle = tally.name.endswith("angle")
+            edges = np.degrees(tally.edges) if angle else tally.edges
+            axes.stairs(value, edges, linewidth=1.0)
+            low, high = np.append(value - error, 0.0), np.append(value + error, 0.0)
+            axes.fill_between(edges, np.maximum(low, 0.0), high, step="post", alpha=0.3, linewidth=0.0)
+            axes.set(xlabel=_AXES[tally.name] + (" [degrees]" if angle else ""), ylabel="part of the ions per bin")
+            if angle and value.any():
+                axes.set_yscale("log")
+                axes.set_ylim(0.5 * value[value > 0.0].min(), 2.0 * value.max())
+        return figure

@@ -1,0 +1,34 @@
+use super::*;
+use crate::parallel::{Control, Ticker};
+use crate::potentials::Potential;
+use crate::potentials::parameters::Value;
+use crate::registry;
+use std::sync::Arc;
+
+fn screened() -> Arc<dyn Potential> {
+    let values = [Value::Number(2.0 * 79.0 * 14.4), Value::Number(0.12), Value::Word("zbl".into())];
+    (registry::potential("screened_coulomb").unwrap().make)(&values).unwrap()
+}
+
+/// Against direct quadrature, where the table was not made: relative to the angle, down to what is far out.
+#[test]
+fn the_table_is_right_between_its_points() {
+    let control = Control::new(0);
+    let ticker = &mut Ticker::quiet(&control);
+    let potential = screened();
+    let deflector = Source::deflector(&potential).unwrap();
+    let source = Source { deflector: &deflector, minimum: 1e-6, threads: 1 };
+    let angles = Angles::build(&potential, &source, (7e3, 7.7e6), &|_, _| 1.0, ticker).unwrap();
+    assert!(angles.error() < 4e-6 && angles.bytes() < 2_000_000, "{} {}", angles.error(), angles.bytes());
+    let Angles::Table(table) = &angles else { panic!("no table") };
+    for i in 0..60 {
+        let energy = 7.1e3 * 1.123_f64.powi(i);
+        let radii: Vec<f64> = (0..50).map(|j| 1e-6 * 1.31_f64.powi(j)).filter(|b| *b < 1.0).collect();
+        let found = deflector.deflect(&vec![energy; radii.len()], &radii, false, 1, ticker).unwrap();
+        for (b, found) in radii.iter().zip(&found) {
+            let off = (table.angle(energy, *b) - found.angle).abs();
+            // Refined to 1e-6 of the largest angle of an interval, of which ψ falls to a tenth or so.
+            assert!(off < 2e-5 * found.angle, "{energy} {b} {off} {}", found.angle);
+        }
+    }
+}
