@@ -6,9 +6,10 @@
 //! would cancel, it is the mean of the force in between. Gauss–Kronrod rules of 7 and 15 points: R. Piessens et al.,
 //! *QUADPACK* (1983).
 
+use super::comparison::Comparison;
 use super::nodes::{Node, sinh};
 use super::profile::Profile;
-use super::trapezoid::{Comparison, INTEGRALS};
+use super::trapezoid::INTEGRALS;
 use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
@@ -78,7 +79,7 @@ pub(super) enum Integrand {
     Turning,
 }
 
-/// Integrals, and how far the first may be off.
+/// Integrals, the first with what it is compared with, and how far that may be off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Whole {
     pub(super) integral: [f64; INTEGRALS],
@@ -101,6 +102,14 @@ pub(super) fn integrate(
     ends: &[f64],
     (tolerance, wanted): (f64, usize),
 ) -> Whole {
+    let mut known = [0.0; INTEGRALS];
+    if integrand == Integrand::Deflection {
+        known[0] = Comparison::of(pair.value, pair.root).closed;
+    }
+    let whole = |sum: [f64; INTEGRALS], error: f64, size: f64| Whole {
+        integral: core::array::from_fn(|i| known[i] + sum[i]),
+        error: error.max(ROUNDING * size),
+    };
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
@@ -123,14 +132,14 @@ pub(super) fn integrate(
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
         let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
-            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+            return whole(sum, error[0], size[0]);
         };
         let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
         let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
         let [from, to] = intervals[at].ends;
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
-            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+            return whole(sum, error[0], size[0]);
         }
         intervals[at] = rule(profile, pair, integrand, [from, middle]);
         intervals.push(rule(profile, pair, integrand, [middle, to]));
