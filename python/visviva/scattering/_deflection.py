@@ -156,9 +156,7 @@ def deflect(
     array([ 2.15060623, -0.95631448, -0.23448714])
     """
     mass = None if reduced_mass is None else positive("reduced_mass", reduced_mass)
-    pairs, columns, counts = _deflections(
-        potential, energy, impact_parameter, tolerance, threads, everything=True
-    )
+    pairs, columns, counts = _deflections(potential, energy, impact_parameter, tolerance, threads, everything=True)
     shape = pairs[0].shape
     angle, complement, closest_approach, derivative, delay, error = (column.reshape(shape)[()] for column in columns)
     turning_points, status = (count.reshape(shape)[()] for count in counts)

@@ -5,7 +5,7 @@ use super::comparison::{self, Comparison, STRONG};
 use super::nodes::Ladder;
 use super::profile::{Center, Profile};
 use super::refine::Turned;
-use super::trapezoid::{self, INTEGRALS, Pack, Rows, Sums};
+use super::trapezoid::{self, INTEGRALS, Pack, Sums, Work};
 use super::turning::{self, Critical, Way};
 use super::{Deflection, Status};
 use crate::Result;
@@ -34,15 +34,22 @@ pub(super) struct Quadrature<'a> {
     pub(super) all: bool,
 }
 
-/// A pair that turns, in units of the profile.
+/// What else there is to know of pairs that turn.
+#[derive(Debug, Default)]
 struct Turning {
-    place: usize,
-    energy: f64,
-    b: f64,
-    bracket: [f64; 2],
-    barriers: Vec<f64>,
-    /// How near b is to where one of them has its top, as a part of it.
-    nearness: f64,
+    /// Their places among all.
+    places: Vec<u16>,
+    /// How near b is to where a barrier has its top, as a part of it.
+    nearness: Vec<f64>,
+    /// Of those that have some, the barriers that were passed or nearly so.
+    barriers: Vec<(u16, Vec<f64>)>,
+}
+
+impl Turning {
+    fn barriers(&self, at: usize) -> &[f64] {
+        let found = self.barriers.binary_search_by_key(&(at as u16), |(at, _)| *at);
+        found.map_or(&[], |found| self.barriers[found].1.as_slice())
+    }
 }
 
 impl Quadrature<'_> {
@@ -54,18 +61,22 @@ impl Quadrature<'_> {
     ) -> Result<Vec<Deflection>> {
         let profile = self.profile;
         let mut found = vec![Deflection::captured(); energy.len()];
-        let turning = self.turning(energy, b, &mut found, ticker)?;
-        if !turning.is_empty() {
-            self.integrate(&turning, &mut found, ticker)?;
+        let mut turned = Turned::default();
+        let turning = self.turning(energy, b, (&mut turned, &mut found), ticker)?;
+        if !turning.places.is_empty() {
+            turned.refine(profile);
+            self.integrate(&turned, &turning, &mut found, ticker)?;
         }
         for (place, found) in found.iter_mut().enumerate() {
             if b[place] == 0.0 && found.status != Status::Captured {
                 self.head_on(profile.take_energy(energy[place]), found);
             }
             found.closest_approach = profile.give_length(found.closest_approach);
-            found.delay = profile.give_length(found.delay);
-            // 1/length: the inverse of the unit.
-            found.derivative = profile.take_length(found.derivative);
+            if self.all {
+                found.delay = profile.give_length(found.delay);
+                // 1/length: the inverse of the unit.
+                found.derivative = profile.take_length(found.derivative);
+            }
         }
         Ok(found)
     }
@@ -75,15 +86,18 @@ impl Quadrature<'_> {
         &self,
         energy: &[f64],
         b: &[f64],
-        found: &mut [Deflection],
+        (turned, found): (&mut Turned, &mut [Deflection]),
         ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Turning>> {
+    ) -> Result<Turning> {
         let profile = self.profile;
         let mut critical = Critical::default();
-        let mut turning: Vec<Turning> = Vec::with_capacity(energy.len());
-        let simple = match profile.center() {
-            Center::Attractive(power) => power < 2.0,
-            _ => true,
+        let mut turning = Turning::default();
+        turning.places.reserve(energy.len());
+        turning.nearness.reserve(energy.len());
+        turned.resize(energy.len().div_ceil(WIDTH));
+        let simple_from = match profile.center() {
+            Center::Attractive(power) if power >= 2.0 => f64::INFINITY,
+            _ => profile.one_turning_point_from(),
         };
         for from in (0..energy.len()).step_by(WIDTH) {
             ticker.tick()?;
@@ -93,102 +107,101 @@ impl Quadrature<'_> {
                 energies[at] = profile.take_energy(energy[place]);
                 impacts[at] = profile.take_length(b[place]);
             }
-            let cells = profile.cells(&energies, &impacts);
+            let cells = profile.places(&energies, &impacts);
             for at in 0..WIDTH.min(energy.len() - from) {
-                let (place, e, mut b) = (from + at, energies[at], impacts[at]);
+                let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
-                let way = if let (Some(bracket), true) =
-                    (cells[at], simple && b > 0.0 && e >= profile.one_turning_point_from())
-                {
+                let next = turning.places.len();
+                if cells[at] > 0 && b > 0.0 && e >= simple_from {
+                    let cell = profile.cell(cells[at]);
+                    profile.check_start(e, b, cell)?;
+                    turned.put(next, e, b, cell, profile.around(cells[at]));
                     found[place].turning_points = 1;
-                    Way::Turns { bracket, barriers: Vec::new() }
-                } else {
-                    let way = critical.way(profile, e, b);
-                    found[place].turning_points = critical.turning_points(profile, e, b);
-                    if matches!(way, Way::Through | Way::Bounces(_)) {
-                        b = TINY;
-                        critical.way(profile, e, b)
-                    } else {
-                        way
-                    }
-                };
+                    turning.places.push(place as u16);
+                    turning.nearness.push(f64::INFINITY);
+                    continue;
+                }
+                let mut b = b;
+                let mut way = critical.way(profile, e, b);
+                found[place].turning_points = critical.turning_points(profile, e, b);
+                if matches!(way, Way::Through | Way::Bounces(_)) {
+                    b = TINY;
+                    way = critical.way(profile, e, b);
+                }
                 if let Way::Turns { bracket, barriers } = way {
                     profile.check_start(e, b, bracket)?;
-                    let nearness = turning::nearness(profile, e, b, &barriers);
-                    turning.push(Turning { place, energy: e, b, bracket, barriers, nearness });
+                    turned.put(next, e, b, bracket, profile.ends(bracket));
+                    turning.places.push(place as u16);
+                    turning.nearness.push(turning::nearness(profile, e, b, &barriers));
+                    if !barriers.is_empty() {
+                        turning.barriers.push((next as u16, barriers));
+                    }
                 }
             }
+        }
+        if !turning.places.is_empty() {
+            turned.close(turning.places.len());
         }
         Ok(turning)
     }
 
     fn integrate(
         &self,
-        turning: &[Turning],
+        turned: &Turned,
+        turning: &Turning,
         found: &mut [Deflection],
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         let profile = self.profile;
         let ladder = Ladder::of(self.tolerance);
-        let turned = self.turned(turning);
-        let reach = self.reaches(&turned, turning, ladder);
-        let mut rows = Rows::default();
+        let reach = self.reaches(turned, turning, ladder);
+        let mut work = Work::default();
+        let columns = [
+            as_numbers(&turned.energy),
+            as_numbers(&turned.r),
+            as_numbers(&turned.value),
+            as_numbers(&turned.force),
+            as_numbers(&turned.curvature),
+            as_numbers(&turned.root),
+        ];
         // Those that reach as far side by side.
         let order = by_reach(&reach);
         for group in order.chunks(WIDTH) {
             ticker.tick()?;
             let mut places = [usize::from(group[group.len() - 1]); WIDTH];
-            let mut pack = Pack::default();
             for (lane, place) in group.iter().enumerate() {
                 places[lane] = usize::from(*place);
             }
-            for (lane, place) in places.into_iter().enumerate() {
-                let at = |rows: &[Lanes]| as_numbers(rows)[place];
-                pack.energy.0[lane] = at(&turned.energy);
-                pack.turning.0[lane] = at(&turned.r);
-                pack.value.0[lane] = at(&turned.value);
-                pack.force.0[lane] = at(&turned.force);
-                pack.curvature.0[lane] = at(&turned.curvature);
-                pack.root.0[lane] = at(&turned.root);
-                // The peak of 1/√G at a barrier is about √(2 × nearness) wide.
-                pack.longest.0[lane] = turning[place].nearness.sqrt();
-                pack.reach.0[lane] = f64::from(reach[place]);
+            let mut gathered = [Lanes([0.0; WIDTH]); 6];
+            for (column, gathered) in columns.iter().zip(&mut gathered) {
+                for lane in 0..WIDTH {
+                    gathered.0[lane] = column[places[lane]];
+                }
             }
-            let sums = if self.all {
-                trapezoid::integrate::<INTEGRALS>(profile, ladder, &pack, self.tolerance, &mut rows)
+            let [energy, r, value, force, curvature, root] = gathered;
+            let (mut longest, mut reaches) = (Lanes([0.0; WIDTH]), Lanes([0.0; WIDTH]));
+            for lane in 0..WIDTH {
+                // The peak of 1/√G at a barrier is about √(2 × nearness) wide.
+                longest.0[lane] = turning.nearness[places[lane]].sqrt();
+                reaches.0[lane] = f64::from(reach[places[lane]]);
+            }
+            let pack = Pack { energy, turning: r, value, force, curvature, root, longest, reach: reaches };
+            if self.all {
+                trapezoid::integrate::<INTEGRALS>(profile, ladder, &pack, self.tolerance, &mut work);
             } else {
-                trapezoid::integrate::<1>(profile, ladder, &pack, self.tolerance, &mut rows)
-            };
-            for (lane, place) in group.iter().enumerate() {
-                let pair = &turning[usize::from(*place)];
-                self.finish(pair, &pack, &sums, lane, &mut found[pair.place]);
+                trapezoid::integrate::<1>(profile, ladder, &pack, self.tolerance, &mut work);
+            }
+            for (lane, at) in group.iter().enumerate() {
+                let at = usize::from(*at);
+                let found = &mut found[usize::from(turning.places[at])];
+                self.finish((turning, at), &pack, &work.sums, lane, found);
             }
         }
         Ok(())
     }
 
-    /// Their turning points.
-    fn turned(&self, turning: &[Turning]) -> Turned {
-        let mut turned = Turned::default();
-        turned.resize(turning.len().div_ceil(WIDTH));
-        for (row, group) in turning.chunks(WIDTH).enumerate() {
-            for lane in 0..WIDTH {
-                let pair = &group[lane.min(group.len() - 1)];
-                turned.energy[row].0[lane] = pair.energy;
-                turned.b[row].0[lane] = pair.b;
-                turned.low[row].0[lane] = pair.bracket[0];
-                turned.high[row].0[lane] = pair.bracket[1];
-                for (end, known) in turned.ends[row].iter_mut().zip(self.profile.ends(pair.bracket)) {
-                    end.0[lane] = known;
-                }
-            }
-        }
-        turned.refine(self.profile);
-        turned
-    }
-
     /// How many nodes of the first level count; none where equal steps are not what is wanted.
-    fn reaches(&self, turned: &Turned, turning: &[Turning], ladder: &Ladder) -> Vec<u8> {
+    fn reaches(&self, turned: &Turned, turning: &Turning, ladder: &Ladder) -> Vec<u8> {
         let profile = self.profile;
         let rest = LEFT_OUT * self.tolerance;
         // What is left of the series falls as u⁹ with less than these factors, of what it is compared with else as u³.
@@ -197,50 +210,58 @@ impl Quadrature<'_> {
         let (weak, bound) = (1.0 / ninth(0.5), 1.0 / ninth(1.7));
         let (r, x) = (as_numbers(&turned.r), as_numbers(&turned.value));
         let (root, energy) = (as_numbers(&turned.root), as_numbers(&turned.energy));
+        let (scale, inverse) = (as_numbers(&turned.scale), as_numbers(&turned.inverse));
         let last_edge = profile.breaks().last().copied().unwrap_or(0.0);
-        let mut reaches = Vec::with_capacity(turning.len());
-        for (place, pair) in turning.iter().enumerate() {
-            let (r, x, root) = (r[place], x[place], root[place]);
-            if last_edge > r || pair.nearness <= NEAR_BARRIER {
+        let mut reaches = Vec::with_capacity(turning.places.len());
+        for (at, nearness) in turning.nearness.iter().enumerate() {
+            let (r, x, root) = (r[at], x[at], root[at]);
+            if last_edge > r || *nearness <= NEAR_BARRIER {
                 reaches.push(0);
                 continue;
             }
             let square = root * root;
             let (scale, series) = if x < STRONG {
                 let closed = Comparison::strongly(root);
-                (closed, 1.0 / third(square / closed))
+                (energy[at] * closed.min(0.5) * inverse[at], 1.0 / third(square / closed))
             } else if self.all {
-                (x.abs(), 1.0 / third(square.max(1.0) * square.max(1.0)))
+                (scale[at], 1.0 / third(square.max(1.0) * square.max(1.0)))
             } else {
-                (x.abs(), if square <= 1.0 { weak } else { bound })
+                (scale[at], if square <= 1.0 { weak } else { bound })
             };
-            let most = rest * energy[place] * scale.min(0.5);
-            let faint = profile.faint(if self.all { most * r } else { most / r }, self.all);
-            reaches.push(ladder.count((faint / r).max(series)));
+            let most = rest * if self.all { scale * r * r } else { scale };
+            let faint = profile.faint(most, self.all);
+            reaches.push(ladder.count((faint * inverse[at]).max(series)));
         }
         reaches
     }
 
     /// What the sums of a lane make, or if they are not good enough its intervals.
-    fn finish(&self, turning: &Turning, pack: &Pack, sums: &Sums, lane: usize, found: &mut Deflection) {
+    fn finish(
+        &self,
+        (turning, at): (&Turning, usize),
+        pack: &Pack,
+        sums: &Sums,
+        lane: usize,
+        found: &mut Deflection,
+    ) {
         let profile = self.profile;
+        let nearness = turning.nearness[at];
         let (r, x, y, root) =
             (pack.turning.0[lane], pack.value.0[lane], pack.force.0[lane], pack.root.0[lane]);
         found.closest_approach = r;
-        found.status =
-            if turning.nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
+        found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
         let strong = x < STRONG;
         let single = || {
             let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
-            Pair { energy: turning.energy, turning: r, value: x, force: y, root, near }
+            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, near }
         };
         let (integral, mut error) = if sums.met.lane(lane) {
             let integral = &sums.integral;
             ([integral[0].0[lane], integral[1].0[lane], integral[2].0[lane]], sums.error.0[lane])
         } else {
-            let tolerance = self.tolerance.max(ROUNDING / turning.nearness);
-            self.by_intervals(&single(), Integrand::Deflection, &turning.barriers, tolerance)
+            let tolerance = self.tolerance.max(ROUNDING / nearness);
+            self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance)
         };
         (found.angle, found.complement) = comparison::angle(strong, [x, y], root, integral[0]);
         // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
@@ -248,7 +269,7 @@ impl Quadrature<'_> {
         let short = CANCELLED * PI * (x / (1.0 + root)).abs().min(1.0);
         if passes && found.angle.abs() < short {
             let (turns, off) =
-                self.by_intervals(&single(), Integrand::Turning, &turning.barriers, self.tolerance);
+                self.by_intervals(&single(), Integrand::Turning, turning.barriers(at), self.tolerance);
             (found.angle, found.complement) = (turns[0], PI - turns[0].abs());
             error = 0.5 * off / root;
         }

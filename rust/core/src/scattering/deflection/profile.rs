@@ -21,7 +21,7 @@ const POINTS: usize = (2 * OCTAVES) << DIVISIONS;
 /// The bits of a distance before those of its place in a cell of the grid.
 const SHIFT: u32 = 52 - DIVISIONS;
 /// Cells in which most turning points are found, beyond b and where V passes E.
-const NEAR_CELLS: usize = 15;
+const NEAR_CELLS: usize = 16;
 /// The first distance, as such bits.
 const BASE: u64 = (1023 - OCTAVES as u64) << DIVISIONS;
 
@@ -147,14 +147,17 @@ impl Profile {
         made
     }
     /// A length of these units, from one of the caller's.
+    #[inline]
     pub(super) fn take_length(&self, r: f64) -> f64 {
         scale(r, -self.length)
     }
     /// And back.
+    #[inline]
     pub(super) fn give_length(&self, r: f64) -> f64 {
         scale(r, self.length)
     }
     /// An energy of these units, from one of the caller's.
+    #[inline]
     pub(super) fn take_energy(&self, energy: f64) -> f64 {
         scale(energy, -self.energy)
     }
@@ -242,17 +245,22 @@ impl Profile {
     ///
     /// # Errors
     /// `InvalidInput` naming `potential`.
+    #[inline]
     pub(super) fn check_end(&self, energy: f64, tolerance: f64) -> Result<()> {
         if self.domain[1] == f64::INFINITY || self.last_value.abs() <= tolerance * energy {
             return Ok(());
         }
+        Err(self.ends_early(energy))
+    }
+    #[cold]
+    fn ends_early(&self, energy: f64) -> Error {
         let message = format!(
             "expected one that has come to 0 where it ends, but at r = {} it is {} of the energy; let it go on \
              further out, or subtract its last value, if that is what is meant",
             number(self.give_length(self.domain[1])),
             number(self.last_value / energy)
         );
-        Err(Error::invalid("potential", message))
+        Error::invalid("potential", message)
     }
     /// Refuses a motion to where a table has not begun.
     ///
@@ -341,57 +349,55 @@ impl Profile {
         (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }
 
-    /// The cells of the grid in which h first comes to b², of pairs whose h rises wherever it is positive; none for those
+    /// The places of the grid at which h first comes to b², of pairs whose h rises wherever it is positive; zero for those
     /// that turn beyond the grid.
     #[inline(always)]
-    pub(super) fn cells(&self, energy: &[f64; WIDTH], b: &[f64; WIDTH]) -> [Option<[f64; 2]>; WIDTH] {
+    pub(super) fn places(&self, energy: &[f64; WIDTH], b: &[f64; WIDTH]) -> [usize; WIDTH] {
         let [first, last] = self.inside;
-        let (mut from, mut to) = ([first; WIDTH], [last + 1; WIDTH]);
-        let (mut inverse, mut square) = ([0.0; WIDTH], [0.0; WIDTH]);
-        let reached = |inverse: f64, square: f64, at: usize| {
+        let (mut at, mut inverse, mut square) = ([first; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+        let short = |inverse: f64, square: f64, at: usize| {
             let r = radius(at);
-            (1.0 - self.value[at & (POINTS - 1)] * inverse) * (r * r) >= square
+            let h = (1.0 - self.value[at & (POINTS - 1)] * inverse) * (r * r);
+            (usize::from(h >= square) ^ 1) & usize::from(at <= last)
         };
-        let mut left = 0;
+        let mut near = 1;
         for lane in 0..WIDTH {
             inverse[lane] = 1.0 / energy[lane];
             square[lane] = b[lane] * b[lane];
             // Where V > E nothing comes, and where it repels nothing comes nearer than b.
-            from[lane] = usize::from(self.climbed[(energy[lane].to_bits() >> 51) as usize & 4095]);
+            at[lane] = usize::from(self.climbed[(energy[lane].to_bits() >> 51) as usize & 4095]);
             if self.repels {
-                from[lane] = from[lane].max(place(b[lane])).min(last);
-                let near = from[lane] + NEAR_CELLS;
-                if near <= last && reached(inverse[lane], square[lane], near) {
-                    to[lane] = near;
-                }
+                at[lane] = at[lane].max(place(b[lane])).min(last);
             }
-            left = left.max(to[lane] - from[lane]);
+            near &= 1 - short(inverse[lane], square[lane], at[lane] + NEAR_CELLS - 1);
         }
-        while left > 0 {
+        let mut step = if near == 1 { NEAR_CELLS / 2 } else { POINTS / 2 };
+        while step > 0 {
             for lane in 0..WIDTH {
-                let middle = usize::midpoint(from[lane], to[lane]);
-                let open = from[lane] < to[lane];
-                let holds = reached(inverse[lane], square[lane], middle);
-                to[lane] = if open && holds { middle } else { to[lane] };
-                from[lane] = if open && !holds { middle + 1 } else { from[lane] };
+                at[lane] += step * short(inverse[lane], square[lane], at[lane] + step - 1);
             }
-            left /= 2;
+            step /= 2;
         }
-        let mut found = [None; WIDTH];
-        for lane in 0..WIDTH {
-            if from[lane] > first && from[lane] <= last {
-                found[lane] = Some([radius(from[lane] - 1), radius(from[lane])]);
-            }
-        }
-        found
+        at.map(|at| if at > first && at <= last { at } else { 0 })
+    }
+    /// The cell of the grid that ends at a place.
+    #[inline(always)]
+    pub(super) fn cell(&self, place: usize) -> [f64; 2] {
+        [radius(place - 1), radius(place)]
+    }
+    /// V and −r dV/dr at both ends of the cell that ends at a place.
+    #[inline(always)]
+    pub(super) fn around(&self, place: usize) -> [f64; 4] {
+        [self.value[place - 1], self.value[place], self.pull[place - 1], self.pull[place]]
     }
     /// V and −r dV/dr at both ends of a cell of the grid; NaN of what is none.
+    #[inline]
     pub(super) fn ends(&self, [low, high]: [f64; 2]) -> [f64; 4] {
         let (from, to) = (place(low), place(high));
         if radius(from) != low || radius(to) != high || to != from + 1 {
             return [f64::NAN; 4];
         }
-        [self.value[from], self.value[to], self.pull[from], self.pull[to]]
+        self.around(to)
     }
     /// A distance of the grid from which on |V|/r is at most that, or |r² dV/dr| if `all`; infinite if it is nowhere.
     #[inline(always)]

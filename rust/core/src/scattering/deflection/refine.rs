@@ -5,7 +5,7 @@
 //! rest; what leaves the bracket is halved instead. Each lane goes by itself.
 
 use super::profile::Profile;
-use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::real::Mask;
 use crate::tiered;
 
@@ -32,8 +32,11 @@ pub(super) struct Turned {
     pub(super) curvature: Vec<Lanes>,
     /// b/r₀; the three above are V/E, rF/E and r²V″/E in the end.
     pub(super) root: Vec<Lanes>,
+    /// E min(|V/E|, ½)/r₀, and 1/r₀.
+    pub(super) scale: Vec<Lanes>,
+    pub(super) inverse: Vec<Lanes>,
     /// V and rF at both ends, where they are cells of the grid.
-    pub(super) ends: Vec<[Lanes; 4]>,
+    pub(super) ends: [Vec<Lanes>; 4],
     going: Vec<Bits>,
 }
 
@@ -51,11 +54,37 @@ impl Turned {
             &mut self.force,
             &mut self.curvature,
             &mut self.root,
+            &mut self.scale,
+            &mut self.inverse,
         ] {
             row.resize(rows, empty);
         }
-        self.ends.resize(rows, [empty; 4]);
+        for end in &mut self.ends {
+            end.resize(rows, empty);
+        }
         self.going.resize(rows, Bits(0));
+    }
+
+    /// Writes the next of so many pairs down.
+    #[inline(always)]
+    pub(super) fn put(&mut self, at: usize, energy: f64, b: f64, [low, high]: [f64; 2], ends: [f64; 4]) {
+        as_numbers_mut(&mut self.energy)[at] = energy;
+        as_numbers_mut(&mut self.b)[at] = b;
+        as_numbers_mut(&mut self.low)[at] = low;
+        as_numbers_mut(&mut self.high)[at] = high;
+        for (row, end) in self.ends.iter_mut().zip(ends) {
+            as_numbers_mut(row)[at] = end;
+        }
+    }
+    /// Fills the last row up with its last pair, and forgets the rows after it.
+    pub(super) fn close(&mut self, pairs: usize) {
+        for at in pairs..pairs.next_multiple_of(WIDTH) {
+            let last = pairs - 1;
+            let of = |row: &[Lanes]| as_numbers(row)[last];
+            let ends = [of(&self.ends[0]), of(&self.ends[1]), of(&self.ends[2]), of(&self.ends[3])];
+            self.put(at, of(&self.energy), of(&self.b), [of(&self.low), of(&self.high)], ends);
+        }
+        self.resize(pairs.div_ceil(WIDTH));
     }
 
     /// Finds them.
@@ -96,7 +125,8 @@ fn start<V: Vector8>(turned: &mut Turned) {
     for row in 0..turned.r.len() {
         let (energy, b) = (V::load(turned.energy[row]), V::load(turned.b[row]));
         let (low, high) = (V::load(turned.low[row]), V::load(turned.high[row]));
-        let [v0, v1, p0, p1] = turned.ends[row];
+        let [v0, v1, p0, p1] =
+            [turned.ends[0][row], turned.ends[1][row], turned.ends[2][row], turned.ends[3][row]];
         let (f0, s0, _) = rest(energy, b, low, V::load(v0), V::load(p0));
         let (f1, s1, _) = rest(energy, b, high, V::load(v1), V::load(p1));
         let (across, width) = (f1 - f0, high - low);
@@ -155,7 +185,11 @@ fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize) {
 fn scale<V: Vector8>(turned: &mut Turned) {
     for row in 0..turned.r.len() {
         let (energy, r) = (V::load(turned.energy[row]), V::load(turned.r[row]));
-        turned.value[row] = (V::load(turned.value[row]) / energy).store();
+        let value = V::load(turned.value[row]) / energy;
+        let inverse = V::one() / r;
+        turned.value[row] = value.store();
+        turned.inverse[row] = inverse.store();
+        turned.scale[row] = (energy * value.abs().min(V::splat(0.5)) * inverse).store();
         turned.force[row] = (r * V::load(turned.force[row]) / energy).store();
         turned.curvature[row] = (r * r * V::load(turned.curvature[row]) / energy).store();
         turned.root[row] = (V::load(turned.b[row]) / r).store();

@@ -80,7 +80,8 @@ fn look<V: Vector8>(
     series: &[Lanes; 3],
     level: &Level,
     fall: &Fall,
-) -> Spectrum {
+    found: &mut Spectrum,
+) {
     const M: usize = FREQUENCIES.len();
     let mut sums = [V::load(*half_start); M];
     let integrand = V::view(integrand);
@@ -113,9 +114,12 @@ fn look<V: Vector8>(
             below = below.max(size);
         }
     }
-    Spectrum { above: above.store(), below: below.store(), onward: onward.store(), fallen: fall.fallen }
+    found.above = above.store();
+    found.below = below.store();
+    found.onward = onward.store();
+    found.fallen = fall.fallen;
 }
 
 tiered! {
-    pub(super) fn spectrum[][](integrand: &[Lanes], counts: &[usize], half_start: &Lanes, series: &[Lanes; 3], level: &Level, fall: &Fall) -> Spectrum = look;
+    pub(super) fn spectrum[][](integrand: &[Lanes], counts: &[usize], half_start: &Lanes, series: &[Lanes; 3], level: &Level, fall: &Fall, found: &mut Spectrum) = look;
 }

@@ -100,7 +100,7 @@ struct Running {
 
 /// What does not change, and what there is at w = 0.
 #[inline(always)]
-fn begin<V: Vector8>(pack: &Pack) -> (Constants, Running) {
+fn begin<V: Vector8>(pack: &Pack, constants: &mut Constants, running: &mut Running) {
     let (one, half) = (V::one(), V::splat(0.5));
     let (x, y, root) = (V::load(pack.value), V::load(pack.force), V::load(pack.root));
     let square = root * root;
@@ -130,7 +130,7 @@ fn begin<V: Vector8>(pack: &Pack) -> (Constants, Running) {
             }
         }
     }
-    let constants = Constants {
+    *constants = Constants {
         inverse_energy: (one / V::load(pack.energy)).store(),
         value: pack.value,
         force: pack.force,
@@ -141,36 +141,82 @@ fn begin<V: Vector8>(pack: &Pack) -> (Constants, Running) {
         beside: [V::select(strong, V::load(closed), x.abs()).store(), y.abs().store(), x.abs().store()],
         closed,
     };
-    let size = [start[0].abs().store(), start[1].abs().store(), start[2].abs().store()];
-    (constants, Running { sum: constants.start, size, least: g.store() })
+    for i in 0..INTEGRALS {
+        running.sum[i] = start[i].store();
+        running.size[i] = start[i].abs().store();
+    }
+    running.least = g.store();
 }
 
 /// Rows that are filled again for every pack: distances, V and −dV/dr at nodes, and the integrands there, of all levels.
 #[derive(Debug, Default)]
-pub(super) struct Rows {
+struct Rows {
     distance: Vec<Lanes>,
     value: Vec<Lanes>,
     force: Vec<Lanes>,
     integrand: [Vec<Lanes>; INTEGRALS],
-    /// How many nodes of each level there are.
+    /// How many nodes of each level there are, and of all.
     counts: [usize; LEVELS + 1],
+    used: usize,
 }
 
 impl Rows {
+    /// V, and if there is more than one integral −dV/dr, at nodes; and room for the integrands there.
     fn fill(&mut self, profile: &Profile, turning: &Lanes, nodes: &[Node], integrals: usize) {
-        let empty = Lanes([0.0; WIDTH]);
         let count = nodes.len();
-        self.distance.resize(count, empty);
-        self.value.resize(count, empty);
-        distances_tier(turning, nodes, &mut self.distance);
-        if integrals == 1 {
-            profile.values(&self.distance, &mut self.value);
-        } else {
-            self.force.resize(count, empty);
-            profile.rows(&self.distance, &mut self.value, &mut self.force, &mut []);
-        }
+        let room = |rows: &mut Vec<Lanes>, count: usize| {
+            if rows.len() < count {
+                rows.resize(count, Lanes([0.0; WIDTH]));
+            }
+        };
+        room(&mut self.distance, count);
+        room(&mut self.value, count);
+        self.used += count;
         for integrand in &mut self.integrand[..integrals] {
-            integrand.resize(integrand.len() + count, empty);
+            room(integrand, self.used);
+        }
+        let distance = &mut self.distance[..count];
+        distances_tier(turning, nodes, distance);
+        if integrals == 1 {
+            profile.values(distance, &mut self.value[..count]);
+        } else {
+            room(&mut self.force, count);
+            profile.rows(distance, &mut self.value[..count], &mut self.force[..count], &mut []);
+        }
+    }
+}
+
+/// What is used again for every pack.
+#[derive(Debug)]
+pub(super) struct Work {
+    rows: Rows,
+    constants: Constants,
+    running: Running,
+    spectra: [Spectrum; INTEGRALS],
+    /// What was found.
+    pub(super) sums: Sums,
+}
+
+impl Default for Work {
+    fn default() -> Self {
+        let empty = Lanes([0.0; WIDTH]);
+        let all = [empty; INTEGRALS];
+        Self {
+            rows: Rows::default(),
+            constants: Constants {
+                inverse_energy: empty,
+                value: empty,
+                force: empty,
+                square: empty,
+                series: [empty; 3],
+                strong: Bits(0),
+                start: all,
+                beside: all,
+                closed: empty,
+            },
+            running: Running { sum: all, size: all, least: empty },
+            spectra: [Spectrum::default(); INTEGRALS],
+            sums: Sums { integral: all, error: empty, met: Bits(0) },
         }
     }
 }
@@ -206,10 +252,11 @@ fn add_nodes<V: Vector8, const N: usize>(
     let mut least = V::load(running.least);
     let (distances, values, forces) = (V::view(&rows.distance), V::view(&rows.value), V::view(&rows.force));
     let [first, second, third] = &mut rows.integrand;
-    let from = first.len() - nodes.len();
-    let angles = V::view_mut(&mut first[from..]);
-    let slopes = V::view_mut(&mut second[if N > 1 { from } else { 0 }..]);
-    let ways = V::view_mut(&mut third[if N > 1 { from } else { 0 }..]);
+    let range = rows.used - nodes.len()..rows.used;
+    let others = if N > 1 { range.clone() } else { 0..0 };
+    let angles = V::view_mut(&mut first[range]);
+    let slopes = V::view_mut(&mut second[others.clone()]);
+    let ways = V::view_mut(&mut third[others]);
     for k in 0..nodes.len() {
         let node = nodes[k];
         let (u, weight) = (V::splat(node.ratio), V::splat(node.weight));
@@ -291,7 +338,7 @@ fn judge<V: Vector8, const N: usize>(
 }
 
 tiered! {
-    fn begin_tier[][](pack: &Pack) -> (Constants, Running) = begin;
+    fn begin_tier[][](pack: &Pack, constants: &mut Constants, running: &mut Running) = begin;
     fn distances_tier[][](turning: &Lanes, nodes: &[Node], distance: &mut [Lanes]) = distances;
     fn add_nodes_tier[const N: usize][N](constants: &Constants, nodes: &[Node], reach: &Lanes, rows: &mut Rows, running: &mut Running) = add_nodes;
     fn judge_tier[const N: usize][N](constants: &Constants, running: &Running, spectra: &[Spectrum; INTEGRALS], level: &Level, asked: (Bits, f64, &Lanes), done: &mut Sums) -> Bits = judge;
@@ -303,19 +350,17 @@ pub(super) fn integrate<const N: usize>(
     ladder: &Ladder,
     pack: &Pack,
     tolerance: f64,
-    rows: &mut Rows,
-) -> Sums {
-    let empty = Lanes([0.0; WIDTH]);
-    let (constants, mut running) = begin_tier(pack);
-    for integrand in &mut rows.integrand {
-        integrand.clear();
-    }
-    let mut done = Sums { integral: [empty; INTEGRALS], error: empty, met: Bits(0) };
+    work: &mut Work,
+) {
+    let Work { rows, constants, running, spectra, sums } = work;
+    begin_tier(pack, constants, running);
+    rows.used = 0;
+    sums.met = Bits(0);
     let mut open = Bits(0);
     for lane in 0..WIDTH {
         open.0 |= u8::from(pack.reach.0[lane] > 0.0) << lane;
     }
-    let mut spectra = [Spectrum::default(); INTEGRALS];
+    let nothing = [Lanes([0.0; WIDTH]); 3];
     for (at, level) in ladder.levels.iter().enumerate() {
         if !open.any() {
             break;
@@ -333,15 +378,22 @@ pub(super) fn integrate<const N: usize>(
         let nodes = &level.nodes[..farthest.min(level.nodes.len())];
         rows.counts[at] = nodes.len();
         rows.fill(profile, &pack.turning, nodes, N);
-        add_nodes_tier::<N>(&constants, nodes, &reach, rows, &mut running);
+        add_nodes_tier::<N>(constants, nodes, &reach, rows, running);
         let fall = &level.falls[usize::from(!profile.repels())];
         for i in 0..N {
-            let series = if i == 0 { &constants.series } else { &[empty; 3] };
-            spectra[i] =
-                spectrum(&rows.integrand[i], &rows.counts[..=at], &constants.start[i], series, level, fall);
+            let series = if i == 0 { &constants.series } else { &nothing };
+            let integrand = &rows.integrand[i][..rows.used];
+            spectrum(
+                integrand,
+                &rows.counts[..=at],
+                &constants.start[i],
+                series,
+                level,
+                fall,
+                &mut spectra[i],
+            );
         }
         let asked = (open, tolerance, &pack.longest);
-        open = judge_tier::<N>(&constants, &running, &spectra, level, asked, &mut done);
+        open = judge_tier::<N>(constants, running, spectra, level, asked, sums);
     }
-    done
 }
