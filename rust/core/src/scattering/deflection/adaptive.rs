@@ -46,6 +46,8 @@ const MEAN: [[f64; 2]; 4] = [
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Numbers below this have not all their digits.
+const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// Where it is at most.
 const FARTHEST: f64 = 750.0;
 
@@ -128,7 +130,8 @@ pub(super) fn integrate(
     }
     loop {
         let (sum, error, size) = totals(&intervals);
-        let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
+        // What is next to nothing has not its digits.
+        let share = |i: usize| if size[i] > LEAST { error[i] / size[i] } else { 0.0 };
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
         let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {

@@ -68,22 +68,26 @@ pub(super) struct Level {
 /// Steps that are halved.
 #[derive(Debug)]
 pub(super) struct Ladder {
-    pub(super) levels: [Level; LEVELS + 1],
+    first: f64,
+    levels: [OnceLock<Level>; LEVELS + 1],
     counts: Vec<u8>,
 }
 
 impl Ladder {
     /// For a tolerance.
     pub(super) fn of(tolerance: f64) -> &'static Self {
-        static LADDERS: OnceLock<[Ladder; FIRST.len()]> = OnceLock::new();
-        let ladders = LADDERS.get_or_init(|| FIRST.map(|(_, step)| Self::new(step)));
+        static LADDERS: [OnceLock<Ladder>; FIRST.len()] = [const { OnceLock::new() }; FIRST.len()];
         let at = FIRST.iter().position(|(least, _)| tolerance >= *least).unwrap_or(FIRST.len() - 1);
-        &ladders[at]
+        LADDERS[at].get_or_init(|| {
+            let (_, first) = FIRST[at];
+            Self { first, levels: [const { OnceLock::new() }; LEVELS + 1], counts: counts(first) }
+        })
     }
-    fn new(first: f64) -> Self {
-        let levels = core::array::from_fn(|level| {
-            let step = first / f64::from(1_u32 << level);
-            let count = (FARTHEST / first) as usize;
+    /// Steps that were halved so often.
+    pub(super) fn level(&self, level: usize) -> &Level {
+        self.levels[level].get_or_init(|| {
+            let step = self.first / f64::from(1_u32 << level);
+            let count = (FARTHEST / self.first) as usize;
             let nodes = if level == 0 { count } else { count << (level - 1) };
             let multiple = |k: usize| if level == 0 { k + 1 } else { 2 * k + 1 };
             Level {
@@ -92,8 +96,7 @@ impl Ladder {
                 powers: powers(step),
                 falls: Fall::both(step),
             }
-        });
-        Self { levels, counts: counts(first) }
+        })
     }
     /// How many nodes of the first level are before r = `cosh` × r₀, or some more; none if there are not so many.
     #[inline(always)]

@@ -361,10 +361,11 @@ pub(super) fn integrate<const N: usize>(
         open.0 |= u8::from(pack.reach.0[lane] > 0.0) << lane;
     }
     let nothing = [Lanes([0.0; WIDTH]); 3];
-    for (at, level) in ladder.levels.iter().enumerate() {
+    for at in 0..=LEVELS {
         if !open.any() {
             break;
         }
+        let level = ladder.level(at);
         // The nodes of the first level that count, or as many times two as there are odd multiples among them.
         let times = if at == 0 { 1 } else { 1 << (at - 1) };
         let mut reach = pack.reach;
