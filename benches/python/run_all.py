@@ -10,6 +10,7 @@ from pathlib import Path
 HERE = Path(__file__).parent
 SCRIPTS = (
     "direct_gravity",
+    "deflection",
     "pair_potentials",
     "leapfrog_step",
     "dop853_outer_solar_system",

@@ -156,14 +156,21 @@ def deflect(
     array([ 2.15060623, -0.95631448, -0.23448714])
     """
     mass = None if reduced_mass is None else positive("reduced_mass", reduced_mass)
-    pairs, columns, turning_points, status = _deflections(
-        potential, energy, impact_parameter, tolerance, threads, everything=True
-    )
+    pairs, columns, counts = _deflections(potential, energy, impact_parameter, tolerance, threads, everything=True)
     shape = pairs[0].shape
-    whole = [np.array(numbers, dtype=np.int64).reshape(shape)[()] for numbers in (turning_points, status)]
     angle, complement, closest_approach, derivative, delay, error = (column.reshape(shape)[()] for column in columns)
+    turning_points, status = (count.reshape(shape)[()] for count in counts)
     return Deflection(
-        *pairs, angle, complement, closest_approach, derivative, delay, error, whole[0], whole[1], reduced_mass=mass
+        *pairs,
+        angle,
+        complement,
+        closest_approach,
+        derivative,
+        delay,
+        error,
+        turning_points,
+        status,
+        reduced_mass=mass,
     )
 
 
@@ -206,7 +213,7 @@ def deflection_angle(
     >>> vv.scattering.deflection_angle(zbl, energy=1.0, impact_parameter=[0.0, 1.0, 10.0])
     array([3.14159265e+00, 5.05531621e-01, 2.15338110e-03])
     """
-    pairs, columns, _, _ = _deflections(potential, energy, impact_parameter, tolerance, threads, everything=False)
+    pairs, columns, _ = _deflections(potential, energy, impact_parameter, tolerance, threads, everything=False)
     return columns[0].reshape(pairs[0].shape)[()]
 
 
@@ -218,7 +225,7 @@ def _deflections(
     threads: object,
     *,
     everything: bool,
-) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], list[NDArray[np.float64]], list[int], list[int]]:
+) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
     """Check what was asked for, and ask the core."""
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
@@ -234,7 +241,7 @@ def _deflections(
         message = f"expected a shape that goes with that of energy, got {came}; see NumPy's rules of broadcasting"
         raise InvalidInput("impact_parameter", message) from None
     pairs = np.broadcast_to(energies, shape), np.broadcast_to(parameters, shape)
-    columns, turning_points, status = _core.deflections(
+    columns, counts = _core.deflections(
         potential._to_core(),
         pairs[0].ravel(),
         pairs[1].ravel(),
@@ -242,4 +249,4 @@ def _deflections(
         everything,
         None if threads is None else whole_number("threads", threads, 1, 1024),
     )
-    return pairs, columns, turning_points, status
+    return pairs, columns, counts

@@ -24,6 +24,27 @@ fn force_rows<V: Vector8 + Analytic, P: Formula>(potential: &P, r: &[Lanes], for
     }
 }
 
+#[inline(always)]
+fn all_rows<V: Vector8 + Analytic, P: Formula>(
+    potential: &P,
+    r: &[Lanes],
+    value: &mut [Lanes],
+    force: &mut [Lanes],
+    curvature: &mut [Lanes],
+) {
+    let own = &splat::<V, P>(potential);
+    let (r, value, force, curvature) =
+        (V::view(r), V::view_mut(value), V::view_mut(force), V::view_mut(curvature));
+    for row in 0..r.len() {
+        let all = potential.all(own, r[row]);
+        value[row] = all[0];
+        force[row] = all[1];
+        if let Some(curvature) = curvature.get_mut(row) {
+            *curvature = all[2];
+        }
+    }
+}
+
 /// The potential's own numbers in every lane.
 #[inline(always)]
 fn splat<V: Vector8, P: Formula>(potential: &P) -> Numbers<V> {
@@ -37,6 +58,7 @@ fn splat<V: Vector8, P: Formula>(potential: &P) -> Numbers<V> {
 tiered! {
     pub(super) fn value_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], value: &mut [Lanes]) = value_rows;
     pub(super) fn force_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], force: &mut [Lanes]) = force_rows;
+    pub(super) fn all_rows_tier[P: Formula][P](potential: &P, r: &[Lanes], value: &mut [Lanes], force: &mut [Lanes], curvature: &mut [Lanes]) = all_rows;
 }
 
 /// Bodies around a fixed point.

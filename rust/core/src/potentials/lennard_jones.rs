@@ -76,4 +76,14 @@ impl Formula for LennardJones {
         let bracket = sixth * (S::splat(26.0) * sixth - S::splat(7.0));
         own[2] * bracket / (r * r)
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
+        let sixth = Self::sixth_power(own, r);
+        let bend = sixth * (S::splat(26.0) * sixth - S::splat(7.0));
+        [
+            S::splat(4.0) * own[0] * (sixth * (sixth - S::one())),
+            own[2] * (sixth * (sixth + sixth - S::one())) / r,
+            own[2] * bend / (r * r),
+        ]
+    }
 }

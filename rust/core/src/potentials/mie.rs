@@ -92,4 +92,13 @@ impl Formula for Mie {
         let bracket = n * ratio.power(&self.powers[1]) - m;
         own[0] * (ratio.power(&self.powers[0]) * bracket) / r / r
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
+        let ratio = own[1] / r;
+        let (slow, fast) = (ratio.power(&self.powers[0]), ratio.power(&self.powers[1]));
+        let [n, m] = self.exponents;
+        let slope = S::splat(n) * fast - S::splat(m);
+        let bend = S::splat(n * (n + 1.0)) * fast - S::splat(m * (m + 1.0));
+        [own[0] * (slow * (fast - S::one())), own[0] * (slow * slope) / r, own[0] * (slow * bend) / r / r]
+    }
 }

@@ -68,4 +68,14 @@ impl Formula for Morse {
         let a = own[1];
         own[0] * (S::splat(2.0) * own[1]) * a * (e * (e + e - S::one()))
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
+        let e = Self::decay(own, r);
+        let slope = own[0] * (S::splat(2.0) * own[1]);
+        [
+            own[0] * (e * (e - S::splat(2.0))),
+            slope * (e * (e - S::one())),
+            slope * own[1] * (e * (e + e - S::one())),
+        ]
+    }
 }

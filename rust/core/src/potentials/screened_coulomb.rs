@@ -81,4 +81,9 @@ impl Formula for ScreenedCoulomb {
     fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
         own[0] * self.screening.with_bend(Self::lengths(own, r)) / r / r / r
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
+        let [value, slope, bend] = self.screening.all(Self::lengths(own, r));
+        [own[0] * value / r, own[0] * slope / r / r, own[0] * bend / r / r / r]
+    }
 }

@@ -67,6 +67,17 @@ impl Screening {
         }
     }
 
+    /// φ, φ − x φ′ and 2φ − 2x φ′ + x² φ″, with the bits of each by itself.
+    #[inline(always)]
+    pub(super) fn all<S: Analytic>(&self, x: S) -> [S; 3] {
+        let [value, slope, bend] = match self {
+            Self::Four(terms) => return all_exponentials(terms, x),
+            Self::Three(terms) => return all_exponentials(terms, x),
+            Self::LenzJensen => lenz_jensen(x),
+            Self::ThomasFermi(function) => function.all(x),
+        };
+        [value, value + slope, S::splat(2.0) * (value + slope) + bend]
+    }
     /// φ.
     #[inline(always)]
     pub(super) fn value<S: Analytic>(&self, x: S) -> S {
@@ -115,23 +126,46 @@ impl Screening {
 /// Σ aᵢ e^−u wᵢ, u = x times the rate, of φ and of what its first and second derivative make: w = 1, 1 + u, 2 + 2u + u².
 #[inline(always)]
 fn exponentials<S: Analytic, const N: usize>(terms: &Terms<N>, x: S, order: usize) -> S {
+    let (u, falling) = falling(terms, x);
+    let mut sum = S::zero();
+    for i in 0..N {
+        sum = falling[i].multiply_add(weight(u[i], terms[i][0], order), sum);
+    }
+    sum
+}
+
+/// All three orders.
+#[inline(always)]
+fn all_exponentials<S: Analytic, const N: usize>(terms: &Terms<N>, x: S) -> [S; 3] {
+    let (u, falling) = falling(terms, x);
+    let mut sums = [S::zero(); 3];
+    for i in 0..N {
+        for order in 0..3 {
+            sums[order] = falling[i].multiply_add(weight(u[i], terms[i][0], order), sums[order]);
+        }
+    }
+    sums
+}
+
+/// u and e^−u of each term.
+#[inline(always)]
+fn falling<S: Analytic, const N: usize>(terms: &Terms<N>, x: S) -> ([S; N], [S; N]) {
     let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
     let mut u = [x; N];
     for i in 0..N {
         u[i] = x * S::splat(terms[i][1]);
     }
-    let falling = S::falling_exps(u);
-    let mut sum = S::zero();
-    for i in 0..N {
-        let amplitude = S::splat(terms[i][0]);
-        let weight = match order {
-            0 => amplitude,
-            1 => u[i].multiply_add(amplitude, amplitude),
-            _ => amplitude * u[i].multiply_add(u[i] + S::splat(2.0), S::splat(2.0)),
-        };
-        sum = falling[i].multiply_add(weight, sum);
+    (u, S::falling_exps(u))
+}
+
+#[inline(always)]
+fn weight<S: Analytic>(u: S, amplitude: f64, order: usize) -> S {
+    let amplitude = S::splat(amplitude);
+    match order {
+        0 => amplitude,
+        1 => u.multiply_add(amplitude, amplitude),
+        _ => amplitude * u.multiply_add(u + S::splat(2.0), S::splat(2.0)),
     }
-    sum
 }
 
 /// φ, −x φ′ and x² φ″ of Lenz and Jensen. With φ = e^−y P: dφ/dx = (9.67/2) e^−y Q, Q = (P′ − P)/y.

@@ -114,6 +114,35 @@ proptest! {
     }
 }
 
+/// V and its slopes from one evaluation have the bits of each by itself, in every lane.
+#[test]
+fn all_at_once_is_each_by_itself() {
+    for seeds in [[1.25, 0.75, 1.5, 1.0], [-1.25, 2.0, 0.1, 1.9], [0.3, -1.0, 1.7, 0.05]] {
+        for potential in all(&seeds) {
+            let places: Vec<Lanes> = (0..5)
+                .map(|row| Lanes([0, 1, 2, 3, 4, 5, 6, 7].map(|k| 0.61 + 0.06 * f64::from(8 * row + k))))
+                .collect();
+            let empty = vec![Lanes([0.0; 8]); places.len()];
+            let (mut value, mut force, mut alone) = (empty.clone(), empty.clone(), empty.clone());
+            let mut curvature = empty.clone();
+            potential.all_rows(&places, &mut value, &mut force, &mut curvature);
+            potential.value_rows(&places, &mut alone);
+            assert_eq!(value, alone, "{potential:?}");
+            potential.force_rows(&places, &mut alone);
+            assert_eq!(force, alone, "{potential:?}");
+            for (row, place) in places.iter().enumerate() {
+                for lane in 0..8 {
+                    let at = potential.at(place.0[lane]);
+                    let [v, f, c] = [value[row], force[row], curvature[row]].map(|row| row.0[lane]);
+                    assert_eq!([v, f, c].map(f64::to_bits), at.map(f64::to_bits), "{potential:?}");
+                }
+                let evaluated = potential.evaluate(&place.0);
+                assert_eq!(evaluated[2], curvature[row].0.to_vec(), "{potential:?}");
+            }
+        }
+    }
+}
+
 /// Precise sums see strengths near one, whatever the units of the scene: the values differ by the power of two alone.
 #[test]
 fn a_strength_of_any_size_is_brought_near_one() {

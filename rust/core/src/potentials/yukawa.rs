@@ -74,4 +74,11 @@ impl Formula for Yukawa {
         let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
         own[0] * (-s).exp() * polynomial / (r * r * r)
     }
+    #[inline(always)]
+    fn all<S: Analytic>(&self, own: &Numbers<S>, r: S) -> [S; 3] {
+        let s = Self::lengths(own, r);
+        let decay = own[0] * (-s).exp();
+        let polynomial = S::splat(2.0) + s * (S::splat(2.0) + s);
+        [decay / r, decay * (S::one() + s) / (r * r), decay * polynomial / (r * r * r)]
+    }
 }

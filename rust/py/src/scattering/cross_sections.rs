@@ -8,7 +8,7 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::parallel::thread_count;
-use visviva_core::scattering::cross_sections::{Structure, collision_integral, transport};
+use visviva_core::scattering::cross_sections::{OF_ANGLES_IN_MEAN, Structure, collision_integral, transport};
 use visviva_core::scattering::deflection::{Deflector, TOLERANCE};
 use visviva_core::scattering::kinematics::Collision;
 
@@ -190,7 +190,7 @@ pub(crate) fn collision_integrals<'py>(
     let potential = described_potential(description)?;
     let (temperature, shape) = copied("temperature", &temperature, [None])?;
     let found = compute(py, 0, None, |ticker| {
-        let deflector = Deflector::new(&potential, TOLERANCE)?;
+        let deflector = Deflector::new(&potential, OF_ANGLES_IN_MEAN)?;
         let one = |kt: &f64| collision_integral(&deflector, *kt, orders, diameter, threads, ticker);
         temperature.iter().map(one).collect::<visviva_core::Result<Vec<f64>>>()
     })?

@@ -12,9 +12,9 @@ use visviva_core::scattering::deflection::{Deflection, Deflector};
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 /// Angle, complement, closest approach, derivative, delay, error; turning points and statuses.
-type Deflections<'py> = (Vec<Column<'py>>, Vec<u32>, Vec<u32>);
+type Deflections<'py> = (Vec<Column<'py>>, Vec<Bound<'py, PyArrayDyn<i64>>>);
 
-/// Deflections of pairs; derivatives and delays only if `everything`.
+/// Deflections of pairs, or if not `everything` their angles.
 #[pyfunction]
 pub(crate) fn deflections<'py>(
     py: Python<'py>,
@@ -29,20 +29,27 @@ pub(crate) fn deflections<'py>(
     let potential = described_potential(description)?;
     let (energy, _) = copied("energy", &energy, [None])?;
     let (b, shape) = copied("impact_parameter", &impact_parameter, [None])?;
+    if !everything {
+        let angles = compute(py, b.len() as u64, None, |ticker| {
+            Deflector::new(&potential, tolerance)?.angles(&energy, &b, threads, ticker)
+        })?
+        .whole(py)?;
+        return Ok((vec![moved(py, angles, &shape)?], Vec::new()));
+    }
     let found = compute(py, b.len() as u64, None, |ticker| {
-        Deflector::new(&potential, tolerance)?.deflect(&energy, &b, everything, threads, ticker)
+        Deflector::new(&potential, tolerance)?.deflect(&energy, &b, true, threads, ticker)
     })?
     .whole(py)?;
-    let column = |of: &dyn Fn(&Deflection) -> f64| moved(py, found.iter().map(of).collect(), &shape);
-    let columns = [
-        column(&|found| found.angle)?,
-        column(&|found| found.complement)?,
-        column(&|found| found.closest_approach)?,
-        column(&|found| found.derivative)?,
-        column(&|found| found.delay)?,
-        column(&|found| found.error)?,
+    let column = |of: fn(&Deflection) -> f64| moved(py, found.iter().map(of).collect(), &shape);
+    let columns = vec![
+        column(|found| found.angle)?,
+        column(|found| found.complement)?,
+        column(|found| found.closest_approach)?,
+        column(|found| found.derivative)?,
+        column(|found| found.delay)?,
+        column(|found| found.error)?,
     ];
-    let turning_points = found.iter().map(|found| found.turning_points).collect();
-    let status = found.iter().map(|found| found.status as u32).collect();
-    Ok((columns.into(), turning_points, status))
+    let count = |of: fn(&Deflection) -> i64| moved(py, found.iter().map(of).collect(), &shape);
+    let counts = vec![count(|found| i64::from(found.turning_points))?, count(|found| found.status as i64)?];
+    Ok((columns, counts))
 }

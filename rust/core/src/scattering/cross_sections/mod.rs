@@ -11,7 +11,7 @@ mod branches;
 mod transport;
 
 pub use branches::Branch;
-pub use transport::{collision_integral, transport};
+pub use transport::{OF_ANGLES_IN_MEAN, collision_integral, transport};
 
 use super::deflection::{Deflection, Deflector, Edge, Status};
 use crate::Result;

@@ -6,7 +6,7 @@
 use super::super::deflection::{Deflector, Edge, Status};
 use crate::numerics::angles::sin;
 use crate::numerics::elementary::{Exponential, ln};
-use crate::parallel::Ticker;
+use crate::parallel::{Ticker, for_chunks};
 use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::PI;
@@ -15,13 +15,19 @@ use core::f64::consts::PI;
 const RULE: [[f64; 3]; 8] = super::super::deflection::KRONROD;
 /// Rounds of halving.
 const ROUNDS: usize = 40;
-/// The tolerance of a cross section, relative, and of the angles in it.
+/// The tolerance of a cross section, relative.
 const TOLERANCE: f64 = 1e-10;
+/// That of those that are averaged, and of the average.
+const IN_MEAN: f64 = 3e-9;
+/// And of the angles in them.
+pub const OF_ANGLES_IN_MEAN: f64 = 1e-10;
+const MEAN: f64 = 1e-9;
 /// How near to an edge and how far out intervals go, as exponents of e.
 const NEAREST: f64 = 26.0;
 const FARTHEST: f64 = 40.0;
-/// Rounds of halving of intervals of energy: each costs fifteen cross sections an interval.
-const MOST_ROUNDS: usize = 4;
+/// Rounds of halving of intervals of energy: each costs fifteen cross sections an interval. Where orbits begin to be the
+/// mean bends sharply, and what is left of it there is half as much each time.
+const MOST_ROUNDS: usize = 14;
 /// Intervals are no longer than this at first.
 const LONGEST: f64 = 2.0;
 
@@ -71,6 +77,17 @@ pub fn transport(
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<f64> {
+    transport_to(TOLERANCE, deflector, energy, l, threads, ticker)
+}
+
+fn transport_to(
+    tolerance: f64,
+    deflector: &Deflector,
+    energy: f64,
+    l: u32,
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<f64> {
     if deflector.falls_as_inverse_distance() {
         return Err(Error::invalid(
             "potential",
@@ -99,8 +116,8 @@ pub fn transport(
         for (interval, [value, off]) in pending.iter().zip(found) {
             let [from, to] = interval.ends;
             let middle = 0.5 * (from + to);
-            if off <= TOLERANCE * whole * 1e-3
-                || off <= TOLERANCE * value.abs() * 1e-2
+            if off <= tolerance * whole * 1e-3
+                || off <= tolerance * value.abs() * 1e-2
                 || round + 1 == ROUNDS
                 || middle <= from
                 || middle >= to
@@ -240,9 +257,9 @@ pub fn collision_integral(
     ticker: &mut Ticker<'_>,
 ) -> Result<f64> {
     let (l, s) = orders;
-    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-9 of its largest outside of these.
+    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-11 of its largest outside of these.
     let power = f64::from(s + 2);
-    let [least, most] = [-22.0 / power, 3.4];
+    let [least, most] = [-26.0 / power, 3.9];
     let mut marks = vec![least, most];
     marks.extend(deflector.critical_energies().iter().map(|energy| ln(energy / temperature)));
     marks.retain(|x| (least..=most).contains(x));
@@ -257,21 +274,20 @@ pub fn collision_integral(
     let factorial: f64 = (1..=s + 1).map(f64::from).product();
     let mut done: Vec<f64> = Vec::new();
     for round in 0..MOST_ROUNDS {
-        let mut found = Vec::with_capacity(pending.len());
-        for ends in &pending {
-            let mut values = [0.0; 15];
-            for (k, value) in values.iter_mut().enumerate() {
-                let x = point(*ends, k);
-                let share = Exponential::exp(x);
-                let weight = Exponential::exp(power * x - share) / factorial;
-                *value = weight * transport(deflector, temperature * share, l, threads, ticker)?;
-            }
-            found.push(both_rules(*ends, &values));
-        }
+        let points: Vec<f64> = pending.iter().flat_map(|ends| (0..15).map(|k| point(*ends, k))).collect();
+        // Energies side by side: each takes its time.
+        let values = for_chunks(threads, points.len(), ticker, |at, ticker| {
+            let share = Exponential::exp(points[at]);
+            let weight = Exponential::exp(power * points[at] - share) / factorial;
+            let found = transport_to(IN_MEAN, deflector, temperature * share, l, 1, ticker)?;
+            Ok(weight * found)
+        })?;
+        let found: Vec<[f64; 2]> =
+            pending.iter().zip(values.chunks(15)).map(|(ends, values)| both_rules(*ends, values)).collect();
         let whole: f64 = done.iter().sum::<f64>() + found.iter().map(|[value, _]| value).sum::<f64>();
         let mut next = Vec::new();
         for (ends, [value, off]) in pending.iter().zip(&found) {
-            if *off <= 1e-7 * whole || round + 1 == MOST_ROUNDS {
+            if *off <= MEAN * whole || round + 1 == MOST_ROUNDS {
                 done.push(*value);
             } else {
                 let middle = 0.5 * (ends[0] + ends[1]);

@@ -6,9 +6,10 @@
 //! would cancel, it is the mean of the force in between. Gauss–Kronrod rules of 7 and 15 points: R. Piessens et al.,
 //! *QUADPACK* (1983).
 
+use super::comparison::Comparison;
 use super::nodes::{Node, sinh};
 use super::profile::Profile;
-use super::trapezoid::{Comparison, INTEGRALS};
+use super::trapezoid::INTEGRALS;
 use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
@@ -45,6 +46,8 @@ const MEAN: [[f64; 2]; 4] = [
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// Numbers below this have not all their digits.
+const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// Where it is at most.
 const FARTHEST: f64 = 750.0;
 
@@ -78,7 +81,7 @@ pub(super) enum Integrand {
     Turning,
 }
 
-/// Integrals, and how far the first may be off.
+/// Integrals, the first with what it is compared with, and how far that may be off.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Whole {
     pub(super) integral: [f64; INTEGRALS],
@@ -101,6 +104,14 @@ pub(super) fn integrate(
     ends: &[f64],
     (tolerance, wanted): (f64, usize),
 ) -> Whole {
+    let mut known = [0.0; INTEGRALS];
+    if integrand == Integrand::Deflection {
+        known[0] = Comparison::of(pair.value, pair.root).closed;
+    }
+    let whole = |sum: [f64; INTEGRALS], error: f64, size: f64| Whole {
+        integral: core::array::from_fn(|i| known[i] + sum[i]),
+        error: error.max(ROUNDING * size),
+    };
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
@@ -119,18 +130,19 @@ pub(super) fn integrate(
     }
     loop {
         let (sum, error, size) = totals(&intervals);
-        let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
+        // What is next to nothing has not its digits.
+        let share = |i: usize| if size[i] > LEAST { error[i] / size[i] } else { 0.0 };
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
         let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
-            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+            return whole(sum, error[0], size[0]);
         };
         let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
         let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
         let [from, to] = intervals[at].ends;
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
-            return Whole { integral: sum, error: error[0].max(ROUNDING * size[0]) };
+            return whole(sum, error[0], size[0]);
         }
         intervals[at] = rule(profile, pair, integrand, [from, middle]);
         intervals.push(rule(profile, pair, integrand, [middle, to]));

@@ -10,23 +10,23 @@
 mod adaptive;
 pub(super) use adaptive::RULE as KRONROD;
 mod closed;
+mod comparison;
 mod nodes;
+mod pairs;
 mod profile;
+mod refine;
+mod spectrum;
 mod trapezoid;
 mod turning;
 
-use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
 use crate::words::number;
 use crate::{Error, Result};
-use adaptive::{Integrand, Pair};
 use closed::Closed;
-use core::f64::consts::PI;
+use pairs::Quadrature;
 use profile::Profile;
 use std::sync::Arc;
-use trapezoid::{Comparison, Pack};
-use turning::{Critical, Way};
 
 /// The tolerance if none is asked for: of an angle, relative to what was added up to it.
 pub const TOLERANCE: f64 = 1e-12;
@@ -34,17 +34,6 @@ pub const TOLERANCE: f64 = 1e-12;
 pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-13..=1e-3;
 /// Pairs of a chunk.
 const CHUNK: usize = 256;
-/// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
-const NEAR_ORBITING: f64 = 1e-4;
-/// What rounding leaves of the distance to a barrier, as a part of b.
-const ROUNDING: f64 = 64.0 * f64::EPSILON;
-/// And here equal steps would be many.
-const NEAR_BARRIER: f64 = 0.003;
-/// An angle of less than this part of what cancels in it is found as a sum of small turns.
-const CANCELLED: f64 = 0.05;
-/// An impact parameter that stands for zero at an open center, in units of the potential's own length.
-const TINY: f64 = 1.0 / (1 << 26) as f64;
-
 /// What became of a projectile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -175,15 +164,41 @@ impl Deflector {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Deflection>> {
+        self.collected(energy, b, (all, |found| *found), threads, ticker)
+    }
+    /// Their angles; NaN if captured.
+    ///
+    /// # Errors
+    /// As [`deflect`](Self::deflect).
+    pub fn angles(
+        &self,
+        energy: &[f64],
+        b: &[f64],
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<f64>> {
+        self.collected(energy, b, (false, |found| found.angle), threads, ticker)
+    }
+
+    fn collected<T: Send>(
+        &self,
+        energy: &[f64],
+        b: &[f64],
+        (all, take): (bool, fn(&Deflection) -> T),
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Vec<T>> {
         let pairs = energy.len().min(b.len());
         let chunks = pairs.div_ceil(CHUNK);
         let parts = for_chunks(threads, chunks, ticker, |chunk, ticker| {
             let range = chunk * CHUNK..pairs.min((chunk + 1) * CHUNK);
             let found = self.chunk(&energy[range.clone()], &b[range.clone()], all, ticker)?;
             ticker.advance(range.len() as u64);
-            Ok(found)
+            Ok(found.iter().map(take).collect::<Vec<T>>())
         })?;
-        Ok(parts.into_iter().flatten().collect())
+        let mut all = Vec::with_capacity(pairs);
+        all.extend(parts.into_iter().flatten());
+        Ok(all)
     }
 
     fn chunk(
@@ -207,184 +222,6 @@ impl Deflector {
             }
         }
         Ok(found)
-    }
-}
-
-/// Pairs by quadrature.
-struct Quadrature<'a> {
-    profile: &'a Profile,
-    tolerance: f64,
-    all: bool,
-}
-
-/// A pair that turns, in units of the profile.
-struct Turning {
-    place: usize,
-    energy: f64,
-    b: f64,
-    bracket: [f64; 2],
-    barriers: Vec<f64>,
-}
-
-impl Quadrature<'_> {
-    fn deflections(&self, energy: &[f64], b: &[f64], ticker: &mut Ticker<'_>) -> Result<Vec<Deflection>> {
-        let profile = self.profile;
-        let mut critical = Critical::default();
-        let mut found = vec![Deflection::captured(); energy.len()];
-        let mut turning: Vec<Turning> = Vec::new();
-        for place in 0..energy.len() {
-            ticker.tick()?;
-            let (e, mut b) = (profile.take_energy(energy[place]), profile.take_length(b[place]));
-            profile.check_end(e, self.tolerance)?;
-            let mut way = critical.way(profile, e, b);
-            found[place].turning_points = critical.turning_points(profile, e, b);
-            if matches!(way, Way::Through | Way::Bounces(_)) {
-                b = TINY;
-                way = critical.way(profile, e, b);
-            }
-            if let Way::Turns { bracket, barriers } = way {
-                profile.check_start(e, b, bracket)?;
-                turning.push(Turning { place, energy: e, b, bracket, barriers });
-            }
-        }
-        for group in turning.chunks(WIDTH) {
-            ticker.tick()?;
-            self.group(group, &mut found);
-        }
-        for (place, found) in found.iter_mut().enumerate() {
-            if b[place] == 0.0 && found.status != Status::Captured {
-                self.head_on(profile.take_energy(energy[place]), found);
-            }
-            found.closest_approach = profile.give_length(found.closest_approach);
-            found.delay = profile.give_length(found.delay);
-            // 1/length: the inverse of the unit.
-            found.derivative = profile.take_length(found.derivative);
-        }
-        Ok(found)
-    }
-
-    /// Up to eight pairs.
-    fn group(&self, group: &[Turning], found: &mut [Deflection]) {
-        let profile = self.profile;
-        let lanes = |of: &dyn Fn(&Turning) -> f64| {
-            Lanes(core::array::from_fn(|lane| of(&group[lane.min(group.len() - 1)])))
-        };
-        let (energy, b) = (lanes(&|pair| pair.energy), lanes(&|pair| pair.b));
-        let turning = turning::refine(
-            profile,
-            &energy,
-            &b,
-            &lanes(&|pair| pair.bracket[0]),
-            &lanes(&|pair| pair.bracket[1]),
-        );
-        let (mut value, mut force) = ([turning], [turning]);
-        profile.values(&[turning], &mut value);
-        profile.forces(&[turning], &mut force);
-        let per_energy =
-            |of: &dyn Fn(usize) -> f64| Lanes(core::array::from_fn(|lane| of(lane) / energy.0[lane]));
-        let nearness: [f64; WIDTH] = core::array::from_fn(|lane| {
-            let pair = &group[lane.min(group.len() - 1)];
-            turning::nearness(profile, pair.energy, pair.b, &pair.barriers)
-        });
-        let pack = Pack {
-            energy,
-            turning,
-            value: per_energy(&|lane| value[0].0[lane]),
-            force: per_energy(&|lane| turning.0[lane] * force[0].0[lane]),
-            curvature: per_energy(&|lane| {
-                let r = turning.0[lane];
-                if self.all { r * r * profile.curvature(r) } else { 0.0 }
-            }),
-            root: Lanes(core::array::from_fn(|lane| b.0[lane] / turning.0[lane])),
-            // The peak of 1/√G at a barrier is about √(2 × nearness) wide.
-            longest: Lanes(nearness.map(f64::sqrt)),
-        };
-        let sums = trapezoid::integrate(profile, &pack, self.tolerance, self.all);
-        for (lane, pair) in group.iter().enumerate() {
-            let mut single = Pair {
-                energy: pair.energy,
-                turning: turning.0[lane],
-                value: pack.value.0[lane],
-                force: pack.force.0[lane],
-                root: pack.root.0[lane],
-                near: 0.0,
-            };
-            let nearness = nearness[lane];
-            let smooth = !profile.breaks().iter().any(|edge| *edge > single.turning);
-            let met = sums.met.lane(lane) && nearness > NEAR_BARRIER && smooth;
-            if !met {
-                let r = single.turning;
-                let steepness =
-                    r * r * profile.curvature(r).abs() / (0.01 + single.force.abs()) / single.energy;
-                single.near = adaptive::near(r, steepness.max(1.0), profile.breaks());
-            }
-            let (integral, mut error) = if met {
-                (sums.integral.map(|integral| integral.0[lane]), sums.error.0[lane])
-            } else {
-                let tolerance = self.tolerance.max(ROUNDING / nearness);
-                self.by_intervals(&single, Integrand::Deflection, &pair.barriers, tolerance)
-            };
-            let comparison = Comparison::of(single.value, single.root);
-            let (mut angle, mut complement) = comparison.angle(single.value, single.root, integral[0]);
-            // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
-            let passes = matches!(profile.center(), profile::Center::Open(_));
-            let short = CANCELLED * PI * (single.value / (1.0 + single.root)).abs().min(1.0);
-            if passes && angle.abs() < short {
-                let (turns, off) =
-                    self.by_intervals(&single, Integrand::Turning, &pair.barriers, self.tolerance);
-                (angle, complement, error) = (turns[0], PI - turns[0].abs(), 0.5 * off / single.root);
-            }
-            let steep = 2.0_f64.mul_add(single.root * single.root, single.force);
-            found[pair.place] = Deflection {
-                angle,
-                complement,
-                closest_approach: single.turning,
-                derivative: self
-                    .only_all(-2.0 / (single.turning * steep) * comparison.slope(single.force, integral[1])),
-                delay: self.only_all(
-                    -2.0 * single.turning
-                        * (integral[2] + trapezoid::closed_delay(single.value, single.root))
-                        + profile.endless_delay(),
-                ),
-                error: 2.0 * single.root * error + f64::EPSILON * angle.abs(),
-                turning_points: found[pair.place].turning_points,
-                status: if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered },
-            };
-        }
-    }
-
-    fn only_all(&self, value: f64) -> f64 {
-        if self.all { value } else { f64::NAN }
-    }
-
-    /// The integrals, and how far the first may be off.
-    fn by_intervals(
-        &self,
-        pair: &Pair,
-        integrand: Integrand,
-        barriers: &[f64],
-        tolerance: f64,
-    ) -> ([f64; trapezoid::INTEGRALS], f64) {
-        let ends = [barriers, self.profile.breaks()].concat();
-        let wanted = if self.all && integrand == Integrand::Deflection { trapezoid::INTEGRALS } else { 1 };
-        let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
-        (whole.integral, whole.error)
-    }
-
-    /// b = 0, found at a tiny one where the center is open: through it, or round a point that attracts.
-    fn head_on(&self, energy: f64, found: &mut Deflection) {
-        let mut critical = Critical::default();
-        match critical.way(self.profile, energy, 0.0) {
-            Way::Through => {
-                found.derivative = self.only_all(found.angle / TINY);
-                (found.angle, found.complement, found.closest_approach) = (0.0, PI, 0.0);
-            }
-            Way::Bounces(power) => {
-                found.angle = -PI * power / (2.0 - power);
-                (found.complement, found.closest_approach) = (PI - found.angle.abs(), 0.0);
-            }
-            _ => (found.angle, found.complement) = (PI, 0.0),
-        }
     }
 }
 

@@ -20,6 +20,8 @@ const DIVISIONS: u32 = 4;
 const POINTS: usize = (2 * OCTAVES) << DIVISIONS;
 /// The bits of a distance before those of its place in a cell of the grid.
 const SHIFT: u32 = 52 - DIVISIONS;
+/// Cells in which most turning points are found, beyond b and where V passes E.
+const NEAR_CELLS: usize = 16;
 /// The first distance, as such bits.
 const BASE: u64 = (1023 - OCTAVES as u64) << DIVISIONS;
 
@@ -41,10 +43,16 @@ pub(super) struct Profile {
     /// Exponents of the units of length and energy.
     length: i32,
     energy: i32,
-    /// V on the grid.
+    /// V and −r dV/dr on the grid.
     value: Vec<f64>,
+    pull: Vec<f64>,
     /// The largest |V| and |r dV/dr| from there on.
     beyond: Vec<[f64; 2]>,
+    /// For every power of two the place from which on |V|/r, or |r² dV/dr|, is at most that.
+    faint: [Vec<u16>; 2],
+    /// For every half octave of energies the first place at which V is not more than what is in it.
+    climbed: Vec<u16>,
+    repels: bool,
     /// The part of the grid where there is a potential.
     inside: [usize; 2],
     /// Where it begins and ends.
@@ -61,11 +69,13 @@ pub(super) struct Profile {
 }
 
 /// The distance of a place of the grid.
+#[inline(always)]
 fn radius(place: usize) -> f64 {
     f64::from_bits((BASE + place as u64) << SHIFT)
 }
 
 /// The place of the grid at or before a distance.
+#[inline(always)]
 fn place(r: f64) -> usize {
     ((r.to_bits() >> SHIFT).saturating_sub(BASE) as usize).min(POINTS - 1)
 }
@@ -85,6 +95,10 @@ impl Profile {
             length,
             energy,
             value: Vec::new(),
+            pull: Vec::new(),
+            faint: [Vec::new(), Vec::new()],
+            climbed: Vec::new(),
+            repels: false,
             beyond: vec![[0.0; 2]; POINTS + 1],
             inside,
             domain,
@@ -102,15 +116,24 @@ impl Profile {
             .map(|row| Lanes(core::array::from_fn(|lane| radius(row * WIDTH + lane))))
             .collect();
         let (mut value, mut force) = (rows.clone(), rows.clone());
-        made.values(&rows, &mut value);
-        made.forces(&rows, &mut force);
+        made.rows(&rows, &mut value, &mut force, &mut []);
         made.value = as_numbers(&value).to_vec();
         let force = as_numbers(&force);
+        made.pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
+        let mut tail = [vec![0.0; POINTS + 1], vec![0.0; POINTS + 1]];
         for at in (0..POINTS).rev() {
             let [v, f] = made.beyond[at + 1];
             let larger = |old: f64, new: f64| if new.abs() > old { new.abs() } else { old };
-            made.beyond[at] = [larger(v, made.value[at]), larger(f, radius(at) * force[at])];
+            made.beyond[at] = [larger(v, made.value[at]), larger(f, made.pull[at])];
+            let [value, force] = made.beyond[at];
+            tail[0][at] = value / radius(at);
+            tail[1][at] = larger(tail[1][at + 1], force * radius(at));
         }
+        made.faint = tail.map(|tail| falls_to::<52>(&tail[..POINTS], 0));
+        // One more, as energies are up to twice the root of two that number.
+        made.climbed = falls_to::<51>(&made.value, inside[0]);
+        made.climbed.rotate_left(1);
+        made.repels = made.breaks.is_empty() && force[inside[0]..=inside[1]].iter().all(|f| *f >= 0.0);
         made.extrema = made.find_extrema(force);
         made.center = made.find_center(force);
         let (v, slope) = (made.value[POINTS - 1], radius(POINTS - 1) * force[POINTS - 1]);
@@ -124,14 +147,17 @@ impl Profile {
         made
     }
     /// A length of these units, from one of the caller's.
+    #[inline]
     pub(super) fn take_length(&self, r: f64) -> f64 {
         scale(r, -self.length)
     }
     /// And back.
+    #[inline]
     pub(super) fn give_length(&self, r: f64) -> f64 {
         scale(r, self.length)
     }
     /// An energy of these units, from one of the caller's.
+    #[inline]
     pub(super) fn take_energy(&self, energy: f64) -> f64 {
         scale(energy, -self.energy)
     }
@@ -151,6 +177,23 @@ impl Profile {
     pub(super) fn forces(&self, r: &[Lanes], force: &mut [Lanes]) {
         self.potential.force_rows(r, force);
         self.end(r, force);
+    }
+    /// V, −dV/dr and, as far as there is room, d²V/dr² at rows of distances; none beyond its range.
+    pub(super) fn rows(
+        &self,
+        r: &[Lanes],
+        value: &mut [Lanes],
+        force: &mut [Lanes],
+        curvature: &mut [Lanes],
+    ) {
+        self.potential.all_rows(r, value, force, curvature);
+        for out in [value, force, curvature] {
+            self.end(r, out);
+        }
+    }
+    /// Whether it repels everywhere, and is smooth.
+    pub(super) fn repels(&self) -> bool {
+        self.repels
     }
     fn end(&self, r: &[Lanes], out: &mut [Lanes]) {
         if self.domain[1] == f64::INFINITY {
@@ -173,14 +216,6 @@ impl Profile {
         let mut force = [Lanes([0.0; WIDTH])];
         self.forces(&[Lanes([r; WIDTH])], &mut force);
         force[0].0[0]
-    }
-    /// d²V/dr² at one distance.
-    pub(super) fn curvature(&self, r: f64) -> f64 {
-        if r > self.domain[1] {
-            return 0.0;
-        }
-        let [_, _, curvature] = self.potential.evaluate(&[r]);
-        curvature.first().copied().unwrap_or(f64::NAN)
     }
     /// The largest |V| (0) or |r dV/dr| (1) at this distance and beyond, or a little more.
     pub(super) fn beyond(&self, r: f64, which: usize) -> f64 {
@@ -210,17 +245,22 @@ impl Profile {
     ///
     /// # Errors
     /// `InvalidInput` naming `potential`.
+    #[inline]
     pub(super) fn check_end(&self, energy: f64, tolerance: f64) -> Result<()> {
         if self.domain[1] == f64::INFINITY || self.last_value.abs() <= tolerance * energy {
             return Ok(());
         }
+        Err(self.ends_early(energy))
+    }
+    #[cold]
+    fn ends_early(&self, energy: f64) -> Error {
         let message = format!(
             "expected one that has come to 0 where it ends, but at r = {} it is {} of the energy; let it go on \
              further out, or subtract its last value, if that is what is meant",
             number(self.give_length(self.domain[1])),
             number(self.last_value / energy)
         );
-        Err(Error::invalid("potential", message))
+        Error::invalid("potential", message)
     }
     /// Refuses a motion to where a table has not begun.
     ///
@@ -309,6 +349,63 @@ impl Profile {
         (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }
 
+    /// The places of the grid at which h first comes to b², of pairs whose h rises wherever it is positive; zero for those
+    /// that turn beyond the grid.
+    #[inline(always)]
+    pub(super) fn places(&self, energy: &[f64; WIDTH], b: &[f64; WIDTH]) -> [usize; WIDTH] {
+        let [first, last] = self.inside;
+        let (mut at, mut inverse, mut square) = ([first; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
+        let short = |inverse: f64, square: f64, at: usize| {
+            let r = radius(at);
+            let h = (1.0 - self.value[at & (POINTS - 1)] * inverse) * (r * r);
+            (usize::from(h >= square) ^ 1) & usize::from(at <= last)
+        };
+        let mut near = 1;
+        for lane in 0..WIDTH {
+            inverse[lane] = 1.0 / energy[lane];
+            square[lane] = b[lane] * b[lane];
+            // Where V > E nothing comes, and where it repels nothing comes nearer than b.
+            at[lane] = usize::from(self.climbed[(energy[lane].to_bits() >> 51) as usize & 4095]);
+            if self.repels {
+                at[lane] = at[lane].max(place(b[lane])).min(last);
+            }
+            near &= 1 - short(inverse[lane], square[lane], at[lane] + NEAR_CELLS - 1);
+        }
+        let mut step = if near == 1 { NEAR_CELLS / 2 } else { POINTS / 2 };
+        while step > 0 {
+            for lane in 0..WIDTH {
+                at[lane] += step * short(inverse[lane], square[lane], at[lane] + step - 1);
+            }
+            step /= 2;
+        }
+        at.map(|at| if at > first && at <= last { at } else { 0 })
+    }
+    /// The cell of the grid that ends at a place.
+    #[inline(always)]
+    pub(super) fn cell(&self, place: usize) -> [f64; 2] {
+        [radius(place - 1), radius(place)]
+    }
+    /// V and −r dV/dr at both ends of the cell that ends at a place.
+    #[inline(always)]
+    pub(super) fn around(&self, place: usize) -> [f64; 4] {
+        [self.value[place - 1], self.value[place], self.pull[place - 1], self.pull[place]]
+    }
+    /// V and −r dV/dr at both ends of a cell of the grid; NaN of what is none.
+    #[inline]
+    pub(super) fn ends(&self, [low, high]: [f64; 2]) -> [f64; 4] {
+        let (from, to) = (place(low), place(high));
+        if radius(from) != low || radius(to) != high || to != from + 1 {
+            return [f64::NAN; 4];
+        }
+        self.around(to)
+    }
+    /// A distance of the grid from which on |V|/r is at most that, or |r² dV/dr| if `all`; infinite if it is nowhere.
+    #[inline(always)]
+    pub(super) fn faint(&self, most: f64, all: bool) -> f64 {
+        let at = usize::from(self.faint[usize::from(all)][(most.to_bits() >> 52) as usize & 2047]);
+        if at < POINTS { radius(at) } else { f64::INFINITY }
+    }
+
     /// The extrema of U on the grid, each refined, and the ends.
     fn find_extrema(&self, force: &[f64]) -> Vec<[f64; 2]> {
         let [first, last] = self.inside;
@@ -336,6 +433,20 @@ impl Profile {
         }
         if v > 0.0 { Center::Repulsive } else { Center::Attractive((slope / v).round_to(1e-9)) }
     }
+}
+
+/// For every 2^`SHIFT`-th number, by its bits, the first place at which numbers that fall are at most that.
+fn falls_to<const SHIFT: u32>(numbers: &[f64], least: usize) -> Vec<u16> {
+    let mut at = numbers.len();
+    let levels = 0..1_u64 << (63 - SHIFT);
+    let place = |level: u64| {
+        let most = f64::from_bits(level << SHIFT);
+        while at > least && numbers[at - 1] <= most {
+            at -= 1;
+        }
+        at as u16
+    };
+    levels.map(place).collect()
 }
 
 trait Rounded {

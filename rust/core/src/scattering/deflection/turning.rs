@@ -2,16 +2,9 @@
 
 use super::Edge;
 use super::profile::{Center, Profile};
-use crate::numerics::lanes::{Lanes, WIDTH};
 
 /// Edges of V beyond which a table is taken for smooth.
 const MANY: usize = 8;
-/// Newton steps at most; halving alone ends after sixty.
-const MOST_STEPS: usize = 200;
-/// A step of this part of r, by a method that squares errors, leaves none.
-const SMALL_STEP: f64 = 1.0 / (1 << 29) as f64;
-/// The part by which a step must be smaller than the one before, to be told to square errors.
-const FASTER: f64 = 1.0 / 64.0;
 
 /// Where the way in leads.
 #[derive(Clone, Debug)]
@@ -133,46 +126,4 @@ pub(super) fn nearness(profile: &Profile, energy: f64, b: f64, barriers: &[f64])
         if rest > 0.0 { (r * rest.sqrt() / b - 1.0).abs() } else { f64::INFINITY }
     };
     barriers.iter().step_by(2).map(off).fold(f64::INFINITY, f64::min)
-}
-
-/// The turning points of eight pairs between their brackets, each to the last digits that its function has.
-pub(super) fn refine(profile: &Profile, energy: &Lanes, b: &Lanes, low: &Lanes, high: &Lanes) -> Lanes {
-    let (mut low, mut high) = (low.0, high.0);
-    let mut r: [f64; WIDTH] = core::array::from_fn(|lane| low[lane].sqrt() * high[lane].sqrt());
-    let mut last = [f64::INFINITY; WIDTH];
-    let mut going = [true; WIDTH];
-    let (mut value, mut force) = ([Lanes([0.0; WIDTH])], [Lanes([0.0; WIDTH])]);
-    for _ in 0..MOST_STEPS {
-        if going == [false; WIDTH] {
-            break;
-        }
-        profile.values(&[Lanes(r)], &mut value);
-        profile.forces(&[Lanes(r)], &mut force);
-        for lane in 0..WIDTH {
-            if !going[lane] {
-                continue;
-            }
-            let (at, e) = (r[lane], energy.0[lane]);
-            let share = (b.0[lane] / at) * (b.0[lane] / at);
-            let rest = (1.0 - value[0].0[lane] / e) - share;
-            let slope = (at * force[0].0[lane]) / e + 2.0 * share;
-            if rest >= 0.0 {
-                high[lane] = at
-            } else {
-                low[lane] = at
-            }
-            let mut next = at - at * (rest / slope);
-            if !(next >= low[lane] && next <= high[lane]) {
-                next = 0.5 * (low[lane] + high[lane]);
-            }
-            let step = (next - at).abs();
-            let squared = step <= SMALL_STEP * at && step <= FASTER * last[lane];
-            going[lane] = rest != 0.0 && !squared && step > 0.0 && low[lane] < high[lane];
-            if rest != 0.0 {
-                r[lane] = next;
-            }
-            last[lane] = step;
-        }
-    }
-    Lanes(r)
 }
