@@ -123,7 +123,7 @@ class Linearization:
         --------
         >>> import visviva as vv
         >>> small = vv.systems.coupled_oscillators().linearize(at=[0.0, 0.0])
-        >>> small.at(0.0, [1.0, 0.0], [0.0, 0.0]).round(12)
+        >>> small.at(0.0, [1.0, 0.0], [0.0, 0.0]).round(12) + 0.0
         array([1., 0.])
         """
         if self.modes is None or self.squares is None:
