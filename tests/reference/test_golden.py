@@ -6,7 +6,7 @@ from pathlib import Path
 from golden_cases import CASES
 
 LATER = {
-    "generalized coordinates": ["G3.20", "G5.1-", "G5.4-", "G5.10", "G5.14", "G5.29", "G5.32", "G6.3-", "G6.29"],
+    "the action and the Legendre transformation": ["G5.4-actions", "G5.4-second-variation", "G6.3-"],
     "scattering by any potential": ["G8.41", "G8.39-square-well"],
 }
 

@@ -87,9 +87,11 @@ class Linearization:
     def frequencies(self) -> NDArray[np.float64]:
         """Angular frequencies of what oscillates, ascending."""
         if self.squares is not None:
-            return np.sqrt(self.squares[self.squares > 0.0])
-        imaginary = np.sort(self.eigenvalues.imag)
-        return imaginary[imaginary > _ON_THE_AXIS * np.abs(self.eigenvalues).max()]
+            real: NDArray[np.float64] = np.sqrt(self.squares[self.squares > 0.0])
+            return real
+        imaginary: NDArray[np.float64] = np.sort(self.eigenvalues.imag)
+        found: NDArray[np.float64] = imaginary[imaginary > _ON_THE_AXIS * np.abs(self.eigenvalues).max()]
+        return found
 
     @property
     def stable(self) -> bool:
@@ -120,8 +122,8 @@ class Linearization:
         Examples
         --------
         >>> import visviva as vv
-        >>> small = vv.systems.coupled_oscillators().linearize()
-        >>> small.at(0.0, [1.0, 0.0], [0.0, 0.0]).round(12)
+        >>> small = vv.systems.coupled_oscillators().linearize(at=[0.0, 0.0])
+        >>> small.at(0.0, [1.0, 0.0], [0.0, 0.0]).round(12) + 0.0
         array([1., 0.])
         """
         if self.modes is None or self.squares is None:
@@ -195,13 +197,13 @@ class PoincareSection:
         >>> vv.systems.henon_heiles().poincare("x", t=50.0).plot("y").get_xlabel()
         'y'
         """
-        from visviva.plot import axes
+        from visviva.plot import axes_or_new
 
         name = self.coordinates[-1] if name is None else name
         if name not in self.coordinates:
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.coordinates)}")
         index = self.coordinates.index(name)
-        ax = axes(ax)
+        ax = axes_or_new(ax)
         ax.plot(self.position[:, index], self.momentum[:, index], ".", markersize=2)
         ax.set_xlabel(name)
         ax.set_ylabel(f"momentum of {name}")
@@ -248,11 +250,11 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
     found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
     places: list[NDArray[np.float64]] = []
-    for place in found:
-        if place is None or (near is None and np.abs(place).max() > np.pi + 1e-6):
+    for reached in found:
+        if reached is None or (near is None and np.abs(reached).max() > np.pi + 1e-6):
             continue
         # What is 0 but for round-off is shown as such.
-        candidate = np.where(np.abs(place) < 1e-14, 0.0, place)
+        candidate = np.where(np.abs(reached) < 1e-14, 0.0, reached)
         if not any(np.allclose(candidate, other, rtol=1e-8, atol=1e-8) for other in places):
             places.append(candidate)
     results = []

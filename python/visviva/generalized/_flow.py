@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Self
 
 from visviva._arrays import number
+from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 
 if TYPE_CHECKING:
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 __all__ = ["Flow"]
 
 
+@known_keywords
 class Flow:
     """Base of `GeneralizedSystem`: the methods that ask for more than a run."""
 
@@ -193,5 +195,6 @@ class Flow:
         from visviva.generalized._changes import boundary_value
 
         system: Any = self
-        found: Self = boundary_value(system, number("t", t), position, rtol=rtol)
-        return found
+        found: Any = boundary_value(system, number("t", t), position, rtol=rtol)
+        same: Self = found
+        return same

@@ -219,7 +219,7 @@ class Lagrangian(GeneralizedSystem):
         --------
         >>> import visviva as vv
         >>> vv.systems.double_pendulum().linearize(at=[0.0, 0.0]).frequencies.round(6)
-        array([2.397185, 5.787316])
+        array([2.397199, 5.787351])
         """
         return linearization(self, at)
 

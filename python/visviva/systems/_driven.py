@@ -173,8 +173,8 @@ def kapitza(
 ) -> Lagrangian:
     """Kapitza's pendulum: the pivot vibrates along the vertical, y = a cos Ωt, and upside down it may stand.
 
-    L = m l² θ̇²/2 + m l (g + ÿ) cos θ, up to a derivative by the time. The upper place is stable if a² Ω² > 2 g l
-    (for a ≪ l).
+    L = m l² θ̇²/2 + m l (g + ÿ) cos θ, up to a derivative with respect to time. The upper place is stable if
+    a² Ω² > 2 g l (for a ≪ l).
 
     Parameters
     ----------
