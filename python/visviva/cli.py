@@ -59,6 +59,11 @@ def _parser() -> argparse.ArgumentParser:
     demo.add_argument("--events", type=_finite, default=1e8, help="alpha particles to scatter (default: 1e8)")
     demo.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
     demo.set_defaults(command=_demo)
+    swing = commands.add_parser("pendulum", help="a pendulum against elliptic functions; double pendulums that part")
+    _output(swing)
+    swing.add_argument("--members", type=_finite, default=1000, help="double pendulums (default: 1000)")
+    swing.add_argument("--threads", type=int, default=None, help="threads to use (default: all)")
+    swing.set_defaults(command=_pendulum)
     foil = commands.add_parser("geiger-marsden", help="alpha particles through silver and gold, against 1913")
     _output(foil)
     foil.add_argument("--events", type=_finite, default=4e5, help="alpha particles for each metal (default: 4e5)")
@@ -101,6 +106,13 @@ def _demo(options: argparse.Namespace) -> None:
     print()
     pictures += rutherford(options.output, int(options.events), options.threads)
     _say(pictures)
+
+
+def _pendulum(options: argparse.Namespace) -> None:
+    from visviva.pendulum import pendulum
+
+    options.output.mkdir(parents=True, exist_ok=True)
+    _say(pendulum(options.output, int(options.members), options.threads))
 
 
 def _geiger_marsden(options: argparse.Namespace) -> None:

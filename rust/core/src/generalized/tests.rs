@@ -67,15 +67,12 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         section: None,
     };
     let control = Control::default();
-    let start = std::time::Instant::now();
-    let s = solve(model, &request, (y0, parameters), &mut Ticker::quiet(&control)).unwrap();
-    println!("{:?} {} evals", start.elapsed(), s.evaluations);
-    s
+    solve(model, &request, (y0, parameters), &mut Ticker::quiet(&control)).unwrap()
 }
 
 #[test]
 fn trajectories_are_those_of_two_hundred_bits() {
-    let cases: [(Model, Vec<f64>, Vec<f64>, f64, Vec<f64>); 3] = [
+    let cases: [(Model, Vec<f64>, Vec<f64>, f64, Vec<f64>); 2] = [
         (
             henon_heiles(),
             vec![0.1, 0.0, 0.0, 0.5],
@@ -100,13 +97,20 @@ fn trajectories_are_those_of_two_hundred_bits() {
                 1.850_548_009_466_752_5,
             ],
         ),
-        (chain(1), vec![3.0, 0.0], vec![9.81], 100.0, vec![f64::NAN, f64::NAN]),
     ];
     for (model, y0, parameters, end, expected) in cases {
-        for _ in 0..3 {
-            let _ = reached(&model, &y0, &parameters, end);
+        let found = reached(&model, &y0, &parameters, end).y;
+        for (x, y) in found.iter().zip(&expected) {
+            // 11 and 3 times round-off are their conditioning.
+            assert!((x - y).abs() < 2e-14, "{found:?}");
         }
-        let found = reached(&model, &y0, &parameters, end);
-        println!("{:?}\n{:?} {} ops", found.y, expected, model.code.operations());
     }
+}
+
+/// The mass matrix of a chain is found on the graph: constant where it is, and no operation is left over.
+#[test]
+fn a_double_pendulum_takes_few_operations() {
+    assert!(chain(2).code.operations() <= 30);
+    assert!(chain(1).code.operations() <= 3);
+    assert!(henon_heiles().code.operations() <= 5);
 }
