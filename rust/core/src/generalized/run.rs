@@ -101,7 +101,7 @@ pub struct Solution {
 
 /// δ of Gauss's methods for a relative tolerance: the error goes about as its square.
 fn delta(rtol: f64) -> f64 {
-    (10.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
+    (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
 }
 
 /// Runs a model from a state.

@@ -19,6 +19,8 @@ const MOST_ITERATIONS: u32 = 60;
 const ROUND_OFF: f64 = 1e-13;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
+/// What is left of a size a step later: a motion that stops at its turning points is no slow one.
+const FADING: f64 = 0.95;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
 const LEAST_SCALE: f64 = 1e-8;
 
@@ -33,12 +35,20 @@ pub(super) struct Stages {
     numbers: Vec<Lanes>,
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
+    /// How large numbers were and how far they went, lately.
+    sizes: Vec<f64>,
 }
 
 impl Stages {
     pub(super) fn new(evaluated: usize) -> Self {
         let row = vec![Lanes([0.0; WIDTH]); evaluated];
-        Self { rates: row.clone(), guess: row.clone(), numbers: row, scales: vec![0.0; evaluated] }
+        Self {
+            rates: row.clone(),
+            guess: row.clone(),
+            numbers: row,
+            scales: vec![0.0; evaluated],
+            sizes: vec![0.0; evaluated],
+        }
     }
 }
 
@@ -86,16 +96,18 @@ pub(super) fn largest(lanes: Lanes) -> f64 {
     })
 }
 
-/// Sets what changes are measured by: how large a number is and how far it goes in the step.
+/// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
-fn set_scales(scales: &mut [f64], rates: &[Lanes], y: &[f64], h: f64) {
+fn set_scales(stages: &mut Stages, y: &[f64], h: f64) {
     let mut most = 0.0;
-    for ((scale, rates), y) in scales.iter_mut().zip(rates).zip(y) {
-        *scale = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
-        most = if *scale > most { *scale } else { most };
+    for ((size, rates), y) in stages.sizes.iter_mut().zip(&stages.rates).zip(y) {
+        let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
+        let before = FADING * *size;
+        *size = if now > before { now } else { before };
+        most = if *size > most { *size } else { most };
     }
-    for scale in scales {
-        let size = if *scale > LEAST_SCALE * most { *scale } else { LEAST_SCALE * most };
+    for (scale, &size) in stages.scales.iter_mut().zip(&stages.sizes) {
+        let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
         *scale = if size > 0.0 { 1.0 / size } else { 0.0 };
     }
 }
@@ -149,12 +161,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             stages.rates[i] = registers[usize::from(outputs[i])];
         }
         if iteration == 0 {
-            set_scales(
-                &mut stages.scales,
-                &stages.rates,
-                if second_order { &y[evaluated..] } else { y },
-                work.h,
-            );
+            set_scales(stages, if second_order { &y[evaluated..] } else { y }, work.h);
         }
     }
     Iterated { converged: false, evaluations: MOST_ITERATIONS }
