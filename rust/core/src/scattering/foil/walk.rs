@@ -64,12 +64,19 @@ pub struct Met {
     pub element: usize,
     /// In Å.
     pub impact_parameter: f64,
-    /// In the frame of the center of mass.
-    pub cm_angle: f64,
+    /// Sine and cosine of half the angle in the frame of the center of mass.
+    pub half: [f64; 2],
     /// Of the ion, in eV: before and after.
     pub energy: [f64; 2],
     /// Of the ion: before and after.
     pub direction: [[f64; 3]; 2],
+}
+
+impl Met {
+    /// The angle in the frame of the center of mass.
+    pub fn cm_angle(&self) -> f64 {
+        2.0 * atan2(self.half[0], self.half[1])
+    }
 }
 
 /// An ion on its way.
@@ -118,7 +125,7 @@ impl Ion {
             path: self.path,
             element,
             impact_parameter: b,
-            cm_angle: 2.0 * atan2(sine, cosine),
+            half: [sine, cosine],
             energy: [before.0, self.energy],
             direction: [before.1, self.direction],
         })
@@ -189,7 +196,7 @@ impl Medium {
         let which = if self.atoms.len() > 1 { draws.uniform(FORCED + 3) } else { 0.0 };
         let (atom, at, b, weight) = self.met_forced(forced, which, share);
         let met = ion.meet(atom, at, b, draws.uniform(FORCED + 2))?;
-        ion.cm_angle = met.cm_angle;
+        ion.cm_angle = met.cm_angle();
         Ok((met, weight))
     }
     /// One collision between two straight ways.
