@@ -186,7 +186,7 @@ pub(crate) fn foil_history<'py>(
         compute(py, 1, None, |ticker| Beam::new(&foil, &run, 1, ticker)?.history(seed, event, ticker))?
             .whole(py)?;
     let numbers = all.iter().flat_map(|met| {
-        [met.depth, met.path, met.impact_parameter, met.cm_angle, met.energy[0], met.energy[1]]
+        [met.depth, met.path, met.impact_parameter, met.cm_angle(), met.energy[0], met.energy[1]]
     });
     let numbers = moved(py, numbers.collect(), &[all.len(), 6])?;
     let directions: Vec<f64> = all.iter().flat_map(|met| met.direction).flatten().collect();

@@ -1,7 +1,7 @@
 //! Building the table.
 
 use super::{Angles, Cell, IN_B, IN_ENERGY, Octaves, PARTS, Series, Source, Table, sum};
-use crate::numerics::angles::{cos, sin};
+use crate::numerics::angles::{atan2, cos, sin, sin_cos};
 use crate::numerics::philox::{draw, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
@@ -158,7 +158,9 @@ impl Cell {
             if done.len() + pending.len() > MOST_PIECES {
                 return Ok(cell);
             }
-            let (series, right) = cell.piece(source, bounds, (from, to), ticker)?;
+            let Some((series, right)) = cell.piece(source, bounds, (from, to), ticker)? else {
+                return Ok(Self { starts: Vec::new(), pieces: Vec::new(), ..cell });
+            };
             if right || depth >= DEEPEST {
                 done.push((from, to, series));
             } else {
@@ -173,14 +175,14 @@ impl Cell {
         Ok(cell)
     }
 
-    /// The series of an interval, and whether it is right between its points.
+    /// The series of an interval, and whether it is right between its points; nothing if something turns back and further.
     fn piece(
         &self,
         source: &Source<'_>,
         bounds: (f64, f64),
         (from, to): (f64, f64),
         ticker: &mut Ticker<'_>,
-    ) -> Result<(Series, bool)> {
+    ) -> Result<Option<(Series, bool)>> {
         let place = |y: f64, x: f64| {
             (bounds.0 + 0.5 * (1.0 + y) * (bounds.1 - bounds.0), from + 0.5 * (1.0 + x) * (to - from))
         };
@@ -193,7 +195,22 @@ impl Cell {
         if found.iter().any(|found| found.status == Status::Captured) {
             return Err(captures(bounds.0));
         }
-        let ratio = |at: usize| found[at].angle / self.reference(places[at].0, places[at].1);
+        // Halves of angles beyond a right one have tangents of another branch.
+        if found.iter().any(|found| found.angle.abs() >= PI) {
+            return Ok(None);
+        }
+        let ratio = |at: usize| {
+            let (energy, part) = places[at];
+            // Where it turns back, its half is nearly a right angle: of that, the digits are in what is missing.
+            let (sine, cosine) = sin_cos(0.5 * found[at].complement);
+            let tangent = if found[at].angle.abs() > FRAC_PI_2 {
+                (cosine / sine).copysign(found[at].angle)
+            } else {
+                let (sine, cosine) = sin_cos(0.5 * found[at].angle);
+                sine / cosine
+            };
+            tangent * part * self.b_max / (self.scale / energy)
+        };
         let mut series = [[0.0; IN_ENERGY]; IN_B];
         for (i, row) in series.iter_mut().enumerate() {
             for (j, coefficient) in row.iter_mut().enumerate() {
@@ -210,10 +227,10 @@ impl Cell {
         let largest = found.iter().fold(0.0_f64, |largest, found| largest.max(found.angle.abs()));
         let right = TRIED.iter().enumerate().all(|(tried, [y, x])| {
             let at = IN_B * IN_ENERGY + tried;
-            let off = sum(&series, *y, *x) * self.reference(places[at].0, places[at].1) - found[at].angle;
+            let off = self.angle(sum(&series, *y, *x), places[at].0, places[at].1) - found[at].angle;
             off.abs() <= AIM * largest + SMALLEST * source.minimum + 4.0 * found[at].error
         });
-        Ok((series, right))
+        Ok(Some((series, right)))
     }
 
     /// The largest error of sin²(ψ/2) at random places of the cell.
@@ -238,7 +255,8 @@ impl Cell {
         let square = |angle: f64| sin(0.5 * angle).powi(2);
         let worst = places.iter().zip(&found).map(|((energy, part), found)| {
             let place = (energy - from) / (to - from) * 2.0 - 1.0;
-            (square(self.angle(place, *energy, *part)) - square(found.angle)).abs()
+            let (tangent, one) = self.tangent(place, *energy, *part);
+            (square(2.0 * atan2(tangent, one)) - square(found.angle)).abs()
         });
         let worst = worst.fold(0.0_f64, f64::max);
         Ok(worst)

@@ -1,8 +1,9 @@
 //! The deflection of an ion that slows down: ψ over energy and impact parameter, as a table that was checked.
 //!
-//! As an [event table](crate::scattering::event_table) of one energy, in two variables: the ratio of ψ to the deflection of
-//! a Coulomb center with the same slope head-on is a Chebyshev series in both, octave by octave of the energy in halves,
-//! intervals of b halved until the series is right between its points. Cells in which that leads nowhere, since ψ is not
+//! As an [event table](crate::scattering::event_table) of one energy, in two variables, and of tan(ψ/2): its ratio to that
+//! of a Coulomb center with the same slope head-on is a Chebyshev series in both, octave by octave of the energy in
+//! halves, intervals of b halved until the series is right between its points. So sine and cosine of ψ/2 take a root and
+//! no angle. Cells in which that leads nowhere, since ions turn back and further (orbits), or since ψ is not
 //! smooth in the energy (the top of a hill that ions pass over), go without: each angle is found by quadrature, in a
 //! hundred times the time. Of V = k/r there is the closed form.
 
@@ -65,10 +66,7 @@ impl Angles {
                 let root = (kappa * kappa + b * b).sqrt();
                 (kappa / root, b / root)
             }
-            Self::Table(table) => {
-                let (sine, cosine) = sin_cos(0.5 * table.angle(energy, b));
-                (sine.abs(), cosine.abs())
-            }
+            Self::Table(table) => table.half(energy, b),
         }
     }
     /// The largest error of sin²(ψ/2) of all points that were tried.
@@ -91,30 +89,42 @@ impl Angles {
 }
 
 impl Table {
-    /// ψ, signed and not folded.
-    fn angle(&self, energy: f64, b: f64) -> f64 {
-        let cell = self.octaves.cell(energy);
-        let place = self.octaves.place(cell, energy);
-        let cell = &self.cells[cell];
+    #[inline]
+    fn half(&self, energy: f64, b: f64) -> (f64, f64) {
+        let at = self.octaves.cell(energy);
+        let cell = &self.cells[at];
         if cell.pieces.is_empty() {
             let control = Control::new(0);
             let found = self.deflector.deflect(&[energy], &[b], false, 1, &mut Ticker::quiet(&control));
-            return found.ok().and_then(|found| found.first().map(|found| found.angle)).unwrap_or(f64::NAN);
+            let angle =
+                found.ok().and_then(|found| found.first().map(|found| found.angle)).unwrap_or(f64::NAN);
+            let (sine, cosine) = sin_cos(0.5 * angle);
+            return (sine.abs(), cosine.abs());
         }
-        cell.angle(place, energy, b / cell.b_max)
+        let (tangent, one) = cell.tangent(self.octaves.place(at, energy), energy, b / cell.b_max);
+        let root = (tangent * tangent + one * one).sqrt();
+        (tangent.abs() / root, one / root)
     }
 }
 
 impl Cell {
-    fn angle(&self, place: f64, energy: f64, part: f64) -> f64 {
+    /// tan(ψ/2) as a fraction, lengths both.
+    #[inline]
+    fn tangent(&self, place: f64, energy: f64, part: f64) -> (f64, f64) {
         let piece = self.starts.partition_point(|start| *start <= part).clamp(1, self.pieces.len()) - 1;
         let (from, to) = (self.starts[piece], self.starts[piece + 1]);
         let x = ((part - from) / (to - from) * 2.0 - 1.0).clamp(-1.0, 1.0);
-        sum(&self.pieces[piece], place, x) * self.reference(energy, part)
+        self.fraction(sum(&self.pieces[piece], place, x), energy, part)
     }
-    /// The deflection that ratios are to.
-    fn reference(&self, energy: f64, part: f64) -> f64 {
-        2.0 * atan2(self.scale / energy, part * self.b_max)
+    /// The same, of the ratio.
+    #[inline]
+    fn fraction(&self, ratio: f64, energy: f64, part: f64) -> (f64, f64) {
+        (ratio * (self.scale / energy), part * self.b_max)
+    }
+    /// The angle of the ratio.
+    fn angle(&self, ratio: f64, energy: f64, part: f64) -> f64 {
+        let (tangent, one) = self.fraction(ratio, energy, part);
+        2.0 * atan2(tangent, one)
     }
 }
 

@@ -26,7 +26,8 @@ fn the_table_is_right_between_its_points() {
         let radii: Vec<f64> = (0..50).map(|j| 1e-6 * 1.31_f64.powi(j)).filter(|b| *b < 1.0).collect();
         let found = deflector.deflect(&vec![energy; radii.len()], &radii, false, 1, ticker).unwrap();
         for (b, found) in radii.iter().zip(&found) {
-            let off = (table.angle(energy, *b) - found.angle).abs();
+            let (sine, cosine) = table.half(energy, *b);
+            let off = (2.0 * atan2(sine, cosine) - found.angle).abs();
             // Refined to 1e-6 of the largest angle of an interval, of which ψ falls to a tenth or so.
             assert!(off < 2e-5 * found.angle, "{energy} {b} {off} {}", found.angle);
         }
