@@ -49,7 +49,8 @@ def test_a_chain_of_three_keeps_lengths_and_energy(angles: list[float], dt: floa
     speed = np.abs((out.position * out.velocity)[:, :2].sum(axis=1)).max()
     assert speed <= 8 * EPSILON * np.abs(out.velocity).max()
     energy = out.energy
-    assert np.ptp(energy) <= 5e-15 * np.abs(energy).max()
+    # Chosen steps are as long as rtol = 1e-12 allows.
+    assert np.ptp(energy) <= (5e-14 if dt is None else 5e-15) * np.abs(energy).max()
     # The same by angles: motions may be chaotic, so for a short time.
     turned = vv.systems.chain(3, position=angles).run([1.0, 2.0]).position
     places = np.cumsum(np.stack([np.sin(turned), -np.cos(turned)], axis=2), axis=1).reshape(2, -1)

@@ -361,12 +361,14 @@ class GeneralizedSystem(Flow):
 
 
 def _method(method: object, separable: bool, dt: float | None, *, constrained: bool) -> str:
+    if isinstance(method, str) and method in GAUSS:
+        return method
     from visviva.integrators import Method, methods
 
     known: dict[str, Method] = {each.name: each for each in methods()}
     if isinstance(method, Method):
         method = method.name
-    if not isinstance(method, str) or (method not in GAUSS and method not in known):
+    if not isinstance(method, str) or method not in known:
         if isinstance(method, str):
             from visviva._keywords import did_you_mean
 
@@ -376,8 +378,6 @@ def _method(method: object, separable: bool, dt: float | None, *, constrained: b
         raise InvalidInput(
             "method", f"expected gauss16, gauss8, gauss4 or a method of vv.methods(), got {method!r}{hint}"
         )
-    if method in GAUSS:
-        return method
     kind = known[method]
     if kind.adaptive and dt is not None:
         raise InvalidInput("dt", f"{method} chooses its own steps; leave dt out")

@@ -9,7 +9,7 @@ use crate::gate::compute;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::Arc;
 use visviva_core::expressions::function::Function;
 use visviva_core::expressions::graph::{Graph, Id, Node, number};
 use visviva_core::expressions::program::Output;
@@ -132,8 +132,8 @@ fn shown(graph: &Graph, roots: &[Id]) -> (Vec<NodeParts>, Vec<u32>) {
 /// A system in generalized coordinates.
 #[pyclass(frozen, module = "visviva._core")]
 pub(crate) struct GeneralizedModel {
-    /// Behind a lock, as further expressions join its graph.
-    model: Mutex<Model>,
+    model: Arc<Model>,
+    structure: Structure,
 }
 
 /// What a system is made of.
@@ -171,12 +171,13 @@ impl Described {
 }
 
 impl GeneralizedModel {
-    fn with<T>(&self, work: impl FnOnce(&mut Model) -> T) -> T {
-        work(&mut self.model.lock().unwrap_or_else(PoisonError::into_inner))
+    fn of(model: Model) -> Self {
+        Self { structure: Structure::of(&model), model: Arc::new(model) }
     }
 
+    /// One that further expressions may join.
     fn copy(&self) -> Model {
-        self.with(|model| model.clone())
+        (*self.model).clone()
     }
 }
 
@@ -186,14 +187,14 @@ impl GeneralizedModel {
     #[new]
     fn new(py: Python<'_>, described: Described) -> PyResult<Self> {
         let model = compute(py, 0, None, |_| Model::new(described.source()?))?.whole(py)?;
-        Ok(Self { model: Mutex::new(model) })
+        Ok(Self::of(model))
     }
 
     /// What is found without running it.
     fn structure<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        let found = self.with(|model| Structure::of(model));
+        let found = &self.structure;
         let result = PyDict::new(py);
-        result.set_item("cyclic", found.cyclic)?;
+        result.set_item("cyclic", &found.cyclic)?;
         result.set_item("autonomous", found.autonomous)?;
         result.set_item("conserves_energy", found.conserves_energy)?;
         let mass = match found.mass {
@@ -211,25 +212,23 @@ impl GeneralizedModel {
 
     /// Expressions by name, as nodes and their places: `accelerations` with a linear system has `mass_matrix` and `right`.
     fn expressions(&self, py: Python<'_>, name: &str) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
-        self.with(|model| {
-            let graph = &model.source.graph;
-            let roots: Vec<Id> = match name {
-                "function" => vec![model.source.function],
-                "conjugates" => model.conjugates.clone(),
-                "slopes" => model.slopes.clone(),
-                "energy" => vec![model.energy],
-                "mass_matrix" => model.mass.iter().flatten().copied().collect(),
-                "rates" => {
-                    let nodes = model.rates.iter().filter_map(|rate| match rate {
-                        Output::Node(id) => Some(*id),
-                        Output::Unknown(_) => None,
-                    });
-                    nodes.collect()
-                }
-                _ => return Err(raised(py, Error::Internal(format!("no expressions {name}")))),
-            };
-            Ok(shown(graph, &roots))
-        })
+        let model = &*self.model;
+        let roots: Vec<Id> = match name {
+            "function" => vec![model.source.function],
+            "conjugates" => model.conjugates.clone(),
+            "slopes" => model.slopes.clone(),
+            "energy" => vec![model.energy],
+            "mass_matrix" => model.mass.iter().flatten().copied().collect(),
+            "rates" => {
+                let nodes = model.rates.iter().filter_map(|rate| match rate {
+                    Output::Node(id) => Some(*id),
+                    Output::Unknown(_) => None,
+                });
+                nodes.collect()
+            }
+            _ => return Err(raised(py, Error::Internal(format!("no expressions {name}")))),
+        };
+        Ok(shown(&model.source.graph, &roots))
     }
 
     /// The Poisson bracket {f, g} of two of these nodes, as nodes.
@@ -239,13 +238,14 @@ impl GeneralizedModel {
         nodes: Vec<NodeParts>,
         roots: (u32, u32),
     ) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
-        self.with(|model| {
-            let ids = added(&mut model.source.graph, &nodes)?;
+        let mut source = self.model.source.clone();
+        let mut bracket = || {
+            let ids = added(&mut source.graph, &nodes)?;
             let (f, g) = (chosen(&ids, roots.0)?, chosen(&ids, roots.1)?);
-            let bracket = model.source.poisson(f, g);
-            Ok(shown(&model.source.graph, &[bracket]))
-        })
-        .map_err(|error| raised(py, error))
+            Ok(source.poisson(f, g))
+        };
+        let bracket = bracket().map_err(|error| raised(py, error))?;
+        Ok(shown(&source.graph, &[bracket]))
     }
 
     /// Expressions at states (N, 2n) and times (N).
@@ -258,12 +258,12 @@ impl GeneralizedModel {
         states: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<Column<'py>> {
-        let code = self
-            .with(|model| {
-                let ids = added(&mut model.source.graph, &nodes)?;
-                model.function(&all_chosen(&ids, &roots)?)
-            })
-            .map_err(|error| raised(py, error))?;
+        let mut model = self.copy();
+        let mut code = || {
+            let ids = added(&mut model.source.graph, &nodes)?;
+            model.function(&all_chosen(&ids, &roots)?)
+        };
+        let code = code().map_err(|error| raised(py, error))?;
         rows(py, &Arc::new(code), t, states, parameters)
     }
 
@@ -275,7 +275,7 @@ impl GeneralizedModel {
         states: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<Column<'py>> {
-        let code = self.with(|model| model.columns.clone());
+        let code = self.model.columns.clone();
         rows(py, &code, t, states, parameters)
     }
 
@@ -287,7 +287,7 @@ impl GeneralizedModel {
         states: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<Column<'py>> {
-        let code = self.with(|model| model.code.clone());
+        let code = self.model.code.clone();
         rows(py, &code, t, states, parameters)
     }
 
@@ -399,23 +399,21 @@ impl GeneralizedModel {
 
     /// Legendre's transform: nodes; the function, then the forces.
     fn legendre(&self, py: Python<'_>) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
-        let source =
-            self.with(|model| legendre::transformed(&model.source)).map_err(|error| raised(py, error))?;
+        let source = legendre::transformed(&self.model.source).map_err(|error| raised(py, error))?;
         let roots: Vec<Id> = [source.function].into_iter().chain(source.forces.iter().copied()).collect();
         Ok(shown(&source.graph, &roots))
     }
 
     /// A Lagrangian's parts of second, first and no degree in the velocities.
     fn by_degree(&self) -> (Vec<NodeParts>, Vec<u32>) {
-        self.with(|model| {
-            let roots = legendre::by_degree(&mut model.source);
-            shown(&model.source.graph, &roots)
-        })
+        let mut source = self.model.source.clone();
+        let roots = legendre::by_degree(&mut source);
+        shown(&source.graph, &roots)
     }
 
     /// Routh's function without these coordinates: nodes; the function, then the velocities of those coordinates.
     fn routhian(&self, py: Python<'_>, cyclic: Vec<usize>) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
-        let reduced = self.with(|model| legendre::routhian(&model.source, &cyclic));
+        let reduced = legendre::routhian(&self.model.source, &cyclic);
         let (source, velocities) = reduced.map_err(|error| raised(py, error))?;
         let roots: Vec<Id> = [source.function].into_iter().chain(velocities).collect();
         Ok(shown(&source.graph, &roots))
@@ -425,7 +423,7 @@ impl GeneralizedModel {
     fn variational(&self, py: Python<'_>) -> PyResult<Self> {
         let model = self.copy();
         let model = compute(py, 0, None, |_| variational(&model))?.whole(py)?;
-        Ok(Self { model: Mutex::new(model) })
+        Ok(Self::of(model))
     }
 
     /// Runs states (B, 2n) with parameters (B, p) from a time to another.
@@ -439,11 +437,11 @@ impl GeneralizedModel {
         threads: Option<i64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let mut model = self.copy();
+        let model = &*self.model;
         let (states, [members, _]) = copied("states", &states, [None, Some(model.numbers())])?;
         let (parameters, _) =
             copied("parameters", &parameters, [Some(members), Some(model.source.parameters)])?;
-        let request = asked.request(py, &mut model)?;
+        let request = asked.request(py, self)?;
         let threads = thread_count(threads).map_err(|error| raised(py, error))?;
         let (numbers, count) = (model.numbers(), model.source.parameters);
         let worked = compute(py, members as u64, progress.as_ref(), |ticker| {
@@ -453,7 +451,7 @@ impl GeneralizedModel {
                 };
                 let (state, own) =
                     (of(&states, numbers).unwrap_or_default(), of(&parameters, count).unwrap_or_default());
-                let outcome = solve(&model, &request, (&state, &own), ticker);
+                let outcome = solve(model, &request, (&state, &own), ticker);
                 ticker.advance(1);
                 outcome
             })
@@ -481,7 +479,7 @@ struct Asked<'py> {
 }
 
 impl Asked<'_> {
-    fn request(&self, py: Python<'_>, model: &mut Model) -> PyResult<Request> {
+    fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
         let integrator =
             match gauss::method(&self.method) {
                 Some(method) => Integrator::Gauss(method),
@@ -491,6 +489,7 @@ impl Asked<'_> {
             };
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
         let section = self.section.as_ref().map(|(nodes, root, direction)| {
+            let mut model = of.copy();
             let ids = added(&mut model.source.graph, nodes)?;
             let code = Arc::new(model.function(&[chosen(&ids, *root)?])?);
             Ok(Section { code, direction: *direction })
@@ -505,7 +504,7 @@ impl Asked<'_> {
             max_step: self.max_step,
             max_steps: self.max_steps,
             outputs,
-            held: Structure::of(model).conserves_energy,
+            held: of.structure.conserves_energy,
         })
     }
 }
