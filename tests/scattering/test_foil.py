@@ -454,3 +454,38 @@ def test_potentials_without_a_way_on_are_refused():
     with pytest.raises(vv.InvalidInput, match="captures") as caught:
         foil.run("proton", beam_energy=1e4, n_events=1, seed=1)
     assert caught.value.argument == "potential"
+
+
+def test_histories_are_what_is_counted():
+    """Every tally of 40 ions, from their ends one by one."""
+    foil = S.Foil("gold", 0.06, minimum_angle=2e-3)
+    asked = {"beam_energy": 2e4, "seed": 9, "incidence": 0.4, "lowest_energy": 1e3}
+    names = ("lab_angle", "transmitted_angle", "transmitted_energy", "reflected_angle", "reflected_energy")
+    out = foil.run("alpha", n_events=40, tally=(*names, "stopped_depth"), **asked)
+    ends = [foil.history("alpha", event=event, **asked) for event in range(40)]
+    assert min(out.transmitted, out.reflected, out.stopped) > 2
+    for name, tally in out.items():
+        fate, _, quantity = name.partition("_")
+        fates = ("transmitted", "reflected") if fate == "lab" else (fate,)
+        values = [way[f"final_{quantity}"] for way in ends if way["fate"] in fates]
+        assert tally.counts.tolist() == np.histogram(values, tally.edges)[0].tolist(), name
+    for way in ends:
+        depth = {"transmitted": 0.06, "reflected": 0.0}.get(way["fate"], way["final_depth"])
+        assert way["final_depth"] == depth
+        assert way["weight"] == 1.0
+        if way["fate"] != "stopped":
+            direction = way["direction"][-1, 1]
+            beam = np.array([np.sin(0.4), 0.0, np.cos(0.4)])
+            assert way["final_angle"] == pytest.approx(np.arccos(direction @ beam), abs=1e-12)
+
+
+def test_an_inclined_foil_is_thicker():
+    foil = S.Foil("silver", 0.3, potential="coulomb", stopping="none")
+    asked = {"beam_energy": 5e6, "n_events": 20_000, "seed": 1, "collisions": "single", "forced_angle": 1.0}
+    upright, inclined = (
+        foil.run("alpha", tally={"cm_angle": [1.0, np.pi]}, incidence=angle, **asked)["cm_angle"]
+        for angle in (0.0, 1.0)
+    )
+    # The same impact parameters.
+    assert np.array_equal(upright.counts, inclined.counts)
+    assert inclined.values() == pytest.approx(upright.values() / np.cos(1.0), rel=1e-12)
