@@ -81,7 +81,9 @@ def _parting(members: int, threads: int | None) -> tuple[NDArray[np.float64], ND
     for second in (0, 5, 10, 15, 20):
         print(f"  t = {second:2d} s: median distance {spread[10 * second]:.1e} rad")
     print(f"  largest change of an energy {drift:.1e}; largest Lyapunov exponent over 50 s {exponent:.2f} / s")
-    print(f"  {seconds:.3f} s, {members / seconds:.0f} trajectories/s, {out.evaluations.sum() / seconds:.3g} evaluations/s")
+    print(
+        f"  {seconds:.3f} s, {members / seconds:.0f} trajectories/s, {out.evaluations.sum() / seconds:.3g} evaluations/s"
+    )
     return t, spread
 
 

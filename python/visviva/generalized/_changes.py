@@ -122,7 +122,7 @@ def flow_jacobian(
     model = system._model.variational()
     result = model.run(asked, start[None, :], system._values[None, :], 1, None)
     if result["failures"][0] is not None:
-        raise ConvergenceError(result["failures"][0], float(result["t"][-1]))
+        raise ConvergenceError(result["failures"][0], result["reached"][0])
     last = result["y"][-1]
     return last[:n], last[n:].reshape(n, n)
 

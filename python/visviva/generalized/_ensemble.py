@@ -64,6 +64,8 @@ class GeneralizedEnsemble:
                 "position", f"expected position, {system._second_name} or parameters of the copies, got none"
             )
         members = sizes["B"][0]
+        if not members:
+            raise InvalidInput(sizes["B"][1], "expected at least one copy, got none")
         if halves[0] is None:
             halves[0] = np.tile(system._start()[:n], (members, 1))
         if halves[1] is None:
@@ -123,8 +125,12 @@ class GeneralizedEnsemble:
         (3, 2)
         """
         asked, _ = self.system._asked(t, method, rtol, dt, max_step)
-        for member in (0, len(self) - 1):
-            self[member]._check_start()
+        # What is off its constraints would be put on them without a word; other starts tell by their status.
+        for member in range(len(self)) if self.system._constraints() else (0,):
+            try:
+                self[member]._check_start()
+            except InvalidInput as error:
+                raise InvalidInput(error.argument, f"copy {member}: {error.message}") from None
         result = self.system._run(asked, self._states, self._parameters, threads, progress)
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         if result["interrupted"]:

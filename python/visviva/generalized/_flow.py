@@ -87,7 +87,7 @@ class Flow:
         result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)
         times, states = result["crossing_times"], result["crossing_states"]
         if result["failures"][0] is not None:
-            raise ConvergenceError(result["failures"][0], float(times[-1]) if len(times) else self.t0)
+            raise ConvergenceError(result["failures"][0], result["reached"][0])
         n = len(self.coordinates)
         momentum = states[:, n:]
         if self._source.kind == "lagrangian" and len(times):

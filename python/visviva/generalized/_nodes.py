@@ -5,7 +5,8 @@ A node is ``(operation, arguments, value)``, its arguments the numbers of nodes 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, TypeAlias
+from math import isfinite
+from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -74,11 +75,12 @@ class Expression:
                 places.append(other._place)
             else:
                 try:
-                    places.append(self._nodes.constant(float(other)))  # type: ignore[arg-type]
+                    number = float(other)  # type: ignore[arg-type]
                 except (TypeError, ValueError):
                     raise InvalidInput(
                         "L", f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it"
                     ) from None
+                places.append(self._nodes.constant(_finite("L", number)))
         if swapped:
             places.reverse()
         return Expression(self._nodes, self._nodes.add(operation, tuple(places)))
@@ -123,8 +125,19 @@ class Expression:
     def __abs__(self) -> Expression:
         return self._with("product", self)._with("sqrt")
 
-    def __bool__(self) -> bool:
+    def arctan2(self, other: object) -> Expression:
+        """As ``np.arctan2`` of two expressions calls it: the angle of the point (other, self)."""
+        x = other if isinstance(other, Expression) else self * 0.0 + other
+        return (self / ((self * self + x * x).sqrt() + x)).atan() * 2.0
+
+    def __bool__(self) -> NoReturn:
         raise InvalidInput("L", "an expression has no truth value: the function must not branch on coordinates")
+
+    def __eq__(self, other: object) -> NoReturn:
+        self.__bool__()
+
+    __ne__ = __lt__ = __le__ = __gt__ = __ge__ = __eq__
+    __hash__ = object.__hash__
 
     def __float__(self) -> float:
         raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
@@ -144,6 +157,13 @@ def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     if isinstance(value, Expression):
         return value._place
     try:
-        return nodes.constant(float(value))
+        number = float(value)
     except (TypeError, ValueError):
         raise InvalidInput(argument, f"expected one number of the function, got {type(value).__name__}") from None
+    return nodes.constant(_finite(argument, number))
+
+
+def _finite(argument: str, number: float) -> float:
+    if not isfinite(number):
+        raise InvalidInput(argument, f"expected finite numbers, got {number} in it")
+    return number

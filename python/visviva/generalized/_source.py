@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
+from inspect import signature
 from typing import Any
 
 from visviva._arrays import number
@@ -12,6 +13,9 @@ from visviva.generalized._nodes import Expression, Nodes, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 __all__ = ["Source", "described"]
+
+#: What the second half of a state is.
+_SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -34,7 +38,7 @@ class Source:
 
     def _walk(self, nodes: Nodes) -> Callable[[str, Any], int]:
         if self.symbols is None:
-            return _calls(nodes, self.names, self.parameters)
+            return _calls(nodes, self.names, self.parameters, _SECOND[self.kind])
         first, second, parameters = self.symbols
         return Symbols(nodes, first, second, parameters).node
 
@@ -63,7 +67,7 @@ def described(
         names = tuple(_name(each) for each in listed)
         keys = tuple(_name(each) for each in given)
         symbols = None
-        walk = _calls(nodes, names, keys)
+        walk = _calls(nodes, names, keys, _SECOND[kind])
     else:
         sp = sympy()
         first = tuple(_coordinate(sp, each) for each in listed)
@@ -152,13 +156,17 @@ def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[An
 
 def _parameter(sp: Any, key: Any, function: Any) -> Any:
     """Give the symbol of a parameter; a name means the symbol of that name in the function."""
+    if key == time._sympy_() or key == "t":
+        raise InvalidInput("parameters", "t is the time; give the parameter another name")
     if not isinstance(key, str):
         return key
     named = [symbol for symbol in getattr(function, "free_symbols", ()) if symbol.name == key]
     return named[0] if named else sp.Symbol(key)
 
 
-def _calls(nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...]) -> Callable[[str, Any], int]:
+def _calls(
+    nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...], second_name: str
+) -> Callable[[str, Any], int]:
     """Record functions of (first, second, t, **parameters)."""
     n = len(names)
 
@@ -171,6 +179,13 @@ def _calls(nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...]) ->
         first = [expression("variable", float(i)) for i in range(n)]
         second = [expression("variable", float(n + i)) for i in range(n)]
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
+        try:
+            signature(function).bind(first, second, None, **values)
+        except TypeError as error:
+            called = ", ".join(["position", second_name, "t", *(f"{name}=" for name in parameters)])
+            raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
+        except ValueError:  # one that does not tell what it takes
+            pass
         return recorded(nodes, function(first, second, expression("time"), **values), argument)
 
     return walk

@@ -114,6 +114,9 @@ def coordinate(names: str) -> Any:
     """
     if not isinstance(names, str) or not names.replace(",", " ").split():
         raise InvalidInput("names", f"expected the name of a coordinate, got {names!r}")
+    for name in names.replace(",", " ").split():
+        if not name.isidentifier() or name == "t":
+            raise InvalidInput("names", f"expected names as theta, and not t, which is the time, got {name!r}")
     sp = sympy()
     made = tuple(sp.Function(name)(sp.Symbol("t")) for name in names.replace(",", " ").split())
     return made[0] if len(made) == 1 else made
@@ -165,6 +168,8 @@ class Symbols:
             if value.imag or value.real != value.real or abs(value.real) == float("inf"):
                 raise InvalidInput(argument, f"expected finite real numbers, got {tree}")
             return nodes.constant(value.real)
+        if tree is sp.I:
+            raise InvalidInput(argument, "expected real numbers, got I in it")
         if tree.is_Add or tree.is_Mul or tree.is_Pow:
             operation = "sum" if tree.is_Add else "product" if tree.is_Mul else "power"
             return nodes.add(operation, tuple(self._walk(argument, part) for part in tree.args))

@@ -9,7 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
-from visviva.errors import ConvergenceError, Interrupted, InvalidInput
+from visviva.errors import ConvergenceError, FrozenAttribute, Interrupted, InvalidInput
 from visviva.generalized._flow import Flow
 from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, trees
@@ -83,7 +83,7 @@ class GeneralizedSystem(Flow):
         set_(self, "_model", _core.GeneralizedModel(source.description) if model is None else model)
 
     def __setattr__(self, name: str, value: object) -> None:
-        raise AttributeError(f"a {type(self).__name__} is frozen; at({name}=…) makes another one")
+        raise FrozenAttribute(name, f"a {type(self).__name__} is frozen; at({name}=…) makes another one")
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self._second, self.t0)
@@ -209,7 +209,8 @@ class GeneralizedSystem(Flow):
                 "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
             )
         if np.ndim(np.asarray(t)) == 0:
-            outputs = np.array([self.t0, outputs[0]])
+            # The start, and the end where it is another.
+            outputs = np.unique([self.t0, outputs[0]])[:: 1 if outputs[0] >= self.t0 else -1]
         steps = np.diff(np.concatenate([[self.t0], outputs]))
         direction = 1.0 if outputs[-1] >= self.t0 else -1.0
         if np.any(direction * steps < 0.0) or np.any(direction * steps[1:] <= 0.0):
@@ -300,7 +301,7 @@ class GeneralizedSystem(Flow):
             raise Interrupted("the run was interrupted", out)
         failure = result["failures"][0]
         if failure is not None:
-            raise ConvergenceError(failure, float(result["t"][-1]) if len(result["t"]) else self.t0, out)
+            raise ConvergenceError(failure, result["reached"][0], out)
         assert len(out.t) == len(outputs)
         return out
 

@@ -306,6 +306,9 @@ impl GeneralizedModel {
             None => (vec![], vec![]),
             Some(projection) => {
                 let mut projector = projection.at_work(&parameters);
+                if let Some((one, others)) = projector.dependent(t, &state) {
+                    return Err(raised(py, dependent(one, &others)));
+                }
                 let residuals = projector.residuals(t, &state);
                 let mut rest = vec![0.0; state.len()];
                 projector.project(t, &mut state, &mut rest, true).map_err(|error| raised(py, error))?;
@@ -509,6 +512,22 @@ impl Asked<'_> {
     }
 }
 
+/// Constraints that do not leave the multipliers determined.
+fn dependent(one: usize, others: &[usize]) -> Error {
+    let words = match others {
+        [] => format!("constraint {one} has no gradient at the start; start elsewhere"),
+        [other] => format!("constraints {other} and {one} are dependent at the start; leave one out"),
+        _ => {
+            let names: Vec<String> = others.iter().map(usize::to_string).collect();
+            format!(
+                "constraint {one} follows from constraints {} at the start; leave one out",
+                names.join(", ")
+            )
+        }
+    };
+    Error::invalid("constraints", words)
+}
+
 /// The results of a code, row by row.
 fn rows<'py>(
     py: Python<'py>,
@@ -559,6 +578,7 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
     result.set_item("endings", endings)?;
     let failures: Vec<Option<&str>> = solutions.iter().map(|solution| solution.failure.as_deref()).collect();
     result.set_item("failures", failures)?;
+    result.set_item("reached", solutions.iter().map(|solution| solution.reached).collect::<Vec<_>>())?;
     result.set_item("steps", solutions.iter().map(|solution| solution.steps).collect::<Vec<_>>())?;
     result
         .set_item("evaluations", solutions.iter().map(|solution| solution.evaluations).collect::<Vec<_>>())?;

@@ -4,9 +4,49 @@
 //! Q = Aᵀλ. M is positive definite and A has full rank, so no pivots are looked for.
 
 use super::model::Source;
+use crate::error::{Error, Result};
 use crate::expressions::program::LinearSystem;
-use crate::expressions::{Graph, Id};
+use crate::expressions::{Graph, Id, Node};
 use std::collections::HashMap;
+
+/// Refuses what is no constraint of its kind: it would be kept, and mean something else.
+///
+/// # Errors
+/// A holonomic one with velocities or without coordinates, another one without or not linear in velocities, and too many.
+pub(super) fn check(source: &mut Source) -> Result<()> {
+    let n = source.coordinates;
+    let (q, v) = source.halves();
+    let graph = &mut source.graph;
+    let moving = |graph: &Graph, roots: &[Id]| {
+        graph.any(roots, |node| matches!(node, Node::Variable(index) if *index as usize >= n))
+    };
+    for (k, &constraint) in source.holonomic.iter().enumerate() {
+        if moving(graph, &[constraint]) {
+            let message = format!("constraint {k} contains velocities; pass it as nonholonomic=");
+            return Err(Error::invalid("constraints", message));
+        }
+        if graph.gradient(constraint, &q).iter().all(|&slope| graph.is_zero(slope)) {
+            return Err(Error::invalid("constraints", format!("constraint {k} contains no coordinate")));
+        }
+    }
+    for (k, &constraint) in source.nonholonomic.iter().enumerate() {
+        let row = graph.gradient(constraint, &v);
+        let wrong = if row.iter().all(|&entry| graph.is_zero(entry)) {
+            "contains no velocity; pass it as constraints="
+        } else if moving(graph, &row) {
+            "is not linear in the velocities"
+        } else {
+            continue;
+        };
+        return Err(Error::invalid("nonholonomic", format!("constraint {k} {wrong}")));
+    }
+    let constraints = source.holonomic.len() + source.nonholonomic.len();
+    if constraints > n {
+        let message = format!("{constraints} constraints leave nothing of {n} coordinates; leave some out");
+        return Err(Error::invalid("constraints", message));
+    }
+    Ok(())
+}
 
 /// The system of accelerations and multipliers; `motion` is how everything changes at q̈ = 0.
 pub(super) fn bordered(

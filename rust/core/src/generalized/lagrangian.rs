@@ -16,6 +16,7 @@ use std::collections::HashMap;
 /// # Errors
 /// A coordinate without kinetic energy.
 pub(super) fn derive(mut source: Source) -> Result<Derived> {
+    constraints::check(&mut source)?;
     let n = source.coordinates;
     let (q, v) = source.halves();
     let graph = &mut source.graph;

@@ -23,6 +23,9 @@ const AFTER_A_STEP: u32 = 4;
 /// Newton's steps at the start, from anywhere.
 const AT_THE_START: u32 = 60;
 
+/// Below this part of its length, what is left of a row is round-off.
+const DEPENDENT: f64 = 1e-12;
+
 /// The codes of corrections and residuals.
 #[derive(Clone, Debug)]
 pub struct Projection {
@@ -33,6 +36,8 @@ pub struct Projection {
     places: Arc<Code>,
     /// Corrections of velocities; residuals of the rates of all.
     velocities: Arc<Code>,
+    /// What velocities are multiplied with in the rates, constraint after constraint.
+    rows: Arc<Code>,
 }
 
 impl Projection {
@@ -69,7 +74,9 @@ impl Projection {
         let places = code(graph, &rows, &holonomic)?;
         rows.extend(nonholonomic.iter().map(|&constraint| graph.gradient(constraint, &v)));
         let velocities = code(graph, &rows, &rates)?;
-        Ok(Some(Self { coordinates: n, holonomic: holonomic.len(), constraints, places, velocities }))
+        let entries: Vec<Output> = rows.iter().flatten().copied().map(Output::Node).collect();
+        let rows = Arc::new(compile(graph, inputs, &[], &entries)?);
+        Ok(Some(Self { coordinates: n, holonomic: holonomic.len(), constraints, places, velocities, rows }))
     }
 
     /// Ready to work, with these parameters.
@@ -78,6 +85,7 @@ impl Projection {
             of: self.clone(),
             places: Machine::new(self.places.clone(), parameters),
             velocities: Machine::new(self.velocities.clone(), parameters),
+            rows: Machine::new(self.rows.clone(), parameters),
         }
     }
 }
@@ -88,9 +96,42 @@ pub struct Projector {
     of: Projection,
     places: Machine<f64>,
     velocities: Machine<f64>,
+    rows: Machine<f64>,
 }
 
 impl Projector {
+    /// Which constraint follows from others at a state, and from which; `None` where all are independent.
+    pub fn dependent(&mut self, t: f64, y: &[f64]) -> Option<(usize, Vec<usize>)> {
+        let (n, constraints) = (self.of.coordinates, self.of.constraints);
+        let mut all = vec![0.0; n * constraints];
+        self.rows.evaluate(t, y, &mut all);
+        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
+        let mut directions: Vec<Vec<f64>> = Vec::new();
+        for (k, row) in all.chunks(n).enumerate() {
+            let length = dot(row, row).sqrt();
+            let mut rest = row.to_vec();
+            // Twice is enough.
+            for _ in 0..2 {
+                for direction in &directions {
+                    let along = dot(&rest, direction);
+                    rest.iter_mut().zip(direction).for_each(|(rest, direction)| *rest -= along * direction);
+                }
+            }
+            let left = dot(&rest, &rest).sqrt();
+            if left > DEPENDENT * length {
+                directions.push(rest.iter().map(|rest| rest / left).collect());
+                continue;
+            }
+            let shares = |row_before: &[f64]| {
+                let size = (dot(row_before, row_before) * length * length).sqrt();
+                dot(row, row_before).abs() > DEPENDENT * size
+            };
+            let others = all.chunks(n).take(k).enumerate();
+            return Some((k, others.filter(|(_, before)| shares(before)).map(|(index, _)| index).collect()));
+        }
+        None
+    }
+
     /// The residuals at a state: of the holonomic constraints, and of the rates of all.
     pub fn residuals(&mut self, t: f64, y: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let n = self.of.coordinates;

@@ -85,6 +85,8 @@ pub struct Solution {
     pub ending: Ending,
     /// What ended it, if that was no end.
     pub failure: Option<String>,
+    /// The time that it came to.
+    pub reached: f64,
     /// Times.
     pub t: Vec<f64>,
     /// States there, one after another.
@@ -142,6 +144,7 @@ pub fn solve(
         return Ok(Solution {
             ending: Ending::Finished,
             failure: None,
+            reached: end,
             t,
             y,
             steps: 0,
@@ -151,7 +154,7 @@ pub fn solve(
         });
     }
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
-    let mut recorder = Counted { table, steps: 0, last: 0.0, most: request.max_steps };
+    let mut recorder = Counted { table, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut collocation = 0;
     let outcome = match request.integrator {
@@ -201,12 +204,13 @@ pub fn solve(
         Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
         Err(error) => return Err(error),
     };
-    let Counted { mut table, steps, last, .. } = recorder;
+    let Counted { mut table, steps, last, reached, .. } = recorder;
     let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
     let evaluations = system.evaluations() + collocation;
     Ok(Solution {
         ending,
         failure,
+        reached,
         t,
         y,
         steps,
@@ -222,6 +226,8 @@ struct Counted<'a> {
     steps: u64,
     /// The longest step.
     last: f64,
+    /// Where the last one ended.
+    reached: f64,
     /// The most steps.
     most: u64,
 }
@@ -241,6 +247,7 @@ impl Recorder for Counted<'_> {
         self.steps += 1;
         let length = (step.to - step.from).abs();
         self.last = if length > self.last { length } else { self.last };
+        self.reached = step.to;
         self.table.step(step)
     }
 }

@@ -1,0 +1,204 @@
+"""What cannot be run is refused before anything runs, by name and with what to do."""
+
+import math
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import visviva as vv
+
+t = sp.Symbol("t")
+theta, phi = vv.coordinate("theta"), vv.coordinate("phi")
+rate, turning = theta.diff(t), phi.diff(t)
+x, y = vv.coordinate("x y")
+vx, vy = x.diff(t), y.diff(t)
+g, m = sp.symbols("g m")
+L = rate**2 / 2 + g * sp.cos(theta)
+FREE = (vx**2 + vy**2) / 2
+REST = {"position": [0.0, 0.0]}
+
+
+def lagrangian(function: Any, coordinates: Any = (theta,), **further: Any) -> Callable[[], Any]:
+    return lambda: vv.Lagrangian(function, list(coordinates), **further)
+
+
+def plane(function: Any = FREE, **further: Any) -> Callable[[], Any]:
+    return lambda: vv.Lagrangian(function, [x, y], **{"position": [0.0, 0.0], **further}).run(1.0)
+
+
+def one(function: Callable[..., Any], **further: Any) -> Callable[[], Any]:
+    return lambda: vv.Lagrangian(function, ["x"], **further)
+
+
+def run(system: Any, *times: Any, **how: Any) -> Callable[[], Any]:
+    return lambda: system.run(*times, **how)
+
+
+PENDULUM = vv.systems.pendulum()
+
+REFUSED = [
+    # Expressions
+    (lagrangian(rate**2 / 2 + phi**2), "L", r"phi\(t\) is not among the coordinates \[theta\(t\)\]; add it"),
+    (lagrangian(rate**2 + turning**2), "L", r"Derivative\(phi\(t\), t\) is in it, but phi\(t\) is not among"),
+    (lagrangian(L), "L", r"free symbol 'g' has no value; pass parameters=\{g: …\}"),
+    (lagrangian(rate**2 + rate.diff(t)), "L", r"second derivative of theta\(t\) is in it: only first ones"),
+    (lagrangian(rate**2 / 2 + sp.Derivative(sp.sin(g * t), t), parameters={g: 1.0}), "L", "call its doit"),
+    (lagrangian(sp.Matrix([rate**2])), "L", "expected a scalar expression, got ImmutableDenseMatrix"),
+    (lagrangian("theta"), "L", "got the text 'theta'; sympy.sympify makes one of it"),
+    (lagrangian(None), "L", "expected an expression of SymPy, got NoneType"),
+    (lagrangian(sp.besselj(0, theta)), "L", "function besselj is not known to the compiled core; known: sin, cos"),
+    (lagrangian(sp.Function("f")(theta)), "L", "not among the coordinates"),
+    (lagrangian(sp.Piecewise((theta, theta > 0), (0, True))), "L", "Piecewise switches inside a step"),
+    (lagrangian(sp.Heaviside(theta)), "L", "Heaviside switches inside a step"),
+    (lagrangian(sp.Max(theta, 0)), "L", "Max switches inside a step"),
+    (lagrangian(sp.sign(theta)), "L", "sign switches inside a step"),
+    (lagrangian(sp.I * theta), "L", "expected real numbers, got I"),
+    (lagrangian(sp.oo * theta), "L", "expected finite real numbers, got oo"),
+    (lagrangian(L, parameters={g: 1.0}, forces={theta: m}), "forces", "free symbol 'm' has no value"),
+    (lagrangian(L, parameters={g: 1.0}, dissipation=m), "dissipation", "free symbol 'm' has no value"),
+    (lagrangian(L, parameters={g: 1.0}, constraints=[m]), "constraints", "free symbol 'm' has no value"),
+    # Names
+    (lagrangian(L, [theta, theta], parameters={g: 1.0}), "coordinates", "expected different names"),
+    (lagrangian(L, []), "coordinates", "expected at least one coordinate, got none"),
+    (lagrangian(L, ["theta"]), "coordinates", r"vv.coordinate\('theta'\) makes them.*got 'theta'"),
+    (lagrangian(L, [t]), "coordinates", "got t"),
+    (lagrangian(L, [rate]), "coordinates", "got Derivative"),
+    (lagrangian(m**2, [m]), "velocities", "expected the velocities of coordinates that are symbols"),
+    (lagrangian(m**2, [m], velocities=[g, g]), "velocities", "expected 1, one for each of"),
+    (lagrangian(L, parameters=[g]), "parameters", r"expected values by parameter, as \{g: 9.81\}, got list"),
+    (lagrangian(L, parameters={3: 1.0}), "parameters", "expected symbols or names, got 3"),
+    (lagrangian(L, parameters={t: 1.0}), "parameters", "t is the time"),
+    (lagrangian(L, parameters={g: math.nan}), "parameters['g']", "expected finite numbers"),
+    (lagrangian(L, parameters={g: "a"}), "parameters['g']", "got a str"),
+    (lagrangian(L, parameters={g: 1.0}, forces={"phi": 1.0}), "forces", "there is no coordinate 'phi'"),
+    (lagrangian(L, parameters={g: 1.0}, forces=[1.0]), "forces", r"as \{theta: Q\}, got list"),
+    (lagrangian(L, parameters={g: 1.0}, position=[1.0, 2.0]), "position", r"expected shape \(1,\), got \(2,\)"),
+    (lagrangian(L, parameters={g: 1.0}, position=[math.inf]), "position", "expected finite numbers"),
+    (lagrangian(L, parameters={g: 1.0}, velocity=[[1.0]]), "velocity", r"expected shape \(1,\)"),
+    (lagrangian(L, parameters={g: 1.0}, t0=math.nan), "t0", "expected finite numbers"),
+    (lambda: vv.coordinate("2x"), "names", "got '2x'"),
+    (lambda: vv.coordinate("x t"), "names", "and not t, which is the time"),
+    (lambda: vv.coordinate(""), "names", "expected the name of a coordinate"),
+    (lambda: vv.Hamiltonian(m**2 / 2, [g]), "p", r"expected the momenta, one for each of \[g\]"),
+    (lambda: vv.Hamiltonian(m**2 / 2, [g], [m, g]), "p", "expected 1, one for each"),
+    # Functions
+    (one(lambda q, v, t: v[0] if q[0] > 0 else q[0]), "L", "must not branch on coordinates"),
+    (one(lambda q, v, t: v[0] if q[0] == 0 else q[0]), "L", "must not branch on coordinates"),
+    (one(lambda q, v, t: v[0] or q[0]), "L", "must not branch on coordinates"),
+    (one(lambda q, v, t: np.maximum(q[0], 0.0)), "L", "must not branch on coordinates"),
+    (one(lambda q, v, t: math.sin(q[0])), "L", "use NumPy's functions, as np.sin, and not those of math"),
+    (one(lambda q, v, t: np.array([v[0], q[0]])), "L", "expected one number of the function, got ndarray"),
+    (one(lambda q, v, t: None), "L", "expected one number of the function, got NoneType"),
+    (one(lambda q, v, t: 1j * v[0]), "L", "got complex in it"),
+    (one(lambda q, v, t: "x" * 3), "L", "expected one number"),
+    (one(lambda q, v, t: math.inf * v[0]), "L", "expected finite numbers, got inf"),
+    (one(lambda q, v, t: math.nan), "L", "expected finite numbers, got nan"),
+    (one(lambda q, v, t: q[0].real), "L", "function real is not known"),
+    (one(lambda q, v, t, k: k * v[0]), "L", r"called with \(position, velocity, t\): missing .* 'k'"),
+    (one(lambda q, v, t: v[0], parameters={"k": 1.0}), "L", r"called with \(position, velocity, t, k=\)"),
+    (lambda: PENDULUM.evaluate(sp.sin(theta)), "expressions", "got a sin"),
+    (lambda: vv.systems.henon_heiles().poisson(x, y), "f", "brackets are of expressions of SymPy"),
+    # Equations without a meaning
+    (lagrangian(rate**2 / 2 + phi * theta, [theta, phi]), "L", "degenerate: .* velocity of coordinate 'phi' vanishes"),
+    (lagrangian(x * vy - y * vx - x**2, [x, y]), "L", "degenerate: .* coordinate 'x' vanishes .* no acceleration"),
+    (plane((vx + vy) ** 2 / 2 - x**2), "position", "a mass matrix that is singular there"),
+    (run(vv.systems.spherical_pendulum(position=[0.0, 0.0]), 1.0), "position", "acceleration of 'phi' is no number"),
+    (run(vv.systems.central_force(position=[0.0, 0.0]), 1.0), "position", "'r' is no number at the start: a singul"),
+    (lambda: vv.Hamiltonian(m**2 / 2 + 1 / g, [g], [m], position=[0.0]).run(1.0), "position", "singularity of H"),
+    (lambda: vv.Lagrangian(rate**2 / 2, [theta]).run(1.0), "position", r"coordinates \['theta'\] at the start"),
+    # Constraints
+    (plane(constraints=[x + vx]), "constraints", "constraint 0 contains velocities; pass it as nonholonomic="),
+    (plane(constraints=[x, t]), "constraints", "constraint 1 contains no coordinate"),
+    (plane(nonholonomic=[vx * vy]), "nonholonomic", "constraint 0 is not linear in the velocities"),
+    (plane(nonholonomic=[vx, y]), "nonholonomic", "constraint 1 contains no velocity; pass it as constraints="),
+    (plane(constraints=[x, y, x + y]), "constraints", "3 constraints leave nothing of 2 coordinates"),
+    (plane(constraints=[x + y, 2 * x + 2 * y]), "constraints", "constraints 0 and 1 are dependent at the start"),
+    (plane(constraints=[x + y], nonholonomic=[vx + vy]), "constraints", "constraints 0 and 1 are dependent"),
+    (plane(constraints=[x * y]), "constraints", "constraint 0 has no gradient at the start"),
+    (plane(constraints=[x + 0.5]), "position", r"constraint 0 is 0\.5 at the start .* consistent='project'"),
+    (plane(constraints=[y, x], velocity=[2.0, 0.0]), "velocity", "the rate of constraint 1 is 2 at the start"),
+    (plane(nonholonomic=[vx - 3]), "velocity", "the rate of constraint 0 is -3 at the start"),
+    (plane(constraints="x"), "constraints", "got the text 'x'"),
+    # Runs
+    (run(PENDULUM, 1.0, method="gaus16"), "method", "did you mean 'gauss16'"),
+    (run(PENDULUM, 1.0, method=None), "method", "got None"),
+    (run(PENDULUM, 1.0, method="auto"), "method", "expected gauss16, gauss8, gauss4 or a method of"),
+    (run(PENDULUM, 1.0, method="taylor"), "method", "expands scenes of particles"),
+    (run(PENDULUM, 1.0, method="rk4"), "dt", "rk4 has a fixed one; pass dt"),
+    (run(PENDULUM, 1.0, method="dop853", dt=0.1), "dt", "chooses its own steps; leave dt out"),
+    (run(vv.systems.double_pendulum(), 1.0, method="leapfrog", dt=0.1), "method", r"H = p²/2 \+ V\(q\).*gauss16"),
+    (run(vv.systems.atwood(), 1.0, method="yoshida4", dt=0.1), "method", "keeps no constraints; gauss16 and dop853 do"),
+    (run(PENDULUM, []), "t", "expected the end, or output times"),
+    (run(PENDULUM, [[1.0]]), "t", r"an array of shape \(1, 1\)"),
+    (run(PENDULUM, [2.0, 1.0]), "t", "expected times in order from t0 = 0 on, each once"),
+    (run(PENDULUM, [1.0, 1.0]), "t", "expected times in order"),
+    (run(PENDULUM, [-1.0, 1.0]), "t", "expected times in order"),
+    (run(PENDULUM, math.nan), "t", "expected finite numbers"),
+    (run(PENDULUM, 1.0, rtol=1.0), "rtol", "expected a tolerance between 1e-15 and 1e-2, got 1"),
+    (run(PENDULUM, 1.0, rtol=0.0), "rtol", "expected a tolerance"),
+    (run(PENDULUM, 1.0, dt=-0.1), "dt", "expected a positive number, got -0.1; the direction is that of t"),
+    (run(PENDULUM, 1.0, max_step=0.0), "max_step", "expected a positive number"),
+    # Copies
+    (
+        lambda: PENDULUM.at(parameters={"q": 1.0}),
+        "parameters",
+        r"there is no parameter 'q'; there are \['g', 'l', 'm'\]",
+    ),
+    (lambda: PENDULUM.at(momentum=[1.0]), "momentum", "expected a keyword of at"),
+    (PENDULUM.ensemble, "position", "velocity or parameters of the copies, got none"),
+    (lambda: PENDULUM.ensemble(position=[[1.0], [2.0]], velocity=[[1.0]]), "velocity", r"\(B, 1\) with B = 2"),
+    (lambda: PENDULUM.ensemble(position=np.zeros((0, 1))), "position", "expected at least one copy, got none"),
+    (lambda: PENDULUM.ensemble(parameters={"z": [1.0]}), "parameters", "there is no parameter 'z'"),
+    (lambda: PENDULUM.ensemble(position=[[1.0]]).run(1.0, threads=0), "threads", "from 1 to 1024, got 0"),
+    (
+        lambda: vv.systems.atwood().ensemble(position=[[1.0, 1.0], [1.0, 1.5], [1.0, 1.0]]).run(1.0),
+        "position",
+        r"copy 1: constraint 0 is 0\.5 at the start",
+    ),
+    (lambda: setattr(PENDULUM, "position", [1.0]), "position", "frozen"),
+    (lambda: PENDULUM.run(1.0)["phi"], "name", r"no coordinate 'phi'; there are \['theta'\]"),
+]
+
+
+@pytest.mark.parametrize(
+    ("call", "argument", "message"), REFUSED, ids=[f"{i}-{row[1]}" for i, row in enumerate(REFUSED)]
+)
+def test_it_is_refused_by_name(call: Callable[[], Any], argument: str, message: str) -> None:
+    with pytest.raises(vv.InvalidInput, match=message) as caught:
+        call()
+    assert caught.value.argument == argument
+
+
+def test_a_constraint_follows_from_two_others() -> None:
+    (a, b, c), v = vv.coordinate("a b c"), [each.diff(t) for each in vv.coordinate("a b c")]
+    system = vv.Lagrangian(
+        sum(u**2 for u in v) / 2, [a, b, c], position=[0.0, 0.0, 0.0], constraints=[a + b, c, a + b + 3 * c]
+    )
+    with pytest.raises(vv.InvalidInput, match="constraint 2 follows from constraints 0, 1 at the start"):
+        system.run(1.0)
+
+
+@pytest.mark.parametrize(("method", "within"), [("gauss16", 1e-12), ("dop853", 1e-12)])
+def test_a_singularity_on_the_way_keeps_what_was_computed(method: str, within: float) -> None:
+    """A fall into the center: at r₀^(3/2) π/2√2, which is when it says."""
+    fall = vv.systems.central_force(velocity=[0.0, 0.0])
+    with pytest.raises(vv.ConvergenceError, match="a singularity") as caught:
+        fall.run(np.linspace(0.0, 2.0, 21), method=method)
+    assert caught.value.time == pytest.approx(np.pi / np.sqrt(8.0), abs=within)
+    kept = caught.value.trajectory
+    assert len(kept) == 12
+    assert kept.status is vv.Status.STEP_FAILURE
+    assert np.abs(kept.energy + 1.0).max() < 1e-10
+    copies = fall.ensemble(velocity=[[0.0, 1.0], [0.0, 0.0]])
+    both = copies.run(np.linspace(0.0, 2.0, 21), method=method)
+    assert list(both.status) == [vv.Status.OK, vv.Status.STEP_FAILURE]
+    assert np.isfinite(both.position[0]).all()
+    assert np.array_equal(np.isnan(both.position[1, :, 0]), both.t > 1.15)
+
+
+def test_too_long_a_step_is_told() -> None:
+    with pytest.raises(vv.ConvergenceError, match="take a smaller dt"):
+        PENDULUM.run(100.0, dt=10.0)
