@@ -263,6 +263,48 @@ def test_sums_that_agree_by_accident_are_not_believed() -> None:
         assert (np.abs(alone - whole.angle) <= 1e-12 + 1e-15 * whole.conditioning).all()
 
 
+@pytest.mark.parametrize(
+    ("case", "energy", "b", "tolerance"),
+    [
+        # Two sums agreed by accident, and were 1.8e-3 off.
+        (("Morse", 21.9, 2.0, 1.0), 0.00010090935122626757, 7.699816894322259, 1e-12),
+        # b is 4e7 turning points: what is left out far away counts that much.
+        (("PowerLaw", -1.0, 1.5), 2.0937923409059076, 0.0017816052603031563, 1e-12),
+        (("PowerLaw", -1.0, 0.7), 0.00010919263441003563, 0.0012940544077964173, 1e-12),
+        (("Yukawa", -1.0, 1.0), 0.00015076267749275998, 0.0012526956038832271, 1e-12),
+        # V at r₀ changes 2e5 times as fast as r₀, so it knows less of the angle than b/r₀.
+        (("LennardJones", 1.0, 1.0), 0.00011298687753427976, 0.7842680273714918, 1e-12),
+        # Singularities that are near, but weak.
+        (("Morse", 1.0, 1.3, 1.5), 0.0013525420646856568, 7.402719865396259, 1e-12),
+    ],
+    ids=str,
+)
+def test_what_was_wrong_once(case: tuple[object, ...], energy: float, b: float, tolerance: float) -> None:
+    potential = getattr(V, str(case[0]))(*case[1:])
+    found = s.deflect(potential, energy=energy, impact_parameter=b)
+    expected = float(oracle.angle(oracle.potential(*case), energy, b, float(found.closest_approach)))  # type: ignore[arg-type]
+    alone = s.deflection_angle(potential, energy=energy, impact_parameter=b)
+    for angle in (float(found.angle), float(alone)):
+        assert angle == pytest.approx(expected, abs=tolerance)
+
+
+@pytest.mark.parametrize("case", CASES, ids=str)
+def test_loose_and_tight_tolerances_agree(case: tuple[object, ...]) -> None:
+    """Fewer steps, judged by fewer numbers: nowhere further off than what was asked, and what rounding of b makes."""
+    random = np.random.default_rng([7] + [ord(c) for c in str(case)])
+    energy, b = 10.0 ** random.uniform(-4.0, 4.0, 2000), 10.0 ** random.uniform(-3.0, 1.2, 2000)
+    potential = getattr(V, str(case[0]))(*case[1:])
+    tight = s.deflect(potential, energy=energy, impact_parameter=b, tolerance=1e-13)
+    for tolerance in (1e-6, 1e-8, 1e-10, 1e-12):
+        loose = s.deflection_angle(potential, energy=energy, impact_parameter=b, tolerance=tolerance)
+        assert np.array_equal(np.isnan(loose), tight.status == s.DeflectionStatus.CAPTURED)
+        # What is added up to an angle is at most 2π more than it.
+        added = tolerance * (2.0 * np.pi + np.abs(tight.angle))
+        rounded = 64.0 * np.finfo(float).eps * (tight.conditioning + np.abs(tight.angle)) + tight.error
+        wrong = np.abs(loose - tight.angle) > added + rounded
+        assert not wrong.any(), (tolerance, energy[wrong][:3], b[wrong][:3], (loose - tight.angle)[wrong][:3])
+
+
 def test_tables_and_functions_are_as_what_they_are_of() -> None:
     r = np.geomspace(0.5, 12.0, 4000)
     values = V.Yukawa(1.0, 1.0).value(r)

@@ -16,6 +16,7 @@ use super::thomas_fermi::ThomasFermi;
 use crate::error::Result;
 use crate::numerics::elementary::cbrt;
 use crate::numerics::power::{Power, Powers};
+use crate::numerics::real::Mask;
 use crate::words::unknown;
 
 /// Amplitudes and rates of a sum of exponentials.
@@ -32,6 +33,10 @@ pub(super) static NAMES: [&str; 5] = ["zbl", "moliere", "kr_c", "lenz_jensen", "
 
 /// Beyond this nothing is left, and no power of it leaves the range.
 const FAR: f64 = 1e40;
+
+/// From these x on the first two terms of the universal function are less than 1e-18 of
+/// the others, derivatives too.
+const FADED: [f64; 2] = [17.0, 68.0];
 
 /// A screening function.
 #[derive(Clone, Debug)]
@@ -71,8 +76,8 @@ impl Screening {
     #[inline(always)]
     pub(super) fn all<S: Analytic>(&self, x: S) -> [S; 3] {
         let [value, slope, bend] = match self {
-            Self::Four(terms) => return all_exponentials(terms, x),
-            Self::Three(terms) => return all_exponentials(terms, x),
+            Self::Four(terms) => return fading(terms, x, [0, 1, 2]),
+            Self::Three(terms) => return exponentials(terms, x, [0, 1, 2]),
             Self::LenzJensen => lenz_jensen(x),
             Self::ThomasFermi(function) => function.all(x),
         };
@@ -82,8 +87,8 @@ impl Screening {
     #[inline(always)]
     pub(super) fn value<S: Analytic>(&self, x: S) -> S {
         match self {
-            Self::Four(terms) => exponentials(terms, x, 0),
-            Self::Three(terms) => exponentials(terms, x, 0),
+            Self::Four(terms) => fading(terms, x, [0])[0],
+            Self::Three(terms) => exponentials(terms, x, [0])[0],
             Self::LenzJensen => lenz_jensen(x)[0],
             Self::ThomasFermi(function) => function.all(x)[0],
         }
@@ -92,8 +97,8 @@ impl Screening {
     #[inline(always)]
     pub(super) fn with_slope<S: Analytic>(&self, x: S) -> S {
         match self {
-            Self::Four(terms) => exponentials(terms, x, 1),
-            Self::Three(terms) => exponentials(terms, x, 1),
+            Self::Four(terms) => fading(terms, x, [1])[0],
+            Self::Three(terms) => exponentials(terms, x, [1])[0],
             Self::LenzJensen => {
                 let [value, slope, _] = lenz_jensen(x);
                 value + slope
@@ -109,8 +114,8 @@ impl Screening {
     pub(super) fn with_bend<S: Analytic>(&self, x: S) -> S {
         let two = S::splat(2.0);
         match self {
-            Self::Four(terms) => exponentials(terms, x, 2),
-            Self::Three(terms) => exponentials(terms, x, 2),
+            Self::Four(terms) => fading(terms, x, [2])[0],
+            Self::Three(terms) => exponentials(terms, x, [2])[0],
             Self::LenzJensen => {
                 let [value, slope, bend] = lenz_jensen(x);
                 two * (value + slope) + bend
@@ -125,37 +130,55 @@ impl Screening {
 
 /// Σ aᵢ e^−u wᵢ, u = x times the rate, of φ and of what its first and second derivative make: w = 1, 1 + u, 2 + 2u + u².
 #[inline(always)]
-fn exponentials<S: Analytic, const N: usize>(terms: &Terms<N>, x: S, order: usize) -> S {
-    let (u, falling) = falling(terms, x);
-    let mut sum = S::zero();
-    for i in 0..N {
-        sum = falling[i].multiply_add(weight(u[i], terms[i][0], order), sum);
-    }
-    sum
-}
-
-/// All three orders.
-#[inline(always)]
-fn all_exponentials<S: Analytic, const N: usize>(terms: &Terms<N>, x: S) -> [S; 3] {
-    let (u, falling) = falling(terms, x);
-    let mut sums = [S::zero(); 3];
-    for i in 0..N {
-        for order in 0..3 {
-            sums[order] = falling[i].multiply_add(weight(u[i], terms[i][0], order), sums[order]);
-        }
-    }
-    sums
-}
-
-/// u and e^−u of each term.
-#[inline(always)]
-fn falling<S: Analytic, const N: usize>(terms: &Terms<N>, x: S) -> ([S; N], [S; N]) {
+fn exponentials<S: Analytic, const N: usize, const M: usize>(
+    terms: &Terms<N>,
+    x: S,
+    orders: [usize; M],
+) -> [S; M] {
     let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
+    sums(terms, x, orders, [f64::INFINITY; N])
+}
+
+/// As [`exponentials`], of four of which the first two fade before the others.
+#[inline(always)]
+fn fading<S: Analytic, const M: usize>(terms: &Terms<4>, x: S, orders: [usize; M]) -> [S; M] {
+    let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
+    let [_, b, c, d] = *terms;
+    let [first, second] = FADED;
+    // A lane's bits do not depend on the others: what has faded is nothing in either way.
+    if x.less_equal(S::splat(first)).any() {
+        sums(terms, x, orders, [first, second, f64::INFINITY, f64::INFINITY])
+    } else if x.less_equal(S::splat(second)).any() {
+        sums(&[b, c, d], x, orders, [second, f64::INFINITY, f64::INFINITY])
+    } else {
+        sums(&[c, d], x, orders, [f64::INFINITY; 2])
+    }
+}
+
+/// Of terms up to their last x.
+#[inline(always)]
+fn sums<S: Analytic, const N: usize, const M: usize>(
+    terms: &Terms<N>,
+    x: S,
+    orders: [usize; M],
+    last: [f64; N],
+) -> [S; M] {
     let mut u = [x; N];
     for i in 0..N {
         u[i] = x * S::splat(terms[i][1]);
     }
-    (u, S::falling_exps(u))
+    let falling = S::falling_exps(u);
+    let mut sums = [S::zero(); M];
+    for i in 0..N {
+        let mut decay = falling[i];
+        if last[i] < f64::INFINITY {
+            decay = S::select(x.less_equal(S::splat(last[i])), decay, S::zero());
+        }
+        for m in 0..M {
+            sums[m] = decay.multiply_add(weight(u[i], terms[i][0], orders[m]), sums[m]);
+        }
+    }
+    sums
 }
 
 #[inline(always)]

@@ -8,6 +8,7 @@ pub mod foil;
 pub mod histogram;
 pub mod impact;
 pub mod kinematics;
+mod kronrod;
 pub mod moderation;
 pub mod monte_carlo;
 mod reach;

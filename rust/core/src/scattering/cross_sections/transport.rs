@@ -4,6 +4,7 @@
 //! in it, and in the logarithm of b far out. So intervals go by those, and are halved, all at once, where two rules differ.
 
 use super::super::deflection::{Deflector, Edge, Status};
+use super::super::kronrod::{self, POINTS};
 use crate::numerics::angles::sin;
 use crate::numerics::elementary::{Exponential, ln};
 use crate::parallel::{Ticker, for_chunks};
@@ -11,8 +12,6 @@ use crate::words::number;
 use crate::{Error, Result};
 use core::f64::consts::PI;
 
-/// The rule of Gauss and Kronrod of 15 points: places, weights, and weights of the rule of 7 in it.
-const RULE: [[f64; 3]; 8] = super::super::deflection::KRONROD;
 /// Rounds of halving.
 const ROUNDS: usize = 40;
 /// The tolerance of a cross section, relative.
@@ -195,10 +194,10 @@ fn evaluate(
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<[f64; 2]>> {
-    let mut places = Vec::with_capacity(15 * intervals.len());
+    let mut places = Vec::with_capacity(POINTS * intervals.len());
     for interval in intervals {
-        for k in 0..15 {
-            places.push(interval.way.at(point(interval.ends, k)));
+        for k in 0..POINTS {
+            places.push(interval.way.at(kronrod::place(interval.ends, k)));
         }
     }
     let b: Vec<f64> = places.iter().map(|(b, _)| *b).collect();
@@ -210,28 +209,13 @@ fn evaluate(
         values.push(turned * b * weight);
     }
     let rules = |(interval, values): (&Interval, &[f64])| both_rules(interval.ends, values);
-    Ok(intervals.iter().zip(values.chunks(15)).map(rules).collect())
+    Ok(intervals.iter().zip(values.chunks(POINTS)).map(rules).collect())
 }
 
-/// The k-th of 15 places of an interval.
-fn point([from, to]: [f64; 2], k: usize) -> f64 {
-    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    if k < 8 { half.mul_add(-RULE[k][0], middle) } else { half.mul_add(RULE[14 - k][0], middle) }
-}
-
-/// From values at the 15 places: the integral, and how far it may be off.
-fn both_rules([from, to]: [f64; 2], values: &[f64]) -> [f64; 2] {
-    let half = 0.5 * (to - from);
-    let (mut fifteen, mut seven, mut size) = (0.0, 0.0, 0.0);
-    for (k, value) in values.iter().enumerate() {
-        let [_, more, less] = RULE[k.min(14 - k)];
-        fifteen += more * value;
-        seven += less * value;
-        size += more * value.abs();
-    }
-    let (off, size) = (half * (fifteen - seven).abs(), half * size);
-    let grown = 200.0 * off / size;
-    [half * fifteen, if off == 0.0 { 0.0 } else { size * (grown * grown.sqrt()).min(off / size) }]
+/// The integral and how far it may be off.
+fn both_rules(ends: [f64; 2], values: &[f64]) -> [f64; 2] {
+    let found = kronrod::estimate(ends, |k| values[k]);
+    [found.integral, found.error]
 }
 
 /// 1 − cos^l ψ, without a difference where ψ is small: with s = 1 − cos ψ it is s (1 + cos ψ + … + cos^(l−1) ψ).
@@ -274,7 +258,8 @@ pub fn collision_integral(
     let factorial: f64 = (1..=s + 1).map(f64::from).product();
     let mut done: Vec<f64> = Vec::new();
     for round in 0..MOST_ROUNDS {
-        let points: Vec<f64> = pending.iter().flat_map(|ends| (0..15).map(|k| point(*ends, k))).collect();
+        let points: Vec<f64> =
+            pending.iter().flat_map(|ends| (0..POINTS).map(|k| kronrod::place(*ends, k))).collect();
         // Energies side by side: each takes its time.
         let values = for_chunks(threads, points.len(), ticker, |at, ticker| {
             let share = Exponential::exp(points[at]);
@@ -282,8 +267,11 @@ pub fn collision_integral(
             let found = transport_to(IN_MEAN, deflector, temperature * share, l, 1, ticker)?;
             Ok(weight * found)
         })?;
-        let found: Vec<[f64; 2]> =
-            pending.iter().zip(values.chunks(15)).map(|(ends, values)| both_rules(*ends, values)).collect();
+        let found: Vec<[f64; 2]> = pending
+            .iter()
+            .zip(values.chunks(POINTS))
+            .map(|(ends, values)| both_rules(*ends, values))
+            .collect();
         let whole: f64 = done.iter().sum::<f64>() + found.iter().map(|[value, _]| value).sum::<f64>();
         let mut next = Vec::new();
         for (ends, [value, off]) in pending.iter().zip(&found) {

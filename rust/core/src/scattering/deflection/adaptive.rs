@@ -3,32 +3,19 @@
 //!
 //! The one idea: intervals in w, r = r₀ cosh w, ending wherever h is stationary or V has an edge, so that none hides a
 //! peak; the one with the largest error is halved until all are within the tolerance. Near w = 0, where V(r₀) − V(r)
-//! would cancel, it is the mean of the force in between. Gauss–Kronrod rules of 7 and 15 points: R. Piessens et al.,
-//! *QUADPACK* (1983).
+//! would cancel, it is the mean of the force in between.
 
 use super::comparison::Comparison;
 use super::nodes::{Node, sinh};
 use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
 use crate::numerics::lanes::{Lanes, WIDTH};
+use crate::scattering::kronrod;
 
-/// Places of the rule of 15 points, of those above 0, with their weights there and in the rule of 7.
-pub(in crate::scattering) const RULE: [[f64; 3]; 8] = [
-    [0.991_455_371_120_812_6, 0.022_935_322_010_529_224, 0.0],
-    [0.949_107_912_342_758_5, 0.063_092_092_629_978_55, 0.129_484_966_168_869_7],
-    [0.864_864_423_359_769_1, 0.104_790_010_322_250_18, 0.0],
-    [0.741_531_185_599_394_4, 0.140_653_259_715_525_92, 0.279_705_391_489_276_67],
-    [0.586_087_235_467_691_1, 0.169_004_726_639_267_9, 0.0],
-    [0.405_845_151_377_397_2, 0.190_350_578_064_785_4, 0.381_830_050_505_118_9],
-    [0.207_784_955_007_898_47, 0.204_432_940_075_298_9, 0.0],
-    [0.0, 0.209_482_141_084_727_83, 0.417_959_183_673_469_4],
-];
 /// Points of a rule, filled up to whole rows.
 const POINTS: usize = 2 * WIDTH;
 /// Intervals at most.
 const MOST: usize = 600;
-/// Where both rules agree to this part, the rest is rounding, and halving would find more of it.
-const AGREED: f64 = 16.0 * f64::EPSILON;
 /// What is asked of ψ, of dψ/db and of the delay, as parts of the tolerance.
 const LOOSER: [f64; INTEGRALS] = [1.0, 10.0, 100.0];
 /// An interval is no longer than this at first.
@@ -46,8 +33,6 @@ const MEAN: [[f64; 2]; 4] = [
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
-/// Numbers below this have not all their digits.
-const LEAST: f64 = f64::MIN_POSITIVE / f64::EPSILON;
 /// Where it is at most.
 const FARTHEST: f64 = 750.0;
 
@@ -130,8 +115,7 @@ pub(super) fn integrate(
     }
     loop {
         let (sum, error, size) = totals(&intervals);
-        // What is next to nothing has not its digits.
-        let share = |i: usize| if size[i] > LEAST { error[i] / size[i] } else { 0.0 };
+        let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
         let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
@@ -164,35 +148,16 @@ fn totals(intervals: &[Interval]) -> ([f64; INTEGRALS], [f64; INTEGRALS], [f64; 
 
 /// Both rules over one interval.
 fn rule(profile: &Profile, pair: &Pair, integrand: Integrand, ends: [f64; 2]) -> Interval {
-    let (middle, half) = (0.5 * (ends[0] + ends[1]), 0.5 * (ends[1] - ends[0]));
-    let mut places = [middle; POINTS];
-    for (k, [x, ..]) in RULE.iter().enumerate() {
-        places[k] = half.mul_add(-x, middle);
-        places[POINTS - 2 - k] = half.mul_add(*x, middle);
-    }
+    // One more, to fill the row.
+    let places = core::array::from_fn(|k| kronrod::place(ends, k.min(kronrod::POINTS - 1)));
     let values = integrands(profile, pair, integrand, &places);
     let mut interval =
         Interval { ends, integral: [0.0; INTEGRALS], error: [0.0; INTEGRALS], size: [0.0; INTEGRALS] };
     for i in 0..INTEGRALS {
-        let at = |k: usize| if k == 7 { values[7][i] } else { values[k][i] + values[POINTS - 2 - k][i] };
-        let size = |k: usize| {
-            if k == 7 { values[7][i].abs() } else { values[k][i].abs() + values[POINTS - 2 - k][i].abs() }
-        };
-        let weighed = |column: usize| (0..8).map(|k| RULE[k][column] * at(k)).sum::<f64>();
-        let (fifteen, seven) = (weighed(1), weighed(2));
-        interval.integral[i] = half * fifteen;
-        interval.size[i] = half * (0..8).map(|k| RULE[k][1] * size(k)).sum::<f64>();
-        let off = half * (fifteen - seven).abs();
-        let share = off / interval.size[i];
-        // The rule of 15 points is that much better than that of 7.
-        interval.error[i] = if off <= AGREED * interval.size[i] {
-            0.0
-        } else {
-            interval.size[i] * {
-                let grown = 200.0 * share;
-                (grown * grown.sqrt()).min(share)
-            }
-        };
+        let found = kronrod::estimate(ends, |k| values[k][i]);
+        interval.integral[i] = found.integral;
+        interval.error[i] = found.error;
+        interval.size[i] = found.size;
     }
     interval
 }
@@ -298,7 +263,7 @@ fn farthest(profile: &Profile, pair: &Pair, integrand: Integrand, rest: f64) -> 
         } else if !comparison.strong {
             scale = scale.max((u * profile.value(r) / pair.energy).abs().min(1.0));
         }
-        if profile.beyond(r, 1) / pair.energy * u <= rest * scale && left * u * u * u <= rest * scale {
+        if profile.grid().beyond(r, 1) / pair.energy * u <= rest * scale && left * u * u * u <= rest * scale {
             return w;
         }
         w += 0.5;

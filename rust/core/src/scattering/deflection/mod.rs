@@ -8,10 +8,11 @@
 //! Sources: Landau & Lifshitz, *Mechanics*, §18; L. N. Trefethen, J. A. C. Weideman, SIAM Rev. 56 (2014) 385.
 
 mod adaptive;
-pub(super) use adaptive::RULE as KRONROD;
 mod closed;
 mod comparison;
+mod grid;
 mod nodes;
+mod pack;
 mod pairs;
 mod profile;
 mod refine;
@@ -33,7 +34,7 @@ pub const TOLERANCE: f64 = 1e-12;
 /// What can be asked for.
 pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-13..=1e-3;
 /// Pairs of a chunk.
-const CHUNK: usize = 256;
+const CHUNK: usize = 512;
 /// What became of a projectile.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Status {
@@ -224,6 +225,3 @@ impl Deflector {
         Ok(found)
     }
 }
-
-#[cfg(test)]
-mod tests;

@@ -3,9 +3,10 @@
 use super::adaptive::{self, Integrand, Pair};
 use super::comparison::{self, Comparison, STRONG};
 use super::nodes::Ladder;
+use super::pack::Pack;
 use super::profile::{Center, Profile};
 use super::refine::Turned;
-use super::trapezoid::{self, INTEGRALS, Pack, Sums, Work};
+use super::trapezoid::{self, INTEGRALS, Sums, Work};
 use super::turning::{self, Critical, Way};
 use super::{Deflection, Status};
 use crate::Result;
@@ -25,7 +26,7 @@ const CANCELLED: f64 = 0.05;
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
 const TINY: f64 = 1.0 / (1 << 26) as f64;
 /// What nodes leave out, as a part of the tolerance.
-const LEFT_OUT: f64 = 0.02;
+const LEFT_OUT: f64 = 0.05;
 
 /// Pairs by quadrature.
 pub(super) struct Quadrature<'a> {
@@ -107,15 +108,15 @@ impl Quadrature<'_> {
                 energies[at] = profile.take_energy(energy[place]);
                 impacts[at] = profile.take_length(b[place]);
             }
-            let cells = profile.places(&energies, &impacts);
+            let cells = profile.grid().places(&energies, &impacts);
             for at in 0..WIDTH.min(energy.len() - from) {
                 let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
                 let next = turning.places.len();
                 if cells[at] > 0 && b > 0.0 && e >= simple_from {
-                    let cell = profile.cell(cells[at]);
+                    let cell = profile.grid().cell(cells[at]);
                     profile.check_start(e, b, cell)?;
-                    turned.put(next, e, b, cell, profile.around(cells[at]));
+                    turned.put(next, e, b, cell, profile.grid().around(cells[at]));
                     found[place].turning_points = 1;
                     turning.places.push(place as u16);
                     turning.nearness.push(f64::INFINITY);
@@ -130,7 +131,7 @@ impl Quadrature<'_> {
                 }
                 if let Way::Turns { bracket, barriers } = way {
                     profile.check_start(e, b, bracket)?;
-                    turned.put(next, e, b, bracket, profile.ends(bracket));
+                    turned.put(next, e, b, bracket, profile.grid().ends(bracket));
                     turning.places.push(place as u16);
                     turning.nearness.push(turning::nearness(profile, e, b, &barriers));
                     if !barriers.is_empty() {
@@ -229,7 +230,7 @@ impl Quadrature<'_> {
                 (scale[at], if square <= 1.0 { weak } else { bound })
             };
             let most = rest * if self.all { scale * r * r } else { scale };
-            let faint = profile.faint(most, self.all);
+            let faint = profile.grid().faint(most, self.all);
             reaches.push(ladder.count((faint * inverse[at]).max(series)));
         }
         reaches

@@ -2,28 +2,15 @@
 //!
 //! The one idea: the turning points of all energies E and impact parameters b are where h(r) = r²(1 − V/E) passes b²,
 //! and h is stationary where U(r) = V + r V′/2 passes E. U depends on neither, so between its extrema, found once, every
-//! question has one bracketed answer. The grid has sixteen equal distances to an octave, so that the place of a distance
-//! is read off its bits.
+//! question has one bracketed answer.
 
+use super::grid::{Grid, POINTS, place, radius};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
 use crate::words::number;
 use crate::{Error, Result};
 use std::sync::Arc;
-
-/// Octaves of the grid on either side of the unit of length.
-const OCTAVES: usize = 64;
-/// Distances to an octave, as bits of a number.
-const DIVISIONS: u32 = 4;
-/// Distances of the grid.
-const POINTS: usize = (2 * OCTAVES) << DIVISIONS;
-/// The bits of a distance before those of its place in a cell of the grid.
-const SHIFT: u32 = 52 - DIVISIONS;
-/// Cells in which most turning points are found, beyond b and where V passes E.
-const NEAR_CELLS: usize = 16;
-/// The first distance, as such bits.
-const BASE: u64 = (1023 - OCTAVES as u64) << DIVISIONS;
 
 /// What is left of a force at the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,18 +30,8 @@ pub(super) struct Profile {
     /// Exponents of the units of length and energy.
     length: i32,
     energy: i32,
-    /// V and −r dV/dr on the grid.
-    value: Vec<f64>,
-    pull: Vec<f64>,
-    /// The largest |V| and |r dV/dr| from there on.
-    beyond: Vec<[f64; 2]>,
-    /// For every power of two the place from which on |V|/r, or |r² dV/dr|, is at most that.
-    faint: [Vec<u16>; 2],
-    /// For every half octave of energies the first place at which V is not more than what is in it.
-    climbed: Vec<u16>,
+    grid: Grid,
     repels: bool,
-    /// The part of the grid where there is a potential.
-    inside: [usize; 2],
     /// Where it begins and ends.
     domain: [f64; 2],
     /// Where it is not smooth.
@@ -68,18 +45,6 @@ pub(super) struct Profile {
     endless_delay: f64,
 }
 
-/// The distance of a place of the grid.
-#[inline(always)]
-fn radius(place: usize) -> f64 {
-    f64::from_bits((BASE + place as u64) << SHIFT)
-}
-
-/// The place of the grid at or before a distance.
-#[inline(always)]
-fn place(r: f64) -> usize {
-    ((r.to_bits() >> SHIFT).saturating_sub(BASE) as usize).min(POINTS - 1)
-}
-
 impl Profile {
     pub(super) fn new(potential: &Arc<dyn Potential>) -> Self {
         let length = own_length(potential.as_ref());
@@ -89,18 +54,25 @@ impl Profile {
             if domain[0] > 0.0 { place(domain[0]) + 1 } else { 0 },
             if domain[1] < f64::INFINITY { place(domain[1]) } else { POINTS - 1 },
         ];
-        let breaks = scaled.breaks().into_iter().filter(|r| *r > 0.0).collect();
+        let breaks: Vec<f64> = scaled.breaks().into_iter().filter(|r| *r > 0.0).collect();
+        let rows: Vec<Lanes> = (0..POINTS / WIDTH)
+            .map(|row| Lanes(core::array::from_fn(|lane| radius(row * WIDTH + lane))))
+            .collect();
+        let (mut value, mut force) = (rows.clone(), rows.clone());
+        scaled.all_rows(&rows, &mut value, &mut force, &mut []);
+        for out in [&mut value, &mut force] {
+            end(domain[1], &rows, out);
+        }
+        let force = as_numbers(&force);
+        let pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
+        let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside);
+        let repels = breaks.is_empty() && grid.repels;
         let mut made = Self {
             potential: scaled,
             length,
             energy,
-            value: Vec::new(),
-            pull: Vec::new(),
-            faint: [Vec::new(), Vec::new()],
-            climbed: Vec::new(),
-            repels: false,
-            beyond: vec![[0.0; 2]; POINTS + 1],
-            inside,
+            grid,
+            repels,
             domain,
             breaks,
             extrema: Vec::new(),
@@ -112,32 +84,10 @@ impl Profile {
         if domain[1] < f64::INFINITY {
             made.last_value = made.value(domain[1]);
         }
-        let rows: Vec<Lanes> = (0..POINTS / WIDTH)
-            .map(|row| Lanes(core::array::from_fn(|lane| radius(row * WIDTH + lane))))
-            .collect();
-        let (mut value, mut force) = (rows.clone(), rows.clone());
-        made.rows(&rows, &mut value, &mut force, &mut []);
-        made.value = as_numbers(&value).to_vec();
-        let force = as_numbers(&force);
-        made.pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
-        let mut tail = [vec![0.0; POINTS + 1], vec![0.0; POINTS + 1]];
-        for at in (0..POINTS).rev() {
-            let [v, f] = made.beyond[at + 1];
-            let larger = |old: f64, new: f64| if new.abs() > old { new.abs() } else { old };
-            made.beyond[at] = [larger(v, made.value[at]), larger(f, made.pull[at])];
-            let [value, force] = made.beyond[at];
-            tail[0][at] = value / radius(at);
-            tail[1][at] = larger(tail[1][at + 1], force * radius(at));
-        }
-        made.faint = tail.map(|tail| falls_to::<52>(&tail[..POINTS], 0));
-        // One more, as energies are up to twice the root of two that number.
-        made.climbed = falls_to::<51>(&made.value, inside[0]);
-        made.climbed.rotate_left(1);
-        made.repels = made.breaks.is_empty() && force[inside[0]..=inside[1]].iter().all(|f| *f >= 0.0);
-        made.extrema = made.find_extrema(force);
-        made.center = made.find_center(force);
-        let (v, slope) = (made.value[POINTS - 1], radius(POINTS - 1) * force[POINTS - 1]);
-        if v != 0.0 && slope / v < 1.0 + 1e-9 {
+        made.extrema = made.find_extrema();
+        made.center = made.find_center();
+        let (v, pull) = (made.grid.value[POINTS - 1], made.grid.pull[POINTS - 1]);
+        if v != 0.0 && pull / v < 1.0 + 1e-9 {
             made.endless_delay = if v > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
         }
         // Where everything repels, U passes E only behind V = E.
@@ -145,6 +95,10 @@ impl Profile {
             made.one_turning_point_from = made.extrema.iter().fold(0.0, |most, [_, u]| u.max(most));
         }
         made
+    }
+    /// What it is on a grid.
+    pub(super) fn grid(&self) -> &Grid {
+        &self.grid
     }
     /// A length of these units, from one of the caller's.
     #[inline]
@@ -171,12 +125,12 @@ impl Profile {
     /// V at rows of distances; none beyond its range.
     pub(super) fn values(&self, r: &[Lanes], value: &mut [Lanes]) {
         self.potential.value_rows(r, value);
-        self.end(r, value);
+        end(self.domain[1], r, value);
     }
     /// −dV/dr at rows of distances; none beyond its range.
     pub(super) fn forces(&self, r: &[Lanes], force: &mut [Lanes]) {
         self.potential.force_rows(r, force);
-        self.end(r, force);
+        end(self.domain[1], r, force);
     }
     /// V, −dV/dr and, as far as there is room, d²V/dr² at rows of distances; none beyond its range.
     pub(super) fn rows(
@@ -188,22 +142,12 @@ impl Profile {
     ) {
         self.potential.all_rows(r, value, force, curvature);
         for out in [value, force, curvature] {
-            self.end(r, out);
+            end(self.domain[1], r, out);
         }
     }
     /// Whether it repels everywhere, and is smooth.
     pub(super) fn repels(&self) -> bool {
         self.repels
-    }
-    fn end(&self, r: &[Lanes], out: &mut [Lanes]) {
-        if self.domain[1] == f64::INFINITY {
-            return;
-        }
-        for (r, out) in as_numbers(r).iter().zip(as_numbers_mut(out)) {
-            if *r > self.domain[1] {
-                *out = 0.0;
-            }
-        }
     }
     /// V at one distance.
     pub(super) fn value(&self, r: f64) -> f64 {
@@ -217,11 +161,6 @@ impl Profile {
         self.forces(&[Lanes([r; WIDTH])], &mut force);
         force[0].0[0]
     }
-    /// The largest |V| (0) or |r dV/dr| (1) at this distance and beyond, or a little more.
-    pub(super) fn beyond(&self, r: f64, which: usize) -> f64 {
-        self.beyond[if r < radius(0) { 0 } else { place(r) }][which]
-    }
-
     /// Beyond which V is zero, in the caller's units.
     pub(super) fn range(&self) -> f64 {
         let edge = self.breaks.last().copied().filter(|r| self.value(r.next_up()) == 0.0);
@@ -234,8 +173,8 @@ impl Profile {
     }
     /// Whether V goes to zero far out.
     pub(super) fn vanishes(&self) -> bool {
-        let far = self.value[POINTS - 1].abs();
-        far == 0.0 || far < 0.99 * self.beyond[POINTS / 2][0]
+        let far = self.grid.value[POINTS - 1].abs();
+        far == 0.0 || far < 0.99 * self.grid.beyond(1.0, 0)
     }
     /// What a delay is where V falls no faster than 1/r: never over.
     pub(super) fn endless_delay(&self) -> f64 {
@@ -307,7 +246,7 @@ impl Profile {
     }
     /// Two distances with one turning point between them, of an h that rises from one to the other through b².
     pub(super) fn bracket(&self, energy: f64, b: f64, [mut low, mut high]: [f64; 2]) -> Option<[f64; 2]> {
-        let [first, last] = self.inside;
+        let [first, last] = self.grid.inside;
         let (mut from, mut to) = (first.max(place(low) + 1), last.min(place(high)) + 1);
         if low < radius(0) {
             from = first;
@@ -315,7 +254,7 @@ impl Profile {
         // The first place from which on h is at least b²; as a rule the sixteenth of an octave is found by halving.
         while from < to {
             let middle = usize::midpoint(from, to);
-            if Self::reached(radius(middle), self.value[middle], energy, b) {
+            if Self::reached(radius(middle), self.grid.value[middle], energy, b) {
                 high = radius(middle);
                 to = middle;
             } else {
@@ -349,67 +288,10 @@ impl Profile {
         (low > 0.0 && high < f64::INFINITY).then_some([low, high])
     }
 
-    /// The places of the grid at which h first comes to b², of pairs whose h rises wherever it is positive; zero for those
-    /// that turn beyond the grid.
-    #[inline(always)]
-    pub(super) fn places(&self, energy: &[f64; WIDTH], b: &[f64; WIDTH]) -> [usize; WIDTH] {
-        let [first, last] = self.inside;
-        let (mut at, mut inverse, mut square) = ([first; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        let short = |inverse: f64, square: f64, at: usize| {
-            let r = radius(at);
-            let h = (1.0 - self.value[at & (POINTS - 1)] * inverse) * (r * r);
-            (usize::from(h >= square) ^ 1) & usize::from(at <= last)
-        };
-        let mut near = 1;
-        for lane in 0..WIDTH {
-            inverse[lane] = 1.0 / energy[lane];
-            square[lane] = b[lane] * b[lane];
-            // Where V > E nothing comes, and where it repels nothing comes nearer than b.
-            at[lane] = usize::from(self.climbed[(energy[lane].to_bits() >> 51) as usize & 4095]);
-            if self.repels {
-                at[lane] = at[lane].max(place(b[lane])).min(last);
-            }
-            near &= 1 - short(inverse[lane], square[lane], at[lane] + NEAR_CELLS - 1);
-        }
-        let mut step = if near == 1 { NEAR_CELLS / 2 } else { POINTS / 2 };
-        while step > 0 {
-            for lane in 0..WIDTH {
-                at[lane] += step * short(inverse[lane], square[lane], at[lane] + step - 1);
-            }
-            step /= 2;
-        }
-        at.map(|at| if at > first && at <= last { at } else { 0 })
-    }
-    /// The cell of the grid that ends at a place.
-    #[inline(always)]
-    pub(super) fn cell(&self, place: usize) -> [f64; 2] {
-        [radius(place - 1), radius(place)]
-    }
-    /// V and −r dV/dr at both ends of the cell that ends at a place.
-    #[inline(always)]
-    pub(super) fn around(&self, place: usize) -> [f64; 4] {
-        [self.value[place - 1], self.value[place], self.pull[place - 1], self.pull[place]]
-    }
-    /// V and −r dV/dr at both ends of a cell of the grid; NaN of what is none.
-    #[inline]
-    pub(super) fn ends(&self, [low, high]: [f64; 2]) -> [f64; 4] {
-        let (from, to) = (place(low), place(high));
-        if radius(from) != low || radius(to) != high || to != from + 1 {
-            return [f64::NAN; 4];
-        }
-        self.around(to)
-    }
-    /// A distance of the grid from which on |V|/r is at most that, or |r² dV/dr| if `all`; infinite if it is nowhere.
-    #[inline(always)]
-    pub(super) fn faint(&self, most: f64, all: bool) -> f64 {
-        let at = usize::from(self.faint[usize::from(all)][(most.to_bits() >> 52) as usize & 2047]);
-        if at < POINTS { radius(at) } else { f64::INFINITY }
-    }
-
     /// The extrema of U on the grid, each refined, and the ends.
-    fn find_extrema(&self, force: &[f64]) -> Vec<[f64; 2]> {
-        let [first, last] = self.inside;
-        let at = |i: usize| [radius(i), (-0.5 * radius(i)).mul_add(force[i], self.value[i])];
+    fn find_extrema(&self) -> Vec<[f64; 2]> {
+        let [first, last] = self.grid.inside;
+        let at = |i: usize| [radius(i), (-0.5_f64).mul_add(self.grid.pull[i], self.grid.value[i])];
         let places: Vec<usize> = (first..=last).filter(|i| at(*i)[1].is_finite()).collect();
         let (Some(&low), Some(&high)) = (places.first(), places.last()) else { return Vec::new() };
         let mut found = vec![at(low)];
@@ -425,9 +307,9 @@ impl Profile {
         found
     }
     /// How V goes on inward of the grid.
-    fn find_center(&self, force: &[f64]) -> Center {
-        let [first, _] = self.inside;
-        let (v, slope) = (self.value[first], radius(first) * force[first]);
+    fn find_center(&self) -> Center {
+        let [first, _] = self.grid.inside;
+        let (v, slope) = (self.grid.value[first], self.grid.pull[first]);
         if !self.potential.singular() || self.domain[0] > 0.0 {
             return if self.domain[0] > 0.0 { Center::Repulsive } else { Center::Open(self.value(0.0)) };
         }
@@ -435,18 +317,16 @@ impl Profile {
     }
 }
 
-/// For every 2^`SHIFT`-th number, by its bits, the first place at which numbers that fall are at most that.
-fn falls_to<const SHIFT: u32>(numbers: &[f64], least: usize) -> Vec<u16> {
-    let mut at = numbers.len();
-    let levels = 0..1_u64 << (63 - SHIFT);
-    let place = |level: u64| {
-        let most = f64::from_bits(level << SHIFT);
-        while at > least && numbers[at - 1] <= most {
-            at -= 1;
+/// None beyond the last distance.
+fn end(last: f64, r: &[Lanes], out: &mut [Lanes]) {
+    if last == f64::INFINITY {
+        return;
+    }
+    for (r, out) in as_numbers(r).iter().zip(as_numbers_mut(out)) {
+        if *r > last {
+            *out = 0.0;
         }
-        at as u16
-    };
-    levels.map(place).collect()
+    }
 }
 
 trait Rounded {

@@ -1,10 +1,10 @@
-//! The rules of the quadrature by themselves; deflections are checked in `tests/scattering`.
+//! Both rules by themselves.
 
-use super::KRONROD;
+use super::RULE;
 
 /// ∫₋₁¹ xⁿ dx by the weights of a column.
 fn moment(column: usize, power: i32) -> f64 {
-    KRONROD.iter().map(|row| row[column] * row[0].powi(power) * if row[0] == 0.0 { 1.0 } else { 2.0 }).sum()
+    RULE.iter().map(|row| row[column] * row[0].powi(power) * if row[0] == 0.0 { 1.0 } else { 2.0 }).sum()
 }
 
 /// 15 points are exact to degree 22, and the seven among them to degree 13; measured 3e-16.
