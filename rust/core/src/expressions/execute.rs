@@ -290,6 +290,7 @@ fn lanes_body<V: Vector8 + Scalar>(code: &Code, part: Part, registers: &mut [Lan
 }
 
 #[inline(always)]
+#[expect(clippy::extra_unused_type_parameters, reason = "the tier gives its instructions, not its lanes")]
 fn one_body<V: Vector8>(code: &Code, part: Part, registers: &mut [f64]) {
     execute::<f64, 1>(code, part, registers);
 }

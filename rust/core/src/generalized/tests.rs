@@ -72,14 +72,15 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
 
 #[test]
 fn trajectories_are_those_of_two_hundred_bits() {
-    let cases: [(Model, Vec<f64>, Vec<f64>, f64, Vec<f64>); 2] = [
+    type Case = (Model, Vec<f64>, Vec<f64>, f64, Vec<f64>);
+    let cases: [Case; 2] = [
         (
             henon_heiles(),
             vec![0.1, 0.0, 0.0, 0.5],
             vec![],
             100.0,
             vec![
-                -4.019_423_787_606_882_8e-2,
+                -4.019_423_787_606_883e-2,
                 6.790_169_217_720_216e-1,
                 3.845_092_895_185_983e-2,
                 4.859_483_155_300_364e-2,
@@ -92,9 +93,9 @@ fn trajectories_are_those_of_two_hundred_bits() {
             10.0,
             vec![
                 -1.212_015_956_120_125_6e-2,
-                -1.378_120_270_758_944_2e-2,
+                -1.378_120_270_758_944_1e-2,
                 9.180_327_218_723_687e-1,
-                1.850_548_009_466_752_5,
+                1.850_548_009_466_752_6,
             ],
         ),
     ];
