@@ -44,7 +44,7 @@ def chain_heyoka(n: int):
         height = height + hy.cos(angle)
         kinetic = kinetic + 0.5 * (vx * vx + vy * vy)
         potential = potential - 9.81 * height
-    return hy.model if False else hy.lagrangian(kinetic - potential, q, v), q, v
+    return hy.lagrangian(kinetic - potential, q, v), q, v
 
 
 def systems() -> dict[str, tuple]:
@@ -115,8 +115,8 @@ def single() -> None:
             reference = system.run(end, rtol=1e-14, max_step=0.02)._states[-1]
         errors = [np.abs(state - reference).max() for state in (out._states[-1], integrator.state)]
         print(
-            f"{name:<32} {1e6 * ours:8.0f} µs {errors[0]:9.1e} {1e6 * theirs:8.0f} µs {errors[1]:9.1e} {theirs / ours:6.2f}"
-            f"   {out.steps} steps, {out.evaluations} evaluations"
+            f"{name:<32} {1e6 * ours:8.0f} µs {errors[0]:9.1e} {1e6 * theirs:8.0f} µs {errors[1]:9.1e} "
+            f"{theirs / ours:6.2f}   {out.steps} steps, {out.evaluations} evaluations"
         )
 
 
@@ -133,7 +133,7 @@ def ensembles(members: int) -> None:
         n = len(system.coordinates)
         many = system._ensemble(starts[:, :n], starts[:, n:], None)
         ours = best(lambda many=many, end=end: many.run(end, threads=1), 2)
-        integrator = hy.taylor_adaptive_batch(equations(), np.ascontiguousarray(starts[:8].T), batch_size=8)
+        integrator = hy.taylor_adaptive_batch(equations(), np.ascontiguousarray(starts[:8].T))
 
         def theirs_once(integrator=integrator, starts=starts, end=end) -> None:
             def begin(copy, i):
