@@ -274,6 +274,7 @@ def test_sums_that_agree_by_accident_are_not_believed() -> None:
         (("Yukawa", -1.0, 1.0), 0.00015076267749275998, 0.0012526956038832271, 1e-12),
         # V at r₀ changes 2e5 times as fast as r₀, so it knows less of the angle than b/r₀.
         (("LennardJones", 1.0, 1.0), 0.00011298687753427976, 0.7842680273714918, 1e-12),
+        (("Morse", 5.0, 8.0, 3.0), 0.00017821548388130616, 4.846253152347775, 1e-12),
         # Singularities that are near, but weak.
         (("Morse", 1.0, 1.3, 1.5), 0.0013525420646856568, 7.402719865396259, 1e-12),
     ],

@@ -185,14 +185,19 @@ fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize) {
 fn scale<V: Vector8>(turned: &mut Turned) {
     for row in 0..turned.r.len() {
         let (energy, r) = (V::load(turned.energy[row]), V::load(turned.r[row]));
-        let value = V::load(turned.value[row]) / energy;
         let inverse = V::one() / r;
+        let root = V::load(turned.b[row]) / r;
+        let force = r * V::load(turned.force[row]) / energy;
+        // Of r₀ rounded V knows less where it is steep than b/r₀, and at the turning point V/E is 1 − (b/r₀)².
+        let turned_back = (V::one() - root) * (V::one() + root);
+        let steep = V::one().less(force.abs());
+        let value = V::select(steep, turned_back, V::load(turned.value[row]) / energy);
         turned.value[row] = value.store();
+        turned.force[row] = force.store();
+        turned.root[row] = root.store();
         turned.inverse[row] = inverse.store();
         turned.scale[row] = (energy * value.abs().min(V::splat(0.5)) * inverse).store();
-        turned.force[row] = (r * V::load(turned.force[row]) / energy).store();
         turned.curvature[row] = (r * r * V::load(turned.curvature[row]) / energy).store();
-        turned.root[row] = (V::load(turned.b[row]) / r).store();
     }
 }
 
