@@ -2,8 +2,8 @@
 
     python generalized.py [--quick]
 
-Rows: one trajectory of each kind; ensembles; the time from an expression to its first step. heyoka's disk cache is off, and
-its compilation is not counted but where that is the row. Errors are against states of 25 and more digits.
+Rows: one trajectory of each kind; ensembles; the time from an expression to its first step. heyoka's disk cache is off,
+and its compilation is not counted but where that is the row. Errors are against states of 25 and more digits.
 """
 
 from __future__ import annotations
