@@ -21,6 +21,8 @@ const ROUND_OFF: f64 = 1e-13;
 const STAGNATION: f64 = 1e-9;
 /// What is left of a size a step later: a motion that stops at its turning points is no slow one.
 const FADING: f64 = 0.95;
+/// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
+const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
 const LEAST_SCALE: f64 = 1e-8;
 
@@ -124,7 +126,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
     let (h, h2) = (V::splat(*h), V::splat(*h * *h));
     let passed = V::load(table.c) * h;
     registers[code.variables()] = (passed + V::splat(*t)).store();
-    let mut last = f64::INFINITY;
+    let (mut last, mut least, mut in_vain) = (f64::INFINITY, f64::INFINITY, 0);
     for iteration in 0..MOST_ITERATIONS {
         let mut change = V::zero();
         for i in 0..evaluated {
@@ -144,13 +146,15 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
         let change = largest(change.store());
         if iteration > 0 {
             let stands = change >= last;
+            in_vain = if change < least { 0 } else { in_vain + 1 };
+            least = if change < least { change } else { least };
             if change == 0.0
                 || (stands && change < ROUND_OFF)
-                || (stands && iteration > 12 && change < STAGNATION)
+                || (in_vain == NO_LONGER_FALLING && change < STAGNATION)
             {
                 return Iterated { converged: true, evaluations: iteration };
             }
-            if !change.is_finite() || (stands && iteration > 20) {
+            if !change.is_finite() || in_vain == NO_LONGER_FALLING {
                 return Iterated { converged: false, evaluations: iteration };
             }
         }
