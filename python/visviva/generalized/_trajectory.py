@@ -144,7 +144,9 @@ class GeneralizedTrajectory:
         return self.system._at(last[:n], last[n:], t0=float(self.t[-1]))
 
     def conservation(self) -> dict[str, float]:
-        """The largest relative change of what is conserved; of what is zero, the change itself.
+        """The largest change of what is conserved, relative to it or, where that is larger, to what it is a sum of.
+
+        An energy near zero is the difference of others: its changes are relative to Σ p q̇, twice the kinetic one.
 
         Returns
         -------
@@ -157,13 +159,18 @@ class GeneralizedTrajectory:
         >>> sorted(changes), max(changes.values()) < 1e-13
         (['energy', 'momentum of phi'], True)
         """
-        changes = {}
+        changes: dict[str, float] = {}
+        if not len(self):
+            return changes
+        moving = float(np.abs((self.momentum * self.velocity).sum(axis=1)).max())
         for name in self.system.conserved:
             if name == "energy":
-                values = self.energy
+                values, whole = self.energy, moving
             else:
-                values = self.momentum[:, self.system.coordinates.index(name.removeprefix("momentum of "))]
-            scale = float(np.abs(values).max()) if len(values) else 0.0
+                index = self.system.coordinates.index(name.removeprefix("momentum of "))
+                values, speed = self.momentum[:, index], float(np.abs(self.velocity[:, index]).max())
+                whole = moving / speed if speed > 0.0 else 0.0
+            scale = max(float(np.abs(values).max()), whole)
             changes[name] = float(np.ptp(values)) / scale if scale > 0.0 else 0.0
         return changes
 
