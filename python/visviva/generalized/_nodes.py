@@ -5,6 +5,7 @@ A node is ``(operation, arguments, value)``, its arguments the numbers of nodes 
 
 from __future__ import annotations
 
+from inspect import signature
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
@@ -12,9 +13,9 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
-__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes"]
+__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "check_call", "recorded"]
 
 Node: TypeAlias = tuple[str, list[int], float]
 
@@ -161,6 +162,18 @@ def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     except (TypeError, ValueError):
         raise InvalidInput(argument, f"expected one number of the function, got {type(value).__name__}") from None
     return nodes.constant(_finite(argument, number))
+
+
+def check_call(argument: str, function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str]) -> None:
+    """Refuse a function that does not take what it will be called with."""
+    places, keywords = tuple(places), tuple(keywords)
+    try:
+        signature(function).bind(*places, **dict.fromkeys(keywords))
+    except TypeError as error:
+        called = ", ".join([*places, *(f"{name}=" for name in keywords)])
+        raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
+    except ValueError:  # one that does not tell what it takes
+        pass
 
 
 def _finite(argument: str, number: float) -> float:

@@ -4,12 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
-from inspect import signature
 from typing import Any
 
 from visviva._arrays import number
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import Expression, Nodes, recorded
+from visviva.generalized._nodes import Expression, Nodes, check_call, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 __all__ = ["Source", "described"]
@@ -179,13 +178,7 @@ def _calls(
         first = [expression("variable", float(i)) for i in range(n)]
         second = [expression("variable", float(n + i)) for i in range(n)]
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
-        try:
-            signature(function).bind(first, second, None, **values)
-        except TypeError as error:
-            called = ", ".join(["position", second_name, "t", *(f"{name}=" for name in parameters)])
-            raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
-        except ValueError:  # one that does not tell what it takes
-            pass
+        check_call(argument, function, ("position", second_name, "t"), parameters)
         return recorded(nodes, function(first, second, expression("time"), **values), argument)
 
     return walk

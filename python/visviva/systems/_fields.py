@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized import Hamiltonian, Lagrangian
+from visviva.generalized._nodes import check_call
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping
+    from collections.abc import Callable
 
     from numpy.typing import ArrayLike
 
@@ -120,12 +122,15 @@ def central_force(
     >>> harder.cyclic
     ['phi']
     """
+    if parameters is not None and not isinstance(parameters, Mapping):
+        raise InvalidInput("parameters", f"expected values by name, got {type(parameters).__name__}")
     if potential is None:
         potential, parameters = _kepler, {"k": 1.0, **(parameters or {})}
     if not callable(potential):
         raise InvalidInput("potential", f"expected a function of r, got {type(potential).__name__}")
     if parameters is not None and "m" in parameters:
         raise InvalidInput("parameters", "m is the mass; give it as m, and the potential another name for its own")
+    check_call("potential", potential, ["r"], parameters or {})
     energy = potential
 
     def function(q: Any, v: Any, _: Any, m: Any, **others: Any) -> Any:
