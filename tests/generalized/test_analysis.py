@@ -211,3 +211,29 @@ def test_a_throw_to_a_place() -> None:
     assert thrown.velocity == pytest.approx([3.0, 0.5 + 9.81], rel=1e-13)
     far = vv.systems.double_pendulum(position=[0.1, 0.2], velocity=[0.0, 0.0]).boundary_value(0.7, [0.5, -0.4])
     assert far.run(0.7).position[-1] == pytest.approx([0.5, -0.4], abs=1e-12)
+
+
+def test_a_portrait_shows_separatrix_and_centers() -> None:
+    pendulum = vv.systems.pendulum(g=9.81, l=1.0)
+    ax = pendulum.phase_portrait((-4.0, 4.0), (-8.0, 8.0), points=120)
+    dots = [line for line in ax.lines if line.get_marker() == "o"]
+    # The center; the two tops are crossings of separatrices.
+    assert len(dots) == 1
+    assert np.allclose(dots[0].get_xydata(), [[0.0, 0.0]])
+    assert ax.get_xlabel() == "theta"
+    assert ax.get_ylabel() == "momentum of theta"
+    hamiltonian = pendulum.hamiltonian().phase_portrait((-4.0, 4.0), (-8.0, 8.0), points=60)
+    assert hamiltonian.get_xlabel() == "theta"
+
+
+@pytest.mark.parametrize(
+    ("system", "position", "names"),
+    [
+        (vv.systems.double_pendulum(), (-1.0, 1.0), "one coordinate"),
+        (vv.systems.pendulum(), (1.0, -1.0), "the smaller end first"),
+        (vv.systems.moving_pivot(), (-1.0, 1.0), "one coordinate|conserved"),
+    ],
+)
+def test_portraits_that_cannot_be(system: Any, position: tuple[float, float], names: str) -> None:
+    with pytest.raises(vv.InvalidInput, match=names):
+        system.phase_portrait(position, (-1.0, 1.0))

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
-from visviva._arrays import number
+from visviva._arrays import number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 
 if TYPE_CHECKING:
     import numpy as np
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._analysis import PoincareSection
@@ -93,6 +94,46 @@ class Flow:
         if self._source.kind == "lagrangian" and len(times):
             momentum = self._model.columns(times, states, self._values[None, :])[:, :n]
         return PoincareSection(times, states[:, :n], momentum, self.coordinates)
+
+    def phase_portrait(
+        self: Any,
+        position: tuple[float, float],
+        momentum: tuple[float, float],
+        *,
+        points: int = 300,
+        ax: Axes | None = None,
+    ) -> Axes:
+        """Draw the lines of constant energy of a system of one degree of freedom that conserves it.
+
+        Lines through unstable equilibria, the separatrices, are drawn stronger; stable equilibria are dots.
+
+        Parameters
+        ----------
+        position, momentum : (float, float)
+            What is shown of either; of a Lagrangian ``momentum`` is that of the velocity.
+        points : int
+            Points of the grid along each side.
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        InvalidInput
+            For several coordinates, or an energy that is not conserved.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum().phase_portrait((-6.0, 6.0), (-8.0, 8.0)).get_xlabel()
+        'theta'
+        """
+        from visviva.generalized._portrait import phase_portrait
+
+        return phase_portrait(self, position, momentum, whole_number("points", points, low=8), ax)
 
     def flow_jacobian(self: Any, t: float, *, rtol: float = 1e-12) -> NDArray[np.float64]:
         """Derivatives of the state at a time with respect to the state at the start, by the variational equations.

@@ -1,0 +1,68 @@
+"""Phase portraits: lines of constant energy, evaluated on a grid in one call of the core."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+
+    from visviva.generalized._system import GeneralizedSystem
+
+__all__ = ["phase_portrait"]
+
+#: Lines beside separatrices.
+_LINES = 24
+
+
+def phase_portrait(
+    system: GeneralizedSystem,
+    position: tuple[float, float],
+    momentum: tuple[float, float],
+    points: int,
+    ax: Axes | None,
+) -> Axes:
+    """Draw the portrait of a system of one degree of freedom."""
+    from visviva.plot import axes_or_new
+
+    if len(system.coordinates) != 1:
+        names = list(system.coordinates)
+        raise InvalidInput(
+            "position", f"a portrait is that of one coordinate; there are {names}: see poincare, routhian"
+        )
+    if not system._structure["conserves_energy"]:
+        raise InvalidInput(
+            "position", "a portrait needs energy to be conserved: no time, no dissipation, no further forces"
+        )
+    ranges = [float_array(name, value, (2,)) for name, value in (("position", position), ("momentum", momentum))]
+    for name, value in zip(("position", "momentum"), ranges, strict=True):
+        if not value[0] < value[1]:
+            raise InvalidInput(name, f"expected the smaller end first, got {tuple(value.tolist())}")
+    other: Any = system if system._source.kind == "hamiltonian" else system.hamiltonian()  # type: ignore[attr-defined]
+    q, p = (np.linspace(*value, points) for value in ranges)
+    states = np.stack(np.meshgrid(q, p), axis=-1).reshape(-1, 2)
+    model, values = other._model, other._values[None, :]
+    energy = model.columns(np.full(len(states), system.t0), states, values)[:, 1].reshape(points, points)
+    ax = axes_or_new(ax)
+    finite = energy[np.isfinite(energy)]
+    if finite.size:
+        # As many points between two lines: they are dense where motion is slow.
+        ax.contour(q, p, energy, levels=np.unique(np.quantile(finite, np.linspace(0.0, 1.0, _LINES))), linewidths=0.7)
+    lagrangian: Any = system if system._source.kind == "lagrangian" else system.lagrangian()  # type: ignore[attr-defined]
+    for rest in lagrangian.equilibria(np.linspace(*ranges[0], 64)[:, None]):
+        at_rest = lagrangian.at(position=rest.position, velocity=[0.0])
+        place = (float(rest.position[0]), float(at_rest.momentum[0]))
+        if not (ranges[0][0] <= place[0] <= ranges[0][1] and ranges[1][0] <= place[1] <= ranges[1][1]):
+            continue
+        if rest.stable:
+            ax.plot(*place, "o", color="black", markersize=4)
+        else:
+            ax.contour(q, p, energy, levels=[at_rest.energy], colors="black", linewidths=1.4)
+    ax.set_xlabel(system.coordinates[0])
+    ax.set_ylabel(f"momentum of {system.coordinates[0]}")
+    return ax
