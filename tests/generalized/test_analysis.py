@@ -34,7 +34,7 @@ def test_periods_of_a_pendulum(angle: str) -> None:
 @pytest.mark.parametrize("swing", [1e-8, 1e-6, 1e-4, 1e-2])
 @pytest.mark.parametrize("offset", [0.0, 1e6])
 def test_periods_of_small_swings_have_every_digit(swing: float, offset: float) -> None:
-    """Energies of small swings differ in their last digits; nothing of that is in the period, nor of where V is zero."""
+    """Energies of small swings differ in their last digits; the period knows nothing of that, nor of V = 0."""
     with mpmath.workdps(30):
         k2 = mpmath.sin(mpmath.mpf(swing) / 2) ** 2
         period = 4 * mpmath.ellipk(k2)
