@@ -31,6 +31,24 @@ def test_periods_of_a_pendulum(angle: str) -> None:
         assert middle.period() == pytest.approx(found, rel=1e-13 * conditioning)
 
 
+@pytest.mark.parametrize("swing", [1e-8, 1e-6, 1e-4, 1e-2])
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_periods_of_small_swings_have_every_digit(swing: float, offset: float) -> None:
+    """Energies of small swings differ in their last digits; the period knows nothing of that, nor of V = 0."""
+    with mpmath.workdps(30):
+        k2 = mpmath.sin(mpmath.mpf(swing) / 2) ** 2
+        period = 4 * mpmath.ellipk(k2)
+        action = 8 / mpmath.pi * (mpmath.ellipe(k2) - (1 - k2) * mpmath.ellipk(k2))
+    pendulum = vv.Lagrangian(lambda q, v, _: v[0] ** 2 / 2 + np.cos(q[0]) + offset, ["theta"], position=[swing])
+    assert pendulum.period() == pytest.approx(float(period), rel=4 * EPSILON)
+    assert pendulum.action_variable() == pytest.approx(float(action), rel=16 * EPSILON)
+
+
+def test_a_wide_swing_far_above_zero() -> None:
+    pendulum = vv.Lagrangian(lambda q, v, _: v[0] ** 2 / 2 + np.cos(q[0]) - 1e9, ["theta"], position=[3.0])
+    assert pendulum.period() == pytest.approx(float(KEPT["pendulum_periods"]["3"]), rel=1e-13)
+
+
 @pytest.mark.parametrize("angle", KEPT["pendulum_action"])
 def test_actions_of_a_pendulum(angle: str) -> None:
     found = PENDULUM.at(position=[float(angle)]).action_variable()

@@ -22,6 +22,11 @@ const MOST_STEPS: u32 = 8000;
 const NODES: (usize, usize) = (16, 1 << 20);
 /// Squared cosines below this are near a turning point.
 const NEAR_AN_END: f64 = 0.25;
+/// Where potentials differ by less than this part of them, they are not subtracted.
+const CANCELLATION: f64 = 0.1;
+/// The most panels for the integral of a slope, and how well two of them agree that are exact.
+const PANELS: u32 = 32;
+const EXACT: f64 = 1e-15;
 /// Sums that agree to this are exact.
 const AGREEMENT: f64 = 4e-15;
 
@@ -29,7 +34,9 @@ const AGREEMENT: f64 = 4e-15;
 #[derive(Clone, Debug)]
 pub struct OneFreedom {
     machine: Machine<f64>,
-    energy: f64,
+    /// The kinetic energy at the start, and what the energy would be at rest there.
+    kinetic: f64,
+    at_rest: f64,
     start: f64,
     t: f64,
 }
@@ -66,8 +73,11 @@ impl OneFreedom {
         let (q, _) = model.source.halves();
         let slope = model.source.graph.gradient(model.energy, &q)[0];
         let code: Arc<Code> = Arc::new(model.function(&[model.energy, mass, slope])?);
-        let mut of = Self { machine: Machine::new(code, parameters), energy: 0.0, start: state[0], t };
-        of.energy = of.values(state[0], state[1])[0];
+        let machine = Machine::new(code, parameters);
+        let mut of = Self { machine, kinetic: 0.0, at_rest: 0.0, start: state[0], t };
+        let [at_rest, mass, _] = of.values(state[0], 0.0);
+        of.at_rest = at_rest;
+        of.kinetic = 0.5 * mass * state[1] * state[1];
         Ok(of)
     }
 
@@ -79,7 +89,31 @@ impl OneFreedom {
 
     /// What is left of the energy for motion.
     fn left(&mut self, q: f64) -> f64 {
-        self.energy - self.values(q, 0.0)[0]
+        let at_rest = self.values(q, 0.0)[0];
+        let fallen = self.at_rest - at_rest;
+        if fallen.abs() >= CANCELLATION * self.at_rest.abs() {
+            return self.kinetic + fallen;
+        }
+        // The difference of a short way would have few digits: the integral of the slope has all.
+        let (nodes, weights) = gauss::quadrature();
+        let (mut panels, mut last) = (1, f64::NAN);
+        while panels <= PANELS {
+            let width = (q - self.start) / f64::from(panels);
+            let (mut sum, mut size) = (0.0, 0.0);
+            for panel in 0..panels {
+                for (x, w) in nodes.iter().zip(weights) {
+                    let slope = w * self.values(self.start + (f64::from(panel) + x) * width, 0.0)[2];
+                    sum += slope;
+                    size += slope.abs();
+                }
+            }
+            if (sum * width - last).abs() <= EXACT * size * width.abs() {
+                return self.kinetic - sum * width;
+            }
+            last = sum * width;
+            panels *= 2;
+        }
+        self.kinetic + fallen
     }
 
     /// The first turning point on one side, `None` if there is none within reach.
@@ -143,9 +177,9 @@ impl OneFreedom {
             let (sine, cosine) = angles::sin_cos(phi);
             let square = cosine * cosine;
             let place = middle + half * sine;
-            let [at_rest, mass, _] = self.values(place, 0.0);
+            let mass = self.values(place, 0.0)[1];
             let left = if square > NEAR_AN_END {
-                self.energy - at_rest
+                self.left(place)
             } else {
                 // Next to an end the difference would have lost its digits: it is the slope's integral from there.
                 let far = half * square / (1.0 + sine.abs());
@@ -169,8 +203,9 @@ impl OneFreedom {
     pub fn rotation(&mut self, turn: f64) -> Result<[f64; 2]> {
         let start = self.start;
         let mut of = |phi: f64| {
-            let [at_rest, mass, _] = self.values(start + turn * (0.5 + phi / PI), 0.0);
-            let speed = (2.0 * (self.energy - at_rest) / mass).sqrt();
+            let place = start + turn * (0.5 + phi / PI);
+            let mass = self.values(place, 0.0)[1];
+            let speed = (2.0 * self.left(place) / mass).sqrt();
             [turn.abs() / (PI * speed), turn.abs() / PI * speed * mass]
         };
         let [period, action] = trapezoid(&mut of)?;
