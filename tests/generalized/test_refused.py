@@ -1,6 +1,8 @@
 """What cannot be run is refused before anything runs, by name and with what to do."""
 
+import inspect
 import math
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -84,6 +86,14 @@ REFUSED = [
     (lambda: vv.coordinate(""), "names", "expected the name of a coordinate"),
     (lambda: vv.Hamiltonian(m**2 / 2, [g]), "p", r"expected the momenta, one for each of \[g\]"),
     (lambda: vv.Hamiltonian(m**2 / 2, [g], [m, g]), "p", "expected 1, one for each"),
+    (lagrangian(m**2, [m], velocities=[m]), "velocities", "m is something else, too; use another symbol"),
+    (lagrangian(m**2, [m, g], velocities=[x, x]), "velocities", r"x\(t\) is something else, too"),
+    (lagrangian(m**2, [m], velocities=[t]), "velocities", "t is something else, too"),
+    (lagrangian(m**2, [m], velocities=[3.0]), "velocities", "expected symbols, got 3.0"),
+    (lambda: vv.Hamiltonian(m**2 / 2, [m], [m]), "p", "m is something else, too"),
+    (lagrangian(m**2, [m], velocities=[g], parameters={m: 1.0}), "parameters", "'m' is a coordinate"),
+    (lagrangian(m**2, [m], velocities=[g], parameters={g: 1.0}), "velocities", "g is something else, too"),
+    (one(lambda q, v, t, x: x * v[0], parameters={"x": 1.0}), "parameters", "'x' is a coordinate"),
     # Functions
     (one(lambda q, v, t: v[0] if q[0] > 0 else q[0]), "L", "must not branch on coordinates"),
     (one(lambda q, v, t: v[0] if q[0] == 0 else q[0]), "L", "must not branch on coordinates"),
@@ -197,6 +207,44 @@ def test_a_singularity_on_the_way_keeps_what_was_computed(method: str, within: f
     assert list(both.status) == [vv.Status.OK, vv.Status.STEP_FAILURE]
     assert np.isfinite(both.position[0]).all()
     assert np.array_equal(np.isnan(both.position[1, :, 0]), both.t > 1.15)
+
+
+def test_what_nests_deeply_is_refused_or_done() -> None:
+    limit, deep = sys.getrecursionlimit(), theta
+    sys.setrecursionlimit(100_000)  # SymPy itself needs much of it
+    try:
+        for _ in range(200):
+            deep = sp.sin(deep, evaluate=False)
+        expression = rate**2 + deep
+    finally:
+        sys.setrecursionlimit(limit)
+    # What is left of Python's stack under the tests differs; so little is not enough for any.
+    sys.setrecursionlimit(len(inspect.stack()) + 150)
+    try:
+        with pytest.raises(vv.InvalidInput, match="nested too deeply; write it as a function"):
+            vv.Lagrangian(expression, [theta])
+    finally:
+        sys.setrecursionlimit(limit)
+
+    def function(q: Any, v: Any, t: Any) -> Any:
+        deep = q[0]
+        for _ in range(2000):
+            deep = np.sin(deep)
+        return v[0] ** 2 / 2 + deep
+
+    assert np.isfinite(vv.Lagrangian(function, ["theta"], position=[1.0]).run(0.1).position).all()
+
+
+def test_results_are_read_only() -> None:
+    out = PENDULUM.ensemble(position=[[0.1], [0.2]]).run(1.0)
+    for one in (out, out[0], PENDULUM.run(1.0)):
+        for name in ("position", "velocity", "momentum", "energy", "reactions", "t"):
+            with pytest.raises(ValueError, match="read-only"):
+                getattr(one, name)[...] = 0.0
+    with pytest.raises(ValueError, match="read-only"):
+        PENDULUM.position[0] = 1.0
+    with pytest.raises(TypeError):
+        out[0:1]
 
 
 def test_too_long_a_step_is_told() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from operator import index
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -80,7 +81,7 @@ class GeneralizedEnsemble:
         return len(self._states)
 
     def __getitem__(self, member: int) -> GeneralizedSystem:
-        n = len(self.system.coordinates)
+        n, member = len(self.system.coordinates), index(member)
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
@@ -180,14 +181,16 @@ class GeneralizedEnsembleTrajectory:
             ends = np.cumsum([0, *result["lengths"]])
             for member, length in enumerate(result["lengths"]):
                 self._states[member, :length] = result["y"][ends[member] : ends[member + 1]]
-        self._states.flags.writeable = False
+        for array in (self._states, self.t, self.status, self.steps, self.evaluations):
+            array.flags.writeable = False
         self._columns: NDArray[np.float64] | None = None
 
     def __len__(self) -> int:
         return len(self.status)
 
     def __getitem__(self, member: int) -> GeneralizedTrajectory:
-        return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, range(len(self))[member])
+        member = range(len(self))[index(member)]
+        return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
     def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
         if self._columns is None:
@@ -196,6 +199,7 @@ class GeneralizedEnsembleTrajectory:
             model = self.ensemble.system._model
             flat = model.columns(np.tile(self.t, members), self._states.reshape(-1, numbers), parameters)
             self._columns = flat.reshape(members, times, -1)
+            self._columns.flags.writeable = False
         return self._columns[..., first:last]
 
     @property

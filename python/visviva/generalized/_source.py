@@ -15,6 +15,7 @@ __all__ = ["Source", "described"]
 
 #: What the second half of a state is.
 _SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
+_SECOND_ARGUMENT = {"lagrangian": "velocities", "hamiltonian": "p"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -79,6 +80,13 @@ def described(
     for what, each in (("coordinates", names), ("parameters", keys)):
         if len(set(each)) < len(each):
             raise InvalidInput(what, f"expected different names, got {list(each)}")
+    shared = [key for key in keys if key in names]
+    if shared:
+        raise InvalidInput("parameters", f"{shared[0]!r} is a coordinate; give the parameter another name")
+    all_first, all_second, all_parameters = ((), (), ()) if symbols is None else symbols
+    for place, symbol in enumerate(all_second):
+        if symbol in (*all_first, *all_second[:place], *all_parameters, time._sympy_()):
+            raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
     root = walk(argument, function)
     forces = further.get("forces") or {}
     if not isinstance(forces, Mapping):
@@ -141,7 +149,7 @@ def _coordinate(sp: Any, value: Any) -> Any:
 
 def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[Any, ...]:
     """Give the symbols of velocities, or of momenta."""
-    argument = "velocities" if kind == "lagrangian" else "p"
+    argument = _SECOND_ARGUMENT[kind]
     if second is None:
         if kind == "lagrangian" and not any(isinstance(each, sp.Symbol) for each in first):
             return tuple(each.diff(time._sympy_()) for each in first)
@@ -150,6 +158,9 @@ def _second(sp: Any, kind: str, first: tuple[Any, ...], second: Any) -> tuple[An
     listed = tuple(_listed(argument, second))
     if len(listed) != len(first):
         raise InvalidInput(argument, f"expected {len(first)}, one for each of {list(first)}, got {len(listed)}")
+    wrong = [each for each in listed if not isinstance(each, (sp.Symbol, sp.Derivative, sp.core.function.AppliedUndef))]
+    if wrong:
+        raise InvalidInput(argument, f"expected symbols, got {wrong[0]!r}")
     return listed
 
 

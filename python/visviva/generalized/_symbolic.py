@@ -153,7 +153,12 @@ class Symbols:
             raise InvalidInput(argument, f"expected an expression of SymPy, got {type(expression).__name__}") from None
         if isinstance(tree, sp.MatrixBase) or not isinstance(tree, sp.Expr):
             raise InvalidInput(argument, f"expected a scalar expression, got {type(tree).__name__}")
-        return self._walk(argument, tree)
+        try:
+            return self._walk(argument, tree)
+        except RecursionError:
+            raise InvalidInput(
+                argument, "the expression is nested too deeply; write it as a function of (position, velocity, t)"
+            ) from None
 
     def _walk(self, argument: str, tree: Any) -> int:
         place = self._known.get(tree)
