@@ -144,6 +144,14 @@ def test_a_pendulum_on_a_moving_pivot_by_a_constraint() -> None:
     place = pivot + np.stack([np.sin(angle), -np.cos(angle)], axis=1)
     assert np.abs(out.position - place).max() <= 1e-12
     assert np.abs(((out.position - pivot) ** 2).sum(axis=1) - 1.0).max() <= 8 * EPSILON
+    # From another time on, on and between nodes, by other methods, and back.
+    on = moved.run(4.0).final
+    assert on.t0 == 4.0
+    for how in ({}, {"method": "dop853", "rtol": 1e-13}, {"dt": 0.05}):
+        later = on.run(times[21:], **how)
+        assert np.abs(later.position - place[21:]).max() <= 1e-11
+        assert np.abs(((later.position - pivot[21:]) ** 2).sum(axis=1) - 1.0).max() <= 8 * EPSILON
+    assert np.abs(on.run(times[:20][::-1]).position - place[:20][::-1]).max() <= 1e-11
 
 
 def test_a_knife_edge_on_an_incline() -> None:
