@@ -44,7 +44,7 @@ def phase_portrait(
         if not value[0] < value[1]:
             raise InvalidInput(name, f"expected the smaller end first, got {tuple(value.tolist())}")
     other: Any = system if system._source.kind == "hamiltonian" else system.hamiltonian()  # type: ignore[attr-defined]
-    q, p = (np.linspace(*value, points) for value in ranges)
+    q, p = (np.linspace(value[0], value[1], points) for value in ranges)
     states = np.stack(np.meshgrid(q, p), axis=-1).reshape(-1, 2)
     model, values = other._model, other._values[None, :]
     energy = model.columns(np.full(len(states), system.t0), states, values)[:, 1].reshape(points, points)
@@ -54,7 +54,7 @@ def phase_portrait(
         # As many points between two lines: they are dense where motion is slow.
         ax.contour(q, p, energy, levels=np.unique(np.quantile(finite, np.linspace(0.0, 1.0, _LINES))), linewidths=0.7)
     lagrangian: Any = system if system._source.kind == "lagrangian" else system.lagrangian()  # type: ignore[attr-defined]
-    for rest in lagrangian.equilibria(np.linspace(*ranges[0], 64)[:, None]):
+    for rest in lagrangian.equilibria(np.linspace(ranges[0][0], ranges[0][1], 64)[:, None]):
         at_rest = lagrangian.at(position=rest.position, velocity=[0.0])
         place = (float(rest.position[0]), float(at_rest.momentum[0]))
         if not (ranges[0][0] <= place[0] <= ranges[0][1] and ranges[1][0] <= place[1] <= ranges[1][1]):
