@@ -9,12 +9,67 @@ use super::function::Function;
 use crate::numerics::binary::Binary;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::functions;
-use crate::numerics::lanes::{Lanes, Vector8};
+#[cfg(target_arch = "x86_64")]
+use crate::numerics::lanes::{Avx2, Avx512};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
 use crate::tiered;
 
-/// What registers hold.
-pub trait Scalar: Binary + Exponential + functions::Functions {}
-impl<S: Binary + Exponential + functions::Functions> Scalar for S {}
+/// The word of the square root.
+const SQRT: u16 = word::CALL + Function::Sqrt as u16;
+
+/// What registers hold. What is called seldom is compiled once for each tier, and not wherever code is run.
+pub trait Scalar: Binary + Exponential + functions::Functions {
+    /// A function by its word.
+    #[must_use]
+    fn called(self, word: u16) -> Self;
+    /// A constant power.
+    #[must_use]
+    fn raised(self, exponent: f64) -> Self;
+}
+
+impl Scalar for f64 {
+    #[inline(always)]
+    fn called(self, word: u16) -> Self {
+        called(word, Lanes([self; WIDTH])).0[0]
+    }
+    #[inline(always)]
+    fn raised(self, exponent: f64) -> Self {
+        raised(exponent, Lanes([self; WIDTH])).0[0]
+    }
+}
+
+macro_rules! by_lanes {
+    ($($(#[$meta:meta])* $type:ty),+) => {$(
+        $(#[$meta])*
+        impl Scalar for $type {
+            #[inline(always)]
+            fn called(self, word: u16) -> Self {
+                Self::load(called(word, self.store()))
+            }
+            #[inline(always)]
+            fn raised(self, exponent: f64) -> Self {
+                Self::load(raised(exponent, self.store()))
+            }
+        }
+    )+};
+}
+by_lanes!(
+    Lanes,
+    #[cfg(target_arch = "x86_64")]
+    Avx2,
+    #[cfg(target_arch = "x86_64")]
+    Avx512
+);
+
+#[inline(always)]
+fn called_body<V: Vector8 + functions::Functions>(word: u16, x: Lanes) -> Lanes {
+    call(word, V::load(x)).store()
+}
+
+#[inline(always)]
+fn raised_body<V: Vector8 + functions::Functions>(exponent: f64, x: Lanes) -> Lanes {
+    functions::power(V::load(x), exponent).store()
+}
 
 /// Which part of a code.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -129,7 +184,7 @@ impl<S: Scalar, const K: usize> Runner<S, K> {
                     4
                 }
                 word::SOLVE => self.solved(),
-                word::POWER => each!(4, k => functions::power(self.get(2, k), self.constant(3))),
+                word::POWER => each!(4, k => self.get(2, k).raised(self.constant(3))),
                 word::CONSTANT => {
                     let value = S::splat(self.constant(2));
                     for k in 0..K {
@@ -138,7 +193,8 @@ impl<S: Scalar, const K: usize> Runner<S, K> {
                     3
                 }
                 word::END => return,
-                other => each!(3, k => call(other, self.get(2, k))),
+                SQRT => each!(3, k => self.get(2, k).sqrt()),
+                other => each!(3, k => self.get(2, k).called(other)),
             };
             // SAFETY: the last word is `END`, at which this returns.
             self.at = unsafe { self.at.add(length) };
@@ -208,11 +264,10 @@ impl<S: Scalar, const K: usize> Runner<S, K> {
 
 /// A function by its word.
 #[inline(always)]
-fn call<S: Scalar>(word: u16, x: S) -> S {
+fn call<S: functions::Functions>(word: u16, x: S) -> S {
     const TAN: u16 = word::CALL + Function::Tan as u16;
     const EXP: u16 = word::CALL + Function::Exp as u16;
     const LN: u16 = word::CALL + Function::Ln as u16;
-    const SQRT: u16 = word::CALL + Function::Sqrt as u16;
     const SINH: u16 = word::CALL + Function::Sinh as u16;
     const COSH: u16 = word::CALL + Function::Cosh as u16;
     const TANH: u16 = word::CALL + Function::Tanh as u16;
@@ -226,7 +281,6 @@ fn call<S: Scalar>(word: u16, x: S) -> S {
         TAN => functions::tan(x),
         EXP => x.exp(),
         LN => functions::ln(x),
-        SQRT => x.sqrt(),
         SINH => functions::sinh_cosh(x).0,
         COSH => functions::sinh_cosh(x).1,
         TANH => functions::tanh(x),
@@ -296,6 +350,8 @@ fn one_body<V: Vector8>(code: &Code, part: Part, registers: &mut [f64]) {
 }
 
 tiered! {
+    fn called[][](word: u16, x: Lanes) -> Lanes = called_body;
+    fn raised[][](exponent: f64, x: Lanes) -> Lanes = raised_body;
     /// Runs a part of the code for eight states.
     pub fn lanes[][](code: &Code, part: Part, registers: &mut [Lanes]) = lanes_body;
     /// Runs a part of the code for one state, with the processor's fused operations.
