@@ -126,11 +126,6 @@ class Expression:
     def __abs__(self) -> Expression:
         return self._with("product", self)._with("sqrt")
 
-    def arctan2(self, other: object) -> Expression:
-        """As ``np.arctan2`` of two expressions calls it: the angle of the point (other, self)."""
-        x = other if isinstance(other, Expression) else self * 0.0 + other
-        return (self / ((self * self + x * x).sqrt() + x)).atan() * 2.0
-
     def __bool__(self) -> NoReturn:
         raise InvalidInput("L", "an expression has no truth value: the function must not branch on coordinates")
 

@@ -190,9 +190,6 @@ class Symbols:
             return nodes.add("sqrt", (nodes.add("product", (inner, inner)),))
         if isinstance(tree, (sp.cot, sp.sec, sp.csc, sp.coth, sp.sech, sp.csch)):
             return self._walk(argument, self._inverse(tree))
-        if isinstance(tree, sp.atan2):
-            y, x = tree.args
-            return self._walk(argument, 2 * sp.atan(y / (sp.sqrt(x**2 + y**2) + x), evaluate=False))
         if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign)):
             raise InvalidInput(
                 argument, f"{name} switches inside a step, where no method keeps its order; leave it out"
@@ -203,7 +200,7 @@ class Symbols:
                 f"{tree} is not among the coordinates {list(self._coordinates)}; add it, or put a value in its place",
             )
         raise InvalidInput(
-            argument, f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, atan2, Abs"
+            argument, f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, Abs"
         )
 
     def _inverse(self, tree: Any) -> Any:
