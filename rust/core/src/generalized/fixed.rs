@@ -75,16 +75,6 @@ impl Trial<f64> for FixedSteps {
         &self.next
     }
 
-    fn dense(
-        &mut self,
-        _: &Settled<f64>,
-        _: &mut dyn System<f64>,
-        _: &State<f64>,
-        _: &mut Ticker<'_>,
-    ) -> Result<()> {
-        Ok(())
-    }
-
     fn at(
         &mut self,
         outcome: &Settled<f64>,
@@ -106,6 +96,6 @@ impl Trial<f64> for FixedSteps {
     }
 
     fn cost(&self) -> Cost {
-        Cost { start: 0, tried: 0, kept: 0, dense: 0, read: 0 }
+        Cost::default()
     }
 }

@@ -205,16 +205,6 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         &self.next
     }
 
-    fn dense(
-        &mut self,
-        _: &Settled<S>,
-        _: &mut dyn System<S>,
-        _: &State<S>,
-        _: &mut Ticker<'_>,
-    ) -> Result<()> {
-        Ok(())
-    }
-
     fn at(
         &mut self,
         outcome: &Settled<S>,

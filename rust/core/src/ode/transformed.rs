@@ -332,16 +332,6 @@ impl<S: Controlled> Trial<S> for Transformed<S> {
         &self.next.0
     }
 
-    fn dense(
-        &mut self,
-        _: &Settled<S>,
-        _: &mut dyn System<S>,
-        _: &State<S>,
-        _: &mut Ticker<'_>,
-    ) -> Result<()> {
-        Ok(())
-    }
-
     fn at(
         &mut self,
         outcome: &Settled<S>,

@@ -17,7 +17,7 @@ use crate::error::{Error, Result};
 use crate::parallel::Ticker;
 
 /// Evaluations that a step costs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Cost {
     /// The start of a trajectory.
     pub start: u64,
@@ -65,7 +65,8 @@ pub trait Trial<S: Controlled>: Send {
     /// The state at the end of the step tried last.
     fn next(&self) -> &State<S>;
 
-    /// Between [`attempt`](Self::attempt) and [`keep`](Self::keep): readies the continuous extension.
+    /// Between [`attempt`](Self::attempt) and [`keep`](Self::keep): readies the continuous extension. Who reads states by
+    /// steps has nothing to ready.
     ///
     /// # Errors
     /// Those of an evaluation.
@@ -75,7 +76,10 @@ pub trait Trial<S: Controlled>: Send {
         system: &mut dyn System<S>,
         state: &State<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<()>;
+    ) -> Result<()> {
+        let _ = (outcome, system, state, ticker);
+        Ok(())
+    }
 
     /// The state at the fraction `theta` of the step, lane by lane; needs [`dense`](Self::dense).
     ///

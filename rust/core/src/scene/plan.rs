@@ -5,6 +5,7 @@ mod events;
 mod explain;
 mod kinds;
 mod own;
+mod parts;
 mod quiet;
 mod refusals;
 mod series;
@@ -47,10 +48,6 @@ const WORK_FOR_THREADS: u64 = 64;
 const STATES_FOR_THREADS: usize = 4_096;
 /// Massless bodies in one unit with the massive ones, where they cannot follow them.
 const PASSIVE_PER_UNIT: usize = 64;
-/// So many massless bodies take long enough for the massive ones to be integrated again for them, on another thread.
-const FOLLOWERS_WORTH_A_GUIDE: usize = 128;
-/// The most massless bodies that follow at a time: their steps stay in a cache.
-const FOLLOWERS_MAX: usize = 1024;
 
 /// What will be done.
 #[derive(Clone, Debug)]
@@ -307,68 +304,6 @@ impl Plan {
     /// Whether each unit takes its steps at times of its own.
     pub fn has_own_times(&self) -> bool {
         self.method.adaptive() || self.transformed.is_some()
-    }
-
-    /// Whether the massless bodies are integrated apart, so that they stay out of the massive ones' steps.
-    pub fn passive_apart(&self) -> bool {
-        self.groups == Groups::All
-            && !self.touching
-            && (self.has_own_times() || self.relative)
-            && !self.active.is_empty()
-            && !self.passive.is_empty()
-    }
-
-    /// How a unit lies in lanes: massless bodies that follow others have a lane each.
-    pub fn layout_of(&self, unit: &Unit) -> Layout {
-        if unit.follows { Layout::Batched } else { self.layout }
-    }
-
-    /// Into how many pieces so many massless bodies of a copy are cut that follow the massive ones; for each of them the
-    /// massive ones are integrated again.
-    pub fn pieces(&self, massless: usize, threads: usize) -> usize {
-        if self.layout == Layout::Batched {
-            return 1;
-        }
-        let useful = (massless / FOLLOWERS_WORTH_A_GUIDE).min((2 * threads).div_ceil(self.copies));
-        massless.div_ceil(FOLLOWERS_MAX).max(if threads > 1 { useful } else { 1 }).max(1)
-    }
-
-    /// The massive bodies of a copy, for massless ones to follow; `recorded` or not.
-    pub fn guide(&self, copy: usize, recorded: bool) -> Unit {
-        let active = self.active.len();
-        let leads = recorded;
-        let recorded = if recorded { 0..active } else { active..active };
-        Unit {
-            copy,
-            bodies: Arc::from(&self.active[..]),
-            active,
-            recorded,
-            leads,
-            follows: false,
-            make_up: 0,
-            events: Arc::from([]),
-        }
-    }
-
-    /// The units of the integration, in the order in which they are begun.
-    pub fn unit_list(&self) -> Vec<Unit> {
-        let kinds = &self.watched_kinds();
-        (0..self.copies)
-            .flat_map(|copy| kinds.iter().enumerate().map(move |(index, kind)| (copy, index, kind)))
-            .map(|(copy, index, kind)| Unit { copy, leads: index == 0, ..kind.clone() })
-            .collect()
-    }
-
-    /// The first of them.
-    pub fn first_unit(&self) -> Option<Unit> {
-        self.watched_kinds().into_iter().next().map(|kind| Unit { leads: true, ..kind })
-    }
-
-    /// The units of each copy.
-    fn watched_kinds(&self) -> Vec<Unit> {
-        let mut kinds = self.kinds();
-        self.watch(&mut kinds);
-        kinds
     }
 
     /// Pairs that one force evaluation of one copy forms.

@@ -269,16 +269,6 @@ impl Trial<f64> for GaussStep {
         &self.next
     }
 
-    fn dense(
-        &mut self,
-        _: &Settled<f64>,
-        _: &mut dyn System<f64>,
-        _: &State<f64>,
-        _: &mut Ticker<'_>,
-    ) -> Result<()> {
-        Ok(())
-    }
-
     fn at(
         &mut self,
         outcome: &Settled<f64>,
@@ -313,6 +303,6 @@ impl Trial<f64> for GaussStep {
 
     fn cost(&self) -> Cost {
         // What stages take is told by their own count.
-        Cost { start: 0, tried: 0, kept: 0, dense: 0, read: 0 }
+        Cost::default()
     }
 }

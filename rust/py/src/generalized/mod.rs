@@ -1,133 +1,34 @@
 //! Lagrangians and Hamiltonians: nodes of expressions in, equations, runs and expressions out.
 //!
-//! A node is `(operation, arguments, value)`, its arguments numbers of nodes before it; `visviva.generalized` makes them of
-//! SymPy's trees and makes trees of them again.
+//! `visviva.generalized` makes [`nodes`] of SymPy's trees and makes trees of them again.
+
+mod nodes;
+mod runs;
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
 use crate::gate::compute;
+use nodes::{NodeParts, added, all_chosen, chosen, shown};
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use runs::{Asked, collected};
 use std::sync::Arc;
-use visviva_core::expressions::function::Function;
-use visviva_core::expressions::graph::{Graph, Id, Node, number};
+use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
 use visviva_core::generalized::evaluate;
-use visviva_core::generalized::gauss;
 use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::{Linear, modes};
 use visviva_core::generalized::one_freedom::OneFreedom;
-use visviva_core::generalized::run::{Integrator, Request, Section, Solution, solve};
+use visviva_core::generalized::run::solve;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
 use visviva_core::generalized::variation::variational;
 use visviva_core::generalized::{Kind, Model, Source};
-use visviva_core::ode::run::Ending;
 use visviva_core::parallel::{for_chunks, thread_count};
-use visviva_core::registry;
 use visviva_core::{Error, Result};
 
 type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
-type NodeParts = (String, Vec<u32>, f64);
-
-/// Adds nodes to a graph; their numbers in it.
-fn added(graph: &mut Graph, nodes: &[NodeParts]) -> Result<Vec<Id>> {
-    let mut ids: Vec<Id> = Vec::with_capacity(nodes.len());
-    for (operation, arguments, value) in nodes {
-        let of = |index: usize| {
-            let argument = arguments.get(index).copied().map(|argument| argument as usize);
-            argument
-                .and_then(|argument| ids.get(argument).copied())
-                .ok_or_else(|| Error::Internal(format!("{operation} lacks its argument {index}")))
-        };
-        let all = || (0..arguments.len()).map(of).collect::<Result<Vec<Id>>>();
-        let id = match operation.as_str() {
-            "constant" => graph.constant(*value),
-            "variable" => graph.variable(*value as u32),
-            "parameter" => graph.parameter(*value as u32),
-            "time" => graph.time(),
-            "sum" => {
-                let terms: Vec<(f64, Id)> = all()?.into_iter().map(|id| (1.0, id)).collect();
-                graph.sum(0.0, &terms)
-            }
-            "product" => {
-                let factors = all()?;
-                graph.product(&factors)
-            }
-            "quotient" => {
-                let (a, b) = (of(0)?, of(1)?);
-                graph.divide(a, b)
-            }
-            "power" => {
-                let (a, b) = (of(0)?, of(1)?);
-                graph.general_power(a, b)
-            }
-            name => {
-                let function =
-                    Function::named(name).ok_or_else(|| Error::Internal(format!("no operation {name}")))?;
-                let a = of(0)?;
-                graph.call(function, a)
-            }
-        };
-        ids.push(id);
-    }
-    Ok(ids)
-}
-
-fn chosen(ids: &[Id], index: u32) -> Result<Id> {
-    ids.get(index as usize).copied().ok_or_else(|| Error::Internal(format!("no node {index}")))
-}
-
-fn all_chosen(ids: &[Id], indices: &[u32]) -> Result<Vec<Id>> {
-    indices.iter().map(|&index| chosen(ids, index)).collect()
-}
-
-/// Nodes of a graph as they came in, and the places of the roots among them.
-fn shown(graph: &Graph, roots: &[Id]) -> (Vec<NodeParts>, Vec<u32>) {
-    let mut places = std::collections::HashMap::new();
-    let mut nodes: Vec<NodeParts> = Vec::new();
-    let push = |nodes: &mut Vec<NodeParts>, operation: &str, arguments: Vec<u32>, value: f64| {
-        nodes.push((operation.to_owned(), arguments, value));
-        (nodes.len() - 1) as u32
-    };
-    for id in graph.reachable(roots) {
-        let at = |id: &Id| places.get(id).copied().unwrap_or(0);
-        let place = match graph.node(id) {
-            Node::Constant(value) => push(&mut nodes, "constant", vec![], number(*value)),
-            Node::Variable(index) => push(&mut nodes, "variable", vec![], f64::from(*index)),
-            Node::Parameter(index) => push(&mut nodes, "parameter", vec![], f64::from(*index)),
-            Node::Time => push(&mut nodes, "time", vec![], 0.0),
-            Node::Sum(constant, terms) => {
-                let mut arguments = Vec::new();
-                if number(*constant) != 0.0 {
-                    arguments.push(push(&mut nodes, "constant", vec![], number(*constant)));
-                }
-                for (coefficient, term) in terms {
-                    let term = at(term);
-                    if number(*coefficient) == 1.0 {
-                        arguments.push(term);
-                    } else {
-                        let factor = push(&mut nodes, "constant", vec![], number(*coefficient));
-                        arguments.push(push(&mut nodes, "product", vec![factor, term], 0.0));
-                    }
-                }
-                push(&mut nodes, "sum", arguments, 0.0)
-            }
-            Node::Product(a, b) => push(&mut nodes, "product", vec![at(a), at(b)], 0.0),
-            Node::Quotient(a, b) => push(&mut nodes, "quotient", vec![at(a), at(b)], 0.0),
-            Node::Call(function, a) => push(&mut nodes, function.name(), vec![at(a)], 0.0),
-            Node::Power(a, exponent) => {
-                let base = at(a);
-                let exponent = push(&mut nodes, "constant", vec![], number(*exponent));
-                push(&mut nodes, "power", vec![base, exponent], 0.0)
-            }
-        };
-        let _ = places.insert(id, place);
-    }
-    let roots = roots.iter().map(|id| places.get(id).copied().unwrap_or(0)).collect();
-    (nodes, roots)
-}
 
 /// A system in generalized coordinates.
 #[pyclass(frozen, module = "visviva._core")]
@@ -466,52 +367,6 @@ impl GeneralizedModel {
     }
 }
 
-/// What is asked of a run.
-#[derive(FromPyObject)]
-#[pyo3(from_item_all)]
-struct Asked<'py> {
-    method: String,
-    span: (f64, f64),
-    rtol: f64,
-    dt: Option<f64>,
-    max_step: Option<f64>,
-    max_steps: u64,
-    outputs: Option<Array<'py>>,
-    /// Nodes, a root among them, and a direction: whose zeros are wanted.
-    section: Option<(Vec<NodeParts>, u32, f64)>,
-}
-
-impl Asked<'_> {
-    fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
-        let integrator =
-            match gauss::method(&self.method) {
-                Some(method) => Integrator::Gauss(method),
-                None => Integrator::Table(registry::method(&self.method).ok_or_else(|| {
-                    raised(py, Error::invalid("method", format!("no method {}", self.method)))
-                })?),
-            };
-        let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
-        let section = self.section.as_ref().map(|(nodes, root, direction)| {
-            let mut model = of.copy();
-            let ids = added(&mut model.source.graph, nodes)?;
-            let code = Arc::new(model.function(&[chosen(&ids, *root)?])?);
-            Ok(Section { code, direction: *direction })
-        });
-        let section = section.transpose().map_err(|error| raised(py, error))?;
-        Ok(Request {
-            section,
-            integrator,
-            span: self.span,
-            rtol: self.rtol,
-            dt: self.dt,
-            max_step: self.max_step,
-            max_steps: self.max_steps,
-            outputs,
-            held: of.structure.conserves_energy,
-        })
-    }
-}
-
 /// Constraints that do not leave the multipliers determined.
 fn dependent(one: usize, others: &[usize]) -> Error {
     let words = match others {
@@ -546,42 +401,4 @@ fn rows<'py>(
     let found =
         compute(py, 0, None, |_| Ok(evaluate::rows(code, (&t, &states), &parameters, own)))?.whole(py)?;
     moved(py, found, &[count, code.outputs()])
-}
-
-/// Solutions as columns, member after member.
-fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> PyResult<Bound<'py, PyDict>> {
-    let result = PyDict::new(py);
-    let lengths: Vec<usize> = solutions.iter().map(|solution| solution.t.len()).collect();
-    let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
-    let y: Vec<f64> = solutions.iter().flat_map(|solution| solution.y.iter().copied()).collect();
-    let rows = t.len();
-    let crossings: Vec<usize> = solutions.iter().map(|solution| solution.crossings.t.len()).collect();
-    let at: Vec<f64> = solutions.iter().flat_map(|solution| solution.crossings.t.iter().copied()).collect();
-    let there: Vec<f64> =
-        solutions.iter().flat_map(|solution| solution.crossings.y.iter().copied()).collect();
-    let found = at.len();
-    result.set_item("crossings", crossings)?;
-    result.set_item("crossing_times", moved(py, at, &[found])?)?;
-    result.set_item("crossing_states", moved(py, there, &[found, numbers])?)?;
-    result.set_item("lengths", lengths)?;
-    result.set_item("t", moved(py, t, &[rows])?)?;
-    result.set_item("y", moved(py, y, &[rows, numbers])?)?;
-    let endings: Vec<&str> = solutions
-        .iter()
-        .map(|solution| match solution.ending {
-            Ending::Finished | Ending::Stopped => "finished",
-            Ending::StepTooSmall => "step too small",
-            Ending::NotFinite => "not finite",
-            Ending::Interrupted => "interrupted",
-        })
-        .collect();
-    result.set_item("endings", endings)?;
-    let failures: Vec<Option<&str>> = solutions.iter().map(|solution| solution.failure.as_deref()).collect();
-    result.set_item("failures", failures)?;
-    result.set_item("reached", solutions.iter().map(|solution| solution.reached).collect::<Vec<_>>())?;
-    result.set_item("steps", solutions.iter().map(|solution| solution.steps).collect::<Vec<_>>())?;
-    result
-        .set_item("evaluations", solutions.iter().map(|solution| solution.evaluations).collect::<Vec<_>>())?;
-    result.set_item("longest_step", solutions.iter().map(|solution| solution.h).collect::<Vec<_>>())?;
-    Ok(result)
 }

@@ -1,0 +1,101 @@
+//! What is asked of a run, and what came of it.
+
+use super::nodes::{NodeParts, added, chosen};
+use super::{Array, GeneralizedModel};
+use crate::arrays::{copied, moved};
+use crate::errors::raised;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+use std::sync::Arc;
+use visviva_core::generalized::gauss;
+use visviva_core::generalized::run::{Integrator, Request, Section, Solution};
+use visviva_core::ode::run::Ending;
+use visviva_core::{Error, registry};
+
+/// What is asked of a run.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub(super) struct Asked<'py> {
+    method: String,
+    span: (f64, f64),
+    rtol: f64,
+    dt: Option<f64>,
+    max_step: Option<f64>,
+    max_steps: u64,
+    outputs: Option<Array<'py>>,
+    /// Nodes, a root among them, and a direction: whose zeros are wanted.
+    section: Option<(Vec<NodeParts>, u32, f64)>,
+}
+
+impl Asked<'_> {
+    pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
+        let integrator =
+            match gauss::method(&self.method) {
+                Some(method) => Integrator::Gauss(method),
+                None => Integrator::Table(registry::method(&self.method).ok_or_else(|| {
+                    raised(py, Error::invalid("method", format!("no method {}", self.method)))
+                })?),
+            };
+        let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
+        let section = self.section.as_ref().map(|(nodes, root, direction)| {
+            let mut model = of.copy();
+            let ids = added(&mut model.source.graph, nodes)?;
+            let code = Arc::new(model.function(&[chosen(&ids, *root)?])?);
+            Ok(Section { code, direction: *direction })
+        });
+        let section = section.transpose().map_err(|error| raised(py, error))?;
+        Ok(Request {
+            section,
+            integrator,
+            span: self.span,
+            rtol: self.rtol,
+            dt: self.dt,
+            max_step: self.max_step,
+            max_steps: self.max_steps,
+            outputs,
+            held: of.structure.conserves_energy,
+        })
+    }
+}
+
+/// Solutions as columns, member after member.
+pub(super) fn collected<'py>(
+    py: Python<'py>,
+    solutions: &[Solution],
+    numbers: usize,
+) -> PyResult<Bound<'py, PyDict>> {
+    let result = PyDict::new(py);
+    let lengths: Vec<usize> = solutions.iter().map(|solution| solution.t.len()).collect();
+    let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
+    let y: Vec<f64> = solutions.iter().flat_map(|solution| solution.y.iter().copied()).collect();
+    let rows = t.len();
+    let crossings: Vec<usize> = solutions.iter().map(|solution| solution.crossings.t.len()).collect();
+    let at: Vec<f64> = solutions.iter().flat_map(|solution| solution.crossings.t.iter().copied()).collect();
+    let there: Vec<f64> =
+        solutions.iter().flat_map(|solution| solution.crossings.y.iter().copied()).collect();
+    let found = at.len();
+    result.set_item("crossings", crossings)?;
+    result.set_item("crossing_times", moved(py, at, &[found])?)?;
+    result.set_item("crossing_states", moved(py, there, &[found, numbers])?)?;
+    result.set_item("lengths", lengths)?;
+    result.set_item("t", moved(py, t, &[rows])?)?;
+    result.set_item("y", moved(py, y, &[rows, numbers])?)?;
+    let endings: Vec<&str> = solutions
+        .iter()
+        .map(|solution| match solution.ending {
+            Ending::Finished | Ending::Stopped => "finished",
+            Ending::StepTooSmall => "step too small",
+            Ending::NotFinite => "not finite",
+            Ending::Interrupted => "interrupted",
+        })
+        .collect();
+    result.set_item("endings", endings)?;
+    let failures: Vec<Option<&str>> = solutions.iter().map(|solution| solution.failure.as_deref()).collect();
+    result.set_item("failures", failures)?;
+    result.set_item("reached", solutions.iter().map(|solution| solution.reached).collect::<Vec<_>>())?;
+    result.set_item("steps", solutions.iter().map(|solution| solution.steps).collect::<Vec<_>>())?;
+    result
+        .set_item("evaluations", solutions.iter().map(|solution| solution.evaluations).collect::<Vec<_>>())?;
+    result.set_item("longest_step", solutions.iter().map(|solution| solution.h).collect::<Vec<_>>())?;
+    Ok(result)
+}
