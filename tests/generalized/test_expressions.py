@@ -88,12 +88,33 @@ def test_what_sympy_writes_otherwise(symbolic: Any, place: float) -> None:
     assert -rates(one, 0.0, [place], [0.0])[0] == pytest.approx(float(slope), rel=128 * EPSILON)
 
 
-def test_angles_of_points_are_refused() -> None:
-    """Made of the functions that there are, they would lose digits next to the negative axis."""
-    with pytest.raises(vv.InvalidInput, match="atan2 is not known"):
-        system(sp.atan2(x, 2))
-    with pytest.raises(vv.InvalidInput, match="arctan2 is not known"):
-        vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - np.arctan2(q[0], 2.0), ["x"])
+@pytest.mark.parametrize("size", [1e-300, 1e-9, 1.0, 1e200])
+@pytest.mark.parametrize("angle", [-3.1415926, -3.0, -2.4, -1.6, -1e-9, 1e-300, 0.3, 0.9, 1.5707963, 2.2, 3.1415926])
+def test_angles_of_points(angle: float, size: float) -> None:
+    """In all directions, next to the axes too, where quotients and differences lose digits."""
+    y = sp.Symbol("y")
+    place = [size * np.cos(angle), size * np.sin(angle)]
+    one = vv.Lagrangian(
+        sp.Symbol("u") ** 2 / 2 + sp.Symbol("w") ** 2 / 2 - sp.atan2(y, x),
+        [x, y],
+        velocities=[sp.Symbol("u"), sp.Symbol("w")],
+        position=place,
+    )
+    true = mpmath.atan2(mpmath.mpf(place[1]), mpmath.mpf(place[0]))
+    assert one.evaluate(sp.atan2(y, x))[0] == pytest.approx(float(true), rel=2 * EPSILON)
+    if 1e-100 < size < 1e100:
+        # The force is that of the angle: (y, -x)/(x² + y²).
+        square = mpmath.mpf(place[0]) ** 2 + mpmath.mpf(place[1]) ** 2
+        force = [float(place[1] / square), float(-place[0] / square)]
+        assert rates(one, 0.0, place, [0.0, 0.0])[:2] == pytest.approx(force, rel=8 * EPSILON)
+
+
+def test_numpy_and_sympy_record_the_same_angles() -> None:
+    place, values = [-0.8], {"a": 1e-6}
+    one = vv.Lagrangian(lambda q, v, t, a: v[0] ** 2 / 2, ["x"], parameters=values, position=place)
+    assert one.evaluate(lambda q, v, t, a: np.arctan2(a, q[0]))[0] == np.arctan2(1e-6, -0.8)
+    assert one.evaluate(lambda q, v, t, a: np.arctan2(q[0], 2.0))[0] == pytest.approx(np.arctan2(-0.8, 2.0), rel=1e-15)
+    assert one.evaluate(lambda q, v, t, a: np.arctan2(2.0, q[0]))[0] == pytest.approx(np.arctan2(2.0, -0.8), rel=1e-15)
 
 
 def test_python_operators_record_what_they_do() -> None:

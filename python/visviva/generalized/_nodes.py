@@ -9,6 +9,8 @@ from inspect import signature
 from math import isfinite
 from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
 
+import numpy as np
+
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -138,6 +140,17 @@ class Expression:
     def __float__(self) -> float:
         raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
 
+    def arctan2(self, other: object) -> Expression:
+        """Give the angle of the point (other, self) from the first axis: what ``np.arctan2`` calls."""
+        return self._with("atan2", other)
+
+    def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
+        # NumPy asks the first argument for arctan2, which may be a number.
+        if ufunc is np.arctan2:
+            inputs = tuple(self._with("product", 0.0)._with("sum", x) if np.isscalar(x) else x for x in inputs)
+        boxed = (np.asarray(x, dtype=object) if isinstance(x, Expression) else x for x in inputs)
+        return getattr(ufunc, method)(*boxed, **options)
+
     def __getattr__(self, name: str) -> Callable[[], Expression]:
         # np.sin of an object calls its method sin.
         function = _NUMPY.get(name, name)
@@ -145,7 +158,9 @@ class Expression:
             return lambda: self._with(function)
         if name.startswith("_"):
             raise AttributeError(name)
-        raise InvalidInput("L", f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}")
+        raise InvalidInput(
+            "L", f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, arctan2"
+        )
 
 
 def recorded(nodes: Nodes, value: Any, argument: str) -> int:

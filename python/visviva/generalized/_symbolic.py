@@ -185,6 +185,8 @@ class Symbols:
         name = type(tree).__name__
         if name in FUNCTIONS:
             return nodes.add(name, (self._walk(argument, tree.args[0]),))
+        if isinstance(tree, sp.atan2):
+            return nodes.add("atan2", tuple(self._walk(argument, part) for part in tree.args))
         if isinstance(tree, sp.Abs):
             inner = self._walk(argument, tree.args[0])
             return nodes.add("sqrt", (nodes.add("product", (inner, inner)),))
@@ -200,7 +202,7 @@ class Symbols:
                 f"{tree} is not among the coordinates {list(self._coordinates)}; add it, or put a value in its place",
             )
         raise InvalidInput(
-            argument, f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, Abs"
+            argument, f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, atan2, Abs"
         )
 
     def _inverse(self, tree: Any) -> Any:

@@ -140,6 +140,7 @@ impl Assembler {
             Operation::Product(to, a, b) if a == b => words.extend([word::SQUARE, r(to)?, r(a)?]),
             Operation::Product(to, a, b) => words.extend([word::MULTIPLY, r(to)?, r(a)?, r(b)?]),
             Operation::Quotient(to, a, b) => words.extend([word::DIVIDE, r(to)?, r(a)?, r(b)?]),
+            Operation::Angle(to, y, x) => words.extend([word::ANGLE, r(to)?, r(y)?, r(x)?]),
             Operation::Reciprocal(to, value, a) => {
                 let (to, a) = (r(to)?, r(a)?);
                 words.extend([word::RECIPROCAL, to, self.constant(*value), a]);

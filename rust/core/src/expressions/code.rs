@@ -37,6 +37,8 @@ pub(super) mod word {
     pub(in super::super) const POWER: u16 = 12;
     /// The end.
     pub(in super::super) const END: u16 = 13;
+    /// r, r, r: the angle of a point, of its y and x.
+    pub(in super::super) const ANGLE: u16 = 14;
     /// r, r: a function; the words from here on are the functions by their numbers.
     pub(in super::super) const CALL: u16 = 32;
 }

@@ -20,6 +20,12 @@ impl Graph {
                 let (reciprocal, ratio) = (self.divide(one, b), self.divide(id, b));
                 vec![(a, reciprocal), (b, self.scale(-1.0, ratio))]
             }
+            Node::Angle(y, x) => {
+                let (y2, x2) = (self.multiply(y, y), self.multiply(x, x));
+                let square = self.sum(0.0, &[(1.0, x2), (1.0, y2)]);
+                let (along_y, along_x) = (self.divide(x, square), self.divide(y, square));
+                vec![(y, along_y), (x, self.scale(-1.0, along_x))]
+            }
             Node::Call(function, a) => vec![(a, self.slope(function, a, id))],
             Node::Power(a, exponent) => {
                 let exponent = number(exponent);

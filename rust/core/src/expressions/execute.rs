@@ -25,6 +25,9 @@ pub trait Scalar: Binary + Exponential + functions::Functions {
     /// A constant power.
     #[must_use]
     fn raised(self, exponent: f64) -> Self;
+    /// The angle of the point whose y this is.
+    #[must_use]
+    fn angle(self, x: Self) -> Self;
 }
 
 impl Scalar for f64 {
@@ -35,6 +38,10 @@ impl Scalar for f64 {
     #[inline(always)]
     fn raised(self, exponent: f64) -> Self {
         raised(exponent, Lanes([self; WIDTH])).0[0]
+    }
+    #[inline(always)]
+    fn angle(self, x: Self) -> Self {
+        angle(Lanes([self; WIDTH]), Lanes([x; WIDTH])).0[0]
     }
 }
 
@@ -49,6 +56,10 @@ macro_rules! by_lanes {
             #[inline(always)]
             fn raised(self, exponent: f64) -> Self {
                 Self::load(raised(exponent, self.store()))
+            }
+            #[inline(always)]
+            fn angle(self, x: Self) -> Self {
+                Self::load(angle(self.store(), x.store()))
             }
         }
     )+};
@@ -69,6 +80,11 @@ fn called_body<V: Vector8 + functions::Functions>(word: u16, x: Lanes) -> Lanes 
 #[inline(always)]
 fn raised_body<V: Vector8 + functions::Functions>(exponent: f64, x: Lanes) -> Lanes {
     functions::power(V::load(x), exponent).store()
+}
+
+#[inline(always)]
+fn angle_body<V: Vector8 + functions::Functions>(y: Lanes, x: Lanes) -> Lanes {
+    functions::atan2(V::load(y), V::load(x)).store()
 }
 
 /// Which part of a code.
@@ -184,6 +200,7 @@ impl<S: Scalar, const K: usize> Runner<S, K> {
                     4
                 }
                 word::SOLVE => self.solved(),
+                word::ANGLE => each!(4, k => self.get(2, k).angle(self.get(3, k))),
                 word::POWER => each!(4, k => self.get(2, k).raised(self.constant(3))),
                 word::CONSTANT => {
                     let value = S::splat(self.constant(2));
@@ -352,6 +369,7 @@ fn one_body<V: Vector8>(code: &Code, part: Part, registers: &mut [f64]) {
 tiered! {
     fn called[][](word: u16, x: Lanes) -> Lanes = called_body;
     fn raised[][](exponent: f64, x: Lanes) -> Lanes = raised_body;
+    fn angle[][](y: Lanes, x: Lanes) -> Lanes = angle_body;
     /// Runs a part of the code for eight states.
     pub fn lanes[][](code: &Code, part: Part, registers: &mut [Lanes]) = lanes_body;
     /// Runs a part of the code for one state, with the processor's fused operations.

@@ -5,6 +5,7 @@
 
 use super::function::{Function, Parity};
 use super::identity;
+use crate::numerics::functions;
 use std::collections::HashMap;
 
 /// The number of a node; what it is made of has smaller numbers.
@@ -27,6 +28,8 @@ pub enum Node {
     Product(Id, Id),
     /// A quotient.
     Quotient(Id, Id),
+    /// The angle of the point (x, y), y first, from the positive x-axis.
+    Angle(Id, Id),
     /// A function.
     Call(Function, Id),
     /// A constant real power that products and roots do not make.
@@ -266,6 +269,14 @@ impl Graph {
         self.scale(factor_a / factor_b, quotient)
     }
 
+    /// The angle of the point (x, y) from the positive x-axis.
+    pub fn angle(&mut self, y: Id, x: Id) -> Id {
+        if let (Some(y), Some(x)) = (self.as_constant(y), self.as_constant(x)) {
+            return self.constant(functions::atan2(y, x));
+        }
+        self.put(Node::Angle(y, x))
+    }
+
     /// A function of a node.
     pub fn call(&mut self, function: Function, a: Id) -> Id {
         if let Some(value) = self.as_constant(a).and_then(|x| function.of_constant(x)) {
@@ -365,6 +376,7 @@ impl Graph {
                 }
                 Node::Product(a, b) => self.multiply(of(&a), of(&b)),
                 Node::Quotient(a, b) => self.divide(of(&a), of(&b)),
+                Node::Angle(y, x) => self.angle(of(&y), of(&x)),
                 Node::Call(function, a) => self.call(function, of(&a)),
                 Node::Power(a, exponent) => self.power(of(&a), number(exponent)),
                 Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => id,
@@ -380,7 +392,7 @@ pub fn for_each_argument(node: &Node, mut each: impl FnMut(Id)) {
     match node {
         Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => {}
         Node::Sum(_, terms) => terms.iter().for_each(|&(_, id)| each(id)),
-        Node::Product(a, b) | Node::Quotient(a, b) => {
+        Node::Product(a, b) | Node::Quotient(a, b) | Node::Angle(a, b) => {
             each(*a);
             each(*b);
         }

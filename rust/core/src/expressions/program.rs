@@ -25,6 +25,8 @@ pub(super) enum Operation {
     },
     Product(Value, Value, Value),
     Quotient(Value, Value, Value),
+    /// The angle of a point, its y first.
+    Angle(Value, Value, Value),
     /// A number over a value.
     Reciprocal(Value, f64, Value),
     /// Sine and cosine of a value.
@@ -52,7 +54,7 @@ impl Operation {
                 let linear = terms.iter().map(|&(_, x)| x);
                 linear.chain(products.iter().flat_map(|&(_, a, b)| [a, b])).collect()
             }
-            Self::Product(_, a, b) | Self::Quotient(_, a, b) => vec![*a, *b],
+            Self::Product(_, a, b) | Self::Quotient(_, a, b) | Self::Angle(_, a, b) => vec![*a, *b],
             Self::Reciprocal(_, _, a)
             | Self::SineCosine { of: a, .. }
             | Self::Call(_, _, a)
@@ -68,6 +70,7 @@ impl Operation {
             | Self::Linear { to, .. }
             | Self::Product(to, ..)
             | Self::Quotient(to, ..)
+            | Self::Angle(to, ..)
             | Self::Reciprocal(to, ..)
             | Self::Call(_, to, _)
             | Self::Power(to, ..) => vec![*to],
@@ -275,6 +278,7 @@ impl Writer<'_> {
                 Some(value) => Operation::Reciprocal(to, value, of(b)),
                 None => Operation::Quotient(to, of(a), of(b)),
             },
+            Node::Angle(y, x) => Operation::Angle(to, of(y), of(x)),
             Node::Call(function @ (Function::Sin | Function::Cos), a) => {
                 let of = of(a);
                 let (sine, cosine) = match self.pairs.get(&of) {

@@ -20,7 +20,7 @@ fn drawn(graph: &mut Graph, choices: &[(u8, u8, u8)]) -> Id {
     made.push(graph.constant(0.75));
     for &(operation, a, b) in choices {
         let (a, b) = (made[usize::from(a) % made.len()], made[usize::from(b) % made.len()]);
-        let id = match operation % 11 {
+        let id = match operation % 12 {
             0 => graph.add(a, b),
             1 => graph.subtract(a, b),
             2 | 3 => graph.multiply(a, b),
@@ -33,6 +33,11 @@ fn drawn(graph: &mut Graph, choices: &[(u8, u8, u8)]) -> Id {
             6 => graph.call(Function::Cos, a),
             7 => graph.call(Function::Tanh, a),
             8 => graph.call(Function::Atan, a),
+            11 => {
+                let square = graph.multiply(b, b);
+                let beside = graph.sum(1.5, &[(1.0, square)]);
+                graph.angle(a, beside)
+            }
             9 => {
                 let square = graph.multiply(a, a);
                 let inside = graph.sum(2.0, &[(1.0, square)]);

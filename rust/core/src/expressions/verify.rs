@@ -92,7 +92,7 @@ impl Reader<'_> {
                 self.registers(1)?;
                 self.constant()?;
             }
-            word::ADD | word::SUBTRACT | word::MULTIPLY | word::DIVIDE | word::SINE_COSINE => {
+            word::ADD | word::SUBTRACT | word::MULTIPLY | word::DIVIDE | word::ANGLE | word::SINE_COSINE => {
                 self.registers(3)?
             }
             word::SQUARE => self.registers(2)?,

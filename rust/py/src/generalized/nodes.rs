@@ -37,6 +37,10 @@ pub(super) fn added(graph: &mut Graph, nodes: &[NodeParts]) -> Result<Vec<Id>> {
                 let (a, b) = (of(0)?, of(1)?);
                 graph.divide(a, b)
             }
+            "atan2" => {
+                let (y, x) = (of(0)?, of(1)?);
+                graph.angle(y, x)
+            }
             "power" => {
                 let (a, b) = (of(0)?, of(1)?);
                 graph.general_power(a, b)
@@ -94,6 +98,7 @@ pub(super) fn shown(graph: &Graph, roots: &[Id]) -> (Vec<NodeParts>, Vec<u32>) {
             }
             Node::Product(a, b) => push(&mut nodes, "product", vec![at(a), at(b)], 0.0),
             Node::Quotient(a, b) => push(&mut nodes, "quotient", vec![at(a), at(b)], 0.0),
+            Node::Angle(y, x) => push(&mut nodes, "atan2", vec![at(y), at(x)], 0.0),
             Node::Call(function, a) => push(&mut nodes, function.name(), vec![at(a)], 0.0),
             Node::Power(a, exponent) => {
                 let base = at(a);

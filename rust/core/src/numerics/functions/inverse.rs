@@ -1,4 +1,4 @@
-//! Inverse functions. Measured: 0.8 units in the last place; the hyperbolic ones 1.0.
+//! Inverse functions. Measured: 0.8 units in the last place, angles of points 0.6; the hyperbolic ones 1.0.
 
 use super::logarithm::parts;
 use super::{Functions, fast_sum, fused, product, quotient};
@@ -9,6 +9,9 @@ const HALF_PI_LOW: f64 = 6.123_233_995_736_766e-17;
 /// tan π/8 and tan 3π/8, about: between them angles are counted from π/4.
 const LOW_TANGENT: f64 = 0.414_213_562_373_095_05;
 const HIGH_TANGENT: f64 = 2.414_213_562_373_095;
+/// 2⁵⁰⁰, and what brings numbers beyond it back.
+const HUGE: f64 = f64::from_bits((1023 + 500) << 52);
+const SHRINK: f64 = f64::from_bits((1023 - 600) << 52);
 
 /// (−1)^k/(2k + 1), k from 1: with a tangent below 0.4143 what is left out is below 2^-62.
 const ATAN: [f64; 22] = [
@@ -80,15 +83,51 @@ pub fn atan<S: Functions>(x: S) -> S {
     let base = S::select(small, zero, S::splat(FRAC_PI_4));
     let base = S::select(large, S::splat(FRAC_PI_2), base);
     let base_low = base * S::splat(HALF_PI_LOW / FRAC_PI_2);
-    let z = u * u;
-    let rest = (u * z).multiply_add(fused(z, &ATAN), u_low.multiply_subtract_from(z, u_low) + base_low);
-    let (head, low) = two_sum(base, u);
-    let value = head + (low + rest);
+    let value = turned_by((base, base_low), (u, u_low));
     let infinite = S::splat(f64::INFINITY).less_equal(size);
     let value = S::select(infinite, S::splat(FRAC_PI_2), value);
     let signed = S::select(x.less(zero), -value, value);
     let tiny = size.less(S::splat(1e-9));
     S::select(tiny, x, S::select(x.less_equal(x), signed, x))
+}
+
+/// base + atan u, of a small u.
+#[inline(always)]
+fn turned_by<S: Functions>((base, base_low): (S, S), (u, u_low): (S, S)) -> S {
+    let z = u * u;
+    let rest = (u * z).multiply_add(fused(z, &ATAN), u_low.multiply_subtract_from(z, u_low) + base_low);
+    let (head, low) = two_sum(base, u);
+    head + (low + rest)
+}
+
+/// The angle of the point (x, y) from the positive x-axis, −π … π; at ±0 over a negative x it is π. NaN at the origin and of
+/// infinite numbers.
+#[inline(always)]
+pub fn atan2<S: Functions>(y: S, x: S) -> S {
+    let (zero, one) = (S::zero(), S::one());
+    let (height, width) = (y.abs(), x.abs());
+    // Sums and what quotients leave out neither overflow nor underflow at a size of about one.
+    let most = S::select(width.less(height), height, width);
+    let scale = S::select(S::splat(HUGE).less(most), S::splat(SHRINK), one);
+    let scale = S::select(most.less(S::splat(1.0 / HUGE)), S::splat(1.0 / SHRINK), scale);
+    let (height, width) = (height * scale, width * scale);
+    let small = height.less(S::splat(LOW_TANGENT) * width);
+    let large = (S::splat(HIGH_TANGENT) * width).less(height);
+    let (up, up_low) = two_sum(height, -width);
+    let (down, down_low) = two_sum(height, width);
+    let above = S::select(small, height, S::select(large, -width, up));
+    let above_low = S::select(small, zero, S::select(large, zero, up_low));
+    let below = S::select(small, width, S::select(large, height, down));
+    let below_low = S::select(small, zero, S::select(large, zero, down_low));
+    let (u, u_low) = quotient((above, above_low), (below, below_low));
+    let eighths = S::select(small, zero, S::select(large, S::splat(2.0), one));
+    let backward = x.less(zero);
+    let eighths = S::select(backward, S::splat(4.0) - eighths, eighths);
+    let (u, u_low) = (S::select(backward, -u, u), S::select(backward, -u_low, u_low));
+    let base = eighths * S::splat(FRAC_PI_4);
+    let base_low = eighths.multiply_add(S::splat(FRAC_PI_4), -base) + eighths * S::splat(0.5 * HALF_PI_LOW);
+    let value = turned_by((base, base_low), (u, u_low));
+    S::select(y.less(zero), -value, value)
 }
 
 /// asin of x + low in 0 … 1/2, as a number and what it leaves out.

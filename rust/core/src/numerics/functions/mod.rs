@@ -10,7 +10,7 @@ mod logarithm;
 mod trigonometric;
 
 pub use hyperbolic::{sinh_cosh, tanh};
-pub use inverse::{acos, acosh, asin, asinh, atan, atanh};
+pub use inverse::{acos, acosh, asin, asinh, atan, atan2, atanh};
 pub use logarithm::ln;
 pub use trigonometric::{sin_cos, tan};
 

@@ -24,6 +24,8 @@ fn lanes_body<V: Vector8 + Functions>(which: usize, x: Lanes) -> Lanes {
         10 => asinh(x),
         11 => acosh(x),
         12 => atanh(x),
+        13 => atan2(x, V::splat(-0.7)),
+        14 => atan2(V::splat(1e-9), x),
         _ => power(x, 1.37),
     }
     .store()
@@ -32,7 +34,7 @@ tiered! {
     fn tier[][](which: usize, x: Lanes) -> Lanes = lanes_body;
 }
 
-const ALL: [Function; 14] = [
+const ALL: [Function; 16] = [
     |x| sin_cos(x).0,
     |x| sin_cos(x).1,
     tan,
@@ -46,6 +48,8 @@ const ALL: [Function; 14] = [
     asinh,
     acosh,
     atanh,
+    |x| atan2(x, -0.7),
+    |x| atan2(1e-9, x),
     |x| power(x, 1.37),
 ];
 
