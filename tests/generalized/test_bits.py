@@ -45,7 +45,7 @@ def copies() -> dict[str, Any]:
     }
 
 
-METHODS = {"gauss16": {}, "gauss4": {"dt": 0.05}, "dop853": {"rtol": 1e-9}, "rk4": {"dt": 0.02}}
+METHODS = {"gauss16": {}, "gauss4": {"dt": 0.05}, "dop853": {"rtol": 1e-9}, "taylor": {}, "rk4": {"dt": 0.02}}
 
 
 def columns(out: Any) -> list[Any]:

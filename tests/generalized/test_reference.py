@@ -33,7 +33,7 @@ def test_gauss16_has_every_digit(name: str, makers: dict[str, Any]) -> None:
 
 
 # Explicit methods at a tolerance below their own rounding: 210 ε measured, of ten times as many steps.
-@pytest.mark.parametrize(("method", "rtol"), [("dop853", 1e-15), ("verner98", 1e-14)])
+@pytest.mark.parametrize(("method", "rtol"), [("dop853", 1e-15), ("verner98", 1e-14), ("taylor", 1e-15)])
 @pytest.mark.parametrize("name", KEPT)
 def test_explicit_methods_have_all_but_two(name: str, method: str, rtol: float) -> None:
     assert max(errors(name, BY_FUNCTIONS, method, rtol)) <= 800 * EPSILON
@@ -42,7 +42,13 @@ def test_explicit_methods_have_all_but_two(name: str, method: str, rtol: float) 
 # Errors of all steps add up, up to 3000 of them within the memory of a motion.
 @pytest.mark.parametrize(
     ("method", "rtol"),
-    [("dop853", 1e-10), ("tsitouras54", 1e-10), ("dormand_prince54", 1e-10), ("bogacki_shampine32", 1e-6)],
+    [
+        ("dop853", 1e-10),
+        ("taylor", 1e-10),
+        ("tsitouras54", 1e-10),
+        ("dormand_prince54", 1e-10),
+        ("bogacki_shampine32", 1e-6),
+    ],
 )
 @pytest.mark.parametrize("name", [name for name in KEPT if name != "henon_heiles_decimal"])
 def test_a_tolerance_is_kept(name: str, method: str, rtol: float) -> None:

@@ -384,10 +384,6 @@ def _method(method: object, separable: bool, dt: float | None, *, constrained: b
         raise InvalidInput("dt", f"{method} chooses its own steps; leave dt out")
     if not kind.adaptive and dt is None:
         raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")
-    if method == "taylor":
-        raise InvalidInput(
-            "method", "taylor expands scenes of particles; for generalized coordinates gauss16 and dop853 do"
-        )
     splits = not kind.adaptive and "a" not in kind.coefficients
     if splits and not separable:
         raise InvalidInput(

@@ -314,7 +314,7 @@ fn call<S: functions::Functions>(word: u16, x: S) -> S {
 
 /// L D Lᵀ of a symmetric matrix, its lower triangle row by row, in place: L below the diagonal, 1/D on it. `row` is room.
 #[inline(always)]
-fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S]) {
+pub(super) fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S]) {
     for i in 0..row.len() {
         let start = i * (i + 1) / 2;
         for j in 0..i {
@@ -337,7 +337,7 @@ fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S]) {
 
 /// Solves with what [`factor`] has made.
 #[inline(always)]
-fn solve<S: Scalar>(matrix: &[S], right: &mut [S]) {
+pub(super) fn solve<S: Scalar>(matrix: &[S], right: &mut [S]) {
     let n = right.len();
     for i in 0..n {
         let mut x = right[i];

@@ -34,11 +34,18 @@ pub struct Machine<S> {
 impl<S: Width> Machine<S> {
     /// For these parameters.
     pub fn new(code: Arc<Code>, parameters: &[S]) -> Self {
-        let mut registers = vec![S::zero(); room::<1>(&code)];
+        let registers = vec![S::zero(); room::<1>(&code)];
+        let mut machine = Self { code, registers };
+        machine.set_parameters(parameters);
+        machine
+    }
+
+    /// For other parameters from now on.
+    pub fn set_parameters(&mut self, parameters: &[S]) {
+        let Self { code, registers } = self;
         let first = code.variables() + 1;
         registers[first..first + code.parameters()].copy_from_slice(parameters);
-        S::execute(&code, Part::Preamble, &mut registers);
-        Self { code, registers }
+        S::execute(code, Part::Preamble, registers);
     }
 
     /// The code.

@@ -13,11 +13,13 @@ pub mod graph;
 mod identity;
 pub mod machine;
 pub mod program;
+pub mod series;
 mod verify;
 
 pub use code::Code;
 pub use graph::{Graph, Id, Node};
 pub use machine::Machine;
+pub use series::Series;
 
 #[cfg(test)]
 mod tests;

@@ -4,6 +4,7 @@
 //! run which looks between its steps asks for.
 
 use crate::error::Result;
+use crate::numerics::real::Mask;
 use crate::ode::Method;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
@@ -13,20 +14,20 @@ use crate::ode::system::System;
 use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
-/// A method with equal steps at work on one trajectory.
-pub(super) struct FixedSteps {
-    stepper: Box<dyn Stepper<f64>>,
+/// A method with equal steps at work on one trajectory, or on eight that go from node to node together.
+pub(super) struct FixedSteps<S: Controlled> {
+    stepper: Box<dyn Stepper<S>>,
     h: f64,
     node: u64,
-    next: State<f64>,
+    next: State<S>,
 }
 
-impl FixedSteps {
+impl<S: Controlled> FixedSteps<S> {
     pub(super) fn new(
         method: &'static Method,
         h: f64,
-        system: &dyn System<f64>,
-        state: &State<f64>,
+        system: &dyn System<S>,
+        state: &State<S>,
     ) -> Result<Self> {
         let mut stepper = stepper(method, h, system, state)?;
         stepper.look_back();
@@ -34,30 +35,36 @@ impl FixedSteps {
     }
 }
 
-impl Trial<f64> for FixedSteps {
+impl<S: Controlled> Trial<S> for FixedSteps<S> {
     fn start(
         &mut self,
-        _: bool,
-        _: &mut dyn System<f64>,
-        _: &State<f64>,
-        clock: &mut Clock<f64>,
-        _: &Norm<f64>,
+        fresh: S::Mask,
+        _: &mut dyn System<S>,
+        _: &State<S>,
+        clock: &mut Clock<S>,
+        _: &Norm<S>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        clock.h = self.h;
+        if fresh.any() {
+            self.stepper.restart();
+            self.node = 0;
+        }
+        clock.h = S::splat(self.h);
         Ok(())
     }
 
     fn attempt(
         &mut self,
-        running: bool,
-        system: &mut dyn System<f64>,
-        state: &State<f64>,
-        clock: &mut Clock<f64>,
-        _: &Norm<f64>,
+        running: S::Mask,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        clock: &mut Clock<S>,
+        _: &Norm<S>,
         ticker: &mut Ticker<'_>,
-    ) -> Result<Settled<f64>> {
-        let h = f64::next_step(clock, running);
+    ) -> Result<Settled<S>> {
+        // Those that run are at the same node, and take the same step.
+        let length = S::next_step(clock, running).abs().largest_lane().first_lane();
+        let h = length.copysign(self.h);
         self.next.copy_from(state);
         if h == self.h {
             let _one = self.stepper.step(self.node, 1, &mut self.next, system, ticker)?;
@@ -66,30 +73,31 @@ impl Trial<f64> for FixedSteps {
             self.stepper.between(self.node, h, &mut self.next, system, ticker)?;
         }
         // Without an error the next step is the longest, which is this one.
-        let outcome = f64::settle(clock, running, 0.0, &Rule::new(1, self.h.abs()));
-        clock.h = self.h;
+        let outcome = S::settle(clock, running, S::zero(), &Rule::new(1, S::splat(self.h.abs())));
+        clock.h = S::splat(self.h);
         Ok(outcome)
     }
 
-    fn next(&self) -> &State<f64> {
+    fn next(&self) -> &State<S> {
         &self.next
     }
 
     fn at(
         &mut self,
-        outcome: &Settled<f64>,
-        system: &mut dyn System<f64>,
-        state: &State<f64>,
-        theta: f64,
-        into: &mut State<f64>,
+        outcome: &Settled<S>,
+        system: &mut dyn System<S>,
+        state: &State<S>,
+        theta: S,
+        into: &mut State<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
         into.copy_from(state);
-        self.stepper.between(self.node, theta * outcome.h, into, system, ticker)
+        let past = (theta * outcome.h).abs().largest_lane().first_lane().copysign(self.h);
+        self.stepper.between(self.node, past, into, system, ticker)
     }
 
-    fn keep(&mut self, accepted: bool, state: &mut State<f64>) {
-        if accepted {
+    fn keep(&mut self, accepted: S::Mask, state: &mut State<S>) {
+        if accepted.any() {
             state.copy_from(&self.next);
             self.node += 1;
         }

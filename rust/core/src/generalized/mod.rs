@@ -4,6 +4,7 @@
 //! (a cyclic coordinate, a constant mass matrix) is then skipped in the code that runs; nothing is derived twice, and no
 //! matrix is inverted but with numbers.
 
+pub mod abreast;
 mod constraints;
 mod elimination;
 pub mod evaluate;

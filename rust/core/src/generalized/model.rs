@@ -5,7 +5,7 @@ use super::{hamiltonian, lagrangian};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
 use crate::expressions::program::{LinearSystem, Output};
-use crate::expressions::{Code, Graph, Id};
+use crate::expressions::{Code, Graph, Id, Series};
 use crate::ode::system::{Form, Needs};
 use std::sync::Arc;
 
@@ -124,6 +124,15 @@ impl Model {
     pub fn function(&self, expressions: &[Id]) -> Result<Code> {
         let outputs: Vec<Output> = expressions.iter().copied().map(Output::Node).collect();
         compile(&self.source.graph, (self.numbers(), self.source.parameters), &[], &outputs)
+    }
+
+    /// Its equations as recurrences of Taylor coefficients.
+    ///
+    /// # Errors
+    /// None that its code has not.
+    pub fn series(&self) -> Result<Arc<Series>> {
+        let inputs = (self.numbers, self.source.parameters);
+        Series::new(&self.source.graph, inputs, &self.systems, &self.rates).map(Arc::new)
     }
 
     /// What its equations look at.

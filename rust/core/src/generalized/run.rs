@@ -9,16 +9,17 @@ use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
 use crate::error::{Error, Result};
-use crate::expressions::{Code, Machine};
+use crate::expressions::{Code, Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::embedded::EmbeddedStep;
 use crate::ode::events::{Condition, Events, Watch, Zeros};
 use crate::ode::norm::{Norm, RootMeanSquare};
 use crate::ode::run::{Ending, Recorder, Step, run};
 use crate::ode::state::State;
-use crate::ode::step_control::Rule;
+use crate::ode::step_control::{Controlled, Rule};
 use crate::ode::system::{Form, System};
 use crate::ode::table::Table;
+use crate::ode::taylor::TaylorStep;
 use crate::ode::trial::Trial;
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
@@ -54,6 +55,8 @@ pub struct Request {
     pub held: bool,
     /// A function of the state whose zeros are wanted.
     pub section: Option<Section>,
+    /// The equations as recurrences, if the method is made of them.
+    pub series: Option<Arc<Series>>,
 }
 
 /// Zeros of an expression on the way.
@@ -106,6 +109,45 @@ fn delta(rtol: f64) -> f64 {
     (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
 }
 
+/// What errors are measured by, of so many numbers.
+pub(super) fn norm<S: Controlled>(request: &Request, numbers: usize) -> Norm<S> {
+    if request.series.is_some() {
+        return Norm::of_numbers(S::splat(request.rtol));
+    }
+    let (atol, rtol) = (S::splat(request.rtol * 1e-3), S::splat(request.rtol));
+    Norm::root_mean_square(RootMeanSquare { atol: vec![atol; numbers], rtol: vec![rtol; numbers] })
+}
+
+/// What ends a run that takes too many steps.
+pub(super) fn too_many_steps(most: u64) -> String {
+    format!("{most} steps do not reach the end; pass a larger max_steps")
+}
+
+impl Request {
+    /// The step of a method that has a fixed one, with the sign of time.
+    pub(super) fn fixed_step(&self, method: &Method) -> Result<f64> {
+        let missing = || Error::invalid("dt", format!("{} needs a step dt", method.name));
+        Ok(self.dt.ok_or_else(missing)?.copysign(self.span.1 - self.span.0))
+    }
+}
+
+impl Solution {
+    /// Of a run that has not begun.
+    pub(super) fn at(t0: f64) -> Self {
+        Self {
+            ending: Ending::Finished,
+            failure: None,
+            reached: t0,
+            t: vec![],
+            y: vec![],
+            steps: 0,
+            evaluations: 0,
+            h: 0.0,
+            crossings: Zeros::default(),
+        }
+    }
+}
+
 /// Runs a model from a state.
 ///
 /// # Errors
@@ -117,17 +159,12 @@ pub fn solve(
     ticker: &mut Ticker<'_>,
 ) -> Result<Solution> {
     let (t0, end) = request.span;
-    let mut system = Motion::<f64>::new(model, parameters, t0);
-    if matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })) {
-        system = system.flat();
-    }
+    let mut system = Motion::<f64>::of(model, request, parameters, t0);
     let mut state = match system.form() {
         Form::FirstOrder(_) => State::first_order(y0.to_vec()),
         Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
     };
-    let mean =
-        RootMeanSquare { atol: vec![request.rtol * 1e-3; y0.len()], rtol: vec![request.rtol; y0.len()] };
-    let norm = Norm::root_mean_square(mean);
+    let norm = norm(request, y0.len());
     let max_step = request.max_step.unwrap_or(f64::INFINITY);
     let mut crossings = request
         .section
@@ -141,17 +178,7 @@ pub fn solve(
     if t0 == end {
         table.still(request.span, y0)?;
         let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
-        return Ok(Solution {
-            ending: Ending::Finished,
-            failure: None,
-            reached: end,
-            t,
-            y,
-            steps: 0,
-            evaluations: 0,
-            h: 0.0,
-            crossings: Zeros::default(),
-        });
+        return Ok(Solution { reached: end, t, y, ..Solution::at(t0) });
     }
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
     let mut recorder = Counted { table, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
@@ -180,27 +207,19 @@ pub fn solve(
                 let trial = EmbeddedStep::with_rule(tableau, drive.system, drive.state, rule);
                 drive.with(trial, projector.take(), &mut recorder, |_| {})
             }
+            Scheme::Taylor(orders) => {
+                let trial = TaylorStep::new(*orders, drive.system, drive.state, max_step);
+                drive.with(trial, projector.take(), &mut recorder, |_| {})
+            }
             _ => {
-                let Some(dt) = request.dt else {
-                    return Err(Error::invalid("dt", format!("{} needs a step dt", method.name)));
-                };
-                let h = if end < t0 { -dt } else { dt };
+                let h = request.fixed_step(method)?;
                 let trial = FixedSteps::new(method, h, drive.system, drive.state)?;
                 drive.with(trial, projector.take(), &mut recorder, |_| {})
             }
         },
     };
     let (ending, failure) = match outcome {
-        Ok(Ending::StepTooSmall) => {
-            let why =
-                "the step fell below what can be told from the time: a singularity, or a rtol too small";
-            (Ending::StepTooSmall, Some(why.to_owned()))
-        }
-        Ok(Ending::NotFinite) => (
-            Ending::NotFinite,
-            Some("a number became infinite, or none: a singularity of the expressions".to_owned()),
-        ),
-        Ok(ending) => (ending, None),
+        Ok(ending) => (ending, ending.reason()),
         Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
         Err(error) => return Err(error),
     };
@@ -239,10 +258,7 @@ impl Recorder for Counted<'_> {
 
     fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
         if self.steps == self.most {
-            return Err(Error::Convergence {
-                message: format!("{} steps do not reach the end; pass a larger max_steps", self.most),
-                time: step.from,
-            });
+            return Err(Error::Convergence { message: too_many_steps(self.most), time: step.from });
         }
         self.steps += 1;
         let length = (step.to - step.from).abs();

@@ -65,6 +65,7 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         outputs: Some(vec![end]),
         held: true,
         section: None,
+        series: None,
     };
     let control = Control::default();
     solve(model, &request, (y0, parameters), &mut Ticker::quiet(&control)).unwrap()

@@ -83,6 +83,11 @@ impl<S: Controlled> Norm<S> {
         Self { rtol, blocks, together, weights: None, mean: None }
     }
 
+    /// Each number by itself, against how far it goes: of methods that know that without a norm (series do).
+    pub fn of_numbers(rtol: S) -> Self {
+        Self { rtol, blocks: vec![], together: false, weights: None, mean: None }
+    }
+
     /// The root mean square of all numbers of a system of the first order, each scaled by its own tolerances.
     pub fn root_mean_square(mean: RootMeanSquare<S>) -> Self {
         Self { rtol: S::zero(), blocks: vec![], together: false, weights: None, mean: Some(mean) }

@@ -30,6 +30,20 @@ pub enum Ending {
     Interrupted,
 }
 
+impl Ending {
+    /// What ended a run of given equations, if that was no end.
+    pub fn reason(self) -> Option<String> {
+        let why = match self {
+            Self::StepTooSmall => {
+                "the step fell below what can be told from the time: a singularity, or a rtol too small"
+            }
+            Self::NotFinite => "a number became infinite, or none: a singularity of the expressions",
+            Self::Finished | Self::Stopped | Self::Interrupted => return None,
+        };
+        Some(why.to_owned())
+    }
+}
+
 /// What looks at the steps of a run.
 pub trait Recorder {
     /// The state at the start.
@@ -145,7 +159,7 @@ fn steps<T: Trial<f64>>(
     let mut between = state.clone();
     loop {
         let from = t0 + clock.elapsed;
-        let smallest = SMALLEST_STEP * spacing(from);
+        let smallest = smallest_step(from);
         if clock.h.abs() < smallest && clock.elapsed != clock.end {
             clock.h = direction * smallest;
         }
@@ -185,8 +199,8 @@ fn steps<T: Trial<f64>>(
     }
 }
 
-/// From a time to the next number.
-fn spacing(t: f64) -> f64 {
+/// The shortest step from a time.
+pub(crate) fn smallest_step(t: f64) -> f64 {
     let t = t.abs();
-    t.next_up() - t
+    SMALLEST_STEP * (t.next_up() - t)
 }

@@ -1,10 +1,11 @@
 //! A motion as a Taylor series, and what a system has to do to be expanded in one.
 //!
 //! The one idea: of `q'' = a(t, q, v)` the n-th coefficient of the acceleration follows from those of `q` and `v` up to
-//! the n-th, and gives those of order n+1 and n+2. A [`Jet`] holds them; time is counted in a unit near the step, a power of two,
-//! so that no power of it leaves the range of numbers.
+//! the n-th, and gives those of order n+1 and n+2; of `y' = f(t, y)` the n-th of the rate gives that of order n+1. A [`Jet`]
+//! holds them; time is counted in a unit near the step, a power of two, so that no power of it leaves the range of numbers.
 
 use super::state::State;
+use super::system::Form;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Pass, Scaled, View};
 use crate::numerics::real::Real;
@@ -18,7 +19,7 @@ pub struct Jet<S> {
     pub len: usize,
     /// Blocks of coordinates, from order 0 to `order + 1`.
     pub q: Vec<S>,
-    /// Blocks of velocities (in that unit of time), from order 0 to `order`.
+    /// Blocks of velocities (in that unit of time), from order 0 to `order`; of a system of the first order, nothing.
     pub v: Vec<S>,
     /// What the coordinates of order 0 leave out, then the velocities.
     pub rests: [Vec<S>; 2],
@@ -59,10 +60,13 @@ impl<S: Element> Jet<S> {
         &self.v[n * self.len..][..self.len]
     }
 
-    /// Begins with a state.
+    /// Begins with a state; one of the first order is all coordinates.
     pub fn begin(&mut self, state: &State<S>, t: S, unit: S) {
         let len = self.len;
         (self.t, self.unit) = (t, unit);
+        if matches!(state.form(), Form::FirstOrder(_)) {
+            return self.q[..len].copy_from_slice(state.all().0);
+        }
         self.q[..len].copy_from_slice(state.q());
         self.rests[0].copy_from_slice(state.q_compensation());
         let (v, rest) = state.velocity();
@@ -83,6 +87,12 @@ impl<S: Element> Jet<S> {
         let [of_v, of_q] = [&self.inverse[n + 1], &self.inverse[n + 2]];
         let (v, q) = (&mut self.v[(n + 1) * len..][..len], &mut self.q[(n + 2) * len..][..len]);
         S::pass(Raise { a, of_v, of_q, v, q });
+    }
+
+    /// Takes up the coefficient of order `n` of the rates of a system of the first order.
+    pub fn raise_rates(&mut self, n: usize, rates: &[S]) {
+        let next = &mut self.q[(n + 1) * self.len..][..self.len];
+        S::pass(RaiseRates { rates, over: &self.inverse[n + 1], next });
     }
 }
 
@@ -126,6 +136,24 @@ impl<S: Element> Pass<S> for Raise<'_, S> {
     fn run<V: View<S>>(self) {
         let (of_v, of_q) = (V::scaled(self.of_v), V::scaled(self.of_q));
         raise(V::view(self.a), of_v, of_q, V::view_mut(self.v), V::view_mut(self.q));
+    }
+}
+
+/// The next coefficients that follow from those of rates.
+struct RaiseRates<'a, S> {
+    rates: &'a [S],
+    over: &'a Scaled<S>,
+    next: &'a mut [S],
+}
+
+impl<S: Element> Pass<S> for RaiseRates<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let over = V::scaled(self.over);
+        for (next, &rate) in V::view_mut(self.next).iter_mut().zip(V::view(self.rates)) {
+            *next = rate.multiply_add(over.0, rate * over.1);
+        }
     }
 }
 

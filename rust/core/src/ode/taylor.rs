@@ -7,13 +7,13 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, LargestRoot, Sum, nest};
+use super::passes::series::{Choice, LargestRoot, OwnSizes, Sum, nest};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
 use super::system::{Form, System};
 use super::trial::{Cost, Trial};
-use crate::error::{Error, Result};
+use crate::error::Result;
 use crate::numerics::element::Element;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::real::{Mask, Real};
@@ -34,6 +34,10 @@ const FIRST_ORDER: usize = 6;
 const MARGIN: f64 = 0.01;
 /// Looser tolerances leave the series without its convergence.
 const LOOSEST: f64 = 1e-3;
+/// The first unit of numbers that are measured by themselves, as a part of the whole time.
+const FIRST_UNIT: f64 = 1.0 / 1024.0;
+/// How far numbers go in a step is found from the step, and that from how far they go: each time with a seventh of the error.
+const REFINEMENTS: usize = 2;
 
 /// Taylor series at work on one state (of one or of eight trajectories).
 pub struct TaylorStep<S: Element> {
@@ -73,6 +77,23 @@ impl<S: Controlled> TaylorStep<S> {
         order.max(self.orders.lowest)
     }
 
+    /// One over the step that the coefficients of two orders allow.
+    fn inverse_step_of(&self, pair: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
+        if !norm.blocks.is_empty() {
+            let squares = self.sizes(pair, state, elapsed, norm);
+            return S::pass(LargestRoot { squares, orders: pair });
+        }
+        let Jet { q, len, .. } = &self.jet;
+        let (mut step, mut inverse) = (S::one(), S::zero());
+        for _ in 0..=REFINEMENTS {
+            let sizes = OwnSizes { blocks: q, len: *len, orders: pair, step: &step, tolerance: &norm.rtol };
+            inverse = S::pass(LargestRoot { squares: S::pass(sizes), orders: pair });
+            let found = S::zero().less(inverse).and(inverse.less(S::splat(HUGE)));
+            step = S::select(found, S::one() / inverse, step);
+        }
+        inverse
+    }
+
     /// The squared scaled sizes of the coefficients of two orders.
     fn sizes(&self, orders: [usize; 2], state: &State<S>, elapsed: &S, norm: &Norm<S>) -> [S; 2] {
         let Jet { q, v, len, unit, .. } = &self.jet;
@@ -91,9 +112,7 @@ impl<S: Controlled> TaylorStep<S> {
         let mut highest = self.jet.order;
         // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact.
         while highest > 3 && inverse.less_equal(S::zero()).and(running).any() {
-            let pair = [highest, highest - 1];
-            let squares = self.sizes(pair, state, elapsed, norm);
-            let found = S::pass(LargestRoot { squares, orders: pair });
+            let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
             inverse = S::select(inverse.less_equal(S::zero()), found, inverse);
             highest -= 2;
         }
@@ -104,6 +123,11 @@ impl<S: Controlled> TaylorStep<S> {
     fn state_at(jet: &Jet<S>, state: &State<S>, x: S, into: &mut State<S>) {
         let Jet { q, v, order, rests, unit, .. } = jet;
         let x = &(x / *unit);
+        if matches!(state.form(), Form::FirstOrder(_)) {
+            let (y, blocks) = (state.all(), &q[..]);
+            let (highest, factor, into) = (*order, &S::one(), into.all_mut());
+            return S::pass(Sum { y, blocks, rest: None, highest, x, factor, into });
+        }
         let (of_q, of_v) = into.halves_mut();
         S::pass(Sum {
             y: state.position(),
@@ -144,23 +168,25 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         norm: &Norm<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<()> {
-        if !matches!(system.form(), Form::SecondOrder(_)) {
-            return Err(Error::Internal("a Taylor series of a system of the first order".to_owned()));
-        }
         let rtol = norm.rtol.first_lane();
         self.jet.order = self.order(rtol);
         let share = MARGIN * Real::min(1.0, LOOSEST / rtol);
         self.margin = share.rough_power(1.0 / self.jet.order as f64);
+        let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
+        self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
+        if norm.blocks.is_empty() {
+            let unit = (span * S::splat(FIRST_UNIT)).power_below();
+            self.unit = S::select(fresh, unit, self.unit);
+            return Ok(());
+        }
         let mut a = vec![S::zero(); self.jet.len];
         system.acceleration(&clock.elapsed, state.q(), state.v(), &mut a, ticker)?;
         let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
         let change = |k| Change { k, stride: self.jet.len, terms: &terms, factor: S::one() };
         let slope2 = norm.sizes(state, state, &clock.elapsed, &[change(state.v()), change(&a)])[0];
-        let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
         let time = S::one() / (norm.rtol * slope2.sqrt());
         let time = S::select(time.less(span), time, span).max(span * S::splat(BRIEFEST));
         self.unit = S::select(fresh, time.power_below(), self.unit);
-        self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
         Ok(())
     }
 

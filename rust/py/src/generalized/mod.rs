@@ -16,6 +16,7 @@ use runs::{Asked, collected};
 use std::sync::Arc;
 use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
+use visviva_core::generalized::abreast::{solve_together, together};
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::{Linear, modes};
@@ -24,6 +25,7 @@ use visviva_core::generalized::run::solve;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
 use visviva_core::generalized::variation::variational;
 use visviva_core::generalized::{Kind, Model, Source};
+use visviva_core::numerics::lanes::WIDTH;
 use visviva_core::parallel::{for_chunks, thread_count};
 use visviva_core::{Error, Result};
 
@@ -348,23 +350,34 @@ impl GeneralizedModel {
         let request = asked.request(py, self)?;
         let threads = thread_count(threads).map_err(|error| raised(py, error))?;
         let (numbers, count) = (model.numbers(), model.source.parameters);
+        let several = if together(model, &request) { abreast(members, threads) } else { 1 };
         let worked = compute(py, members as u64, progress.as_ref(), |ticker| {
-            for_chunks(threads, members, ticker, |member, ticker| {
-                let of = |all: &[f64], width: usize| {
-                    all.get(member * width..(member + 1) * width).map(<[f64]>::to_vec)
-                };
-                let (state, own) =
-                    (of(&states, numbers).unwrap_or_default(), of(&parameters, count).unwrap_or_default());
-                let outcome = solve(model, &request, (&state, &own), ticker);
+            for_chunks(threads, members.div_ceil(several), ticker, |chunk, ticker| {
+                let last = (chunk * several + several).min(members);
+                let of = |all: &[f64], width: usize| all[chunk * several * width..last * width].to_vec();
+                let (states, own) = (of(&states, numbers), of(&parameters, count));
+                if several > 1 {
+                    return solve_together(model, &request, (&states, &own), ticker);
+                }
+                let outcome = solve(model, &request, (&states, &own), ticker);
                 ticker.advance(1);
-                outcome
+                Ok(vec![outcome?])
             })
         })?;
         let (solutions, interrupted) = worked.partial(py)?;
+        let solutions = solutions.concat();
         let result = collected(py, &solutions, numbers)?;
         result.set_item("interrupted", interrupted)?;
         Ok(result)
     }
+}
+
+/// The most copies that are run side by side: lanes are taken up by those that wait.
+const ABREAST: usize = 64;
+
+/// How many copies are run side by side: all threads have as much to do, and eight lanes.
+fn abreast(members: usize, threads: usize) -> usize {
+    if members == 1 { 1 } else { members.div_ceil(threads).next_multiple_of(WIDTH).min(ABREAST) }
 }
 
 /// Constraints that do not leave the multipliers determined.

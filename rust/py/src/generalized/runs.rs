@@ -10,6 +10,7 @@ use std::sync::Arc;
 use visviva_core::generalized::gauss;
 use visviva_core::generalized::run::{Integrator, Request, Section, Solution};
 use visviva_core::ode::run::Ending;
+use visviva_core::ode::{Method, Scheme};
 use visviva_core::{Error, registry};
 
 /// What is asked of a run.
@@ -44,8 +45,11 @@ impl Asked<'_> {
             Ok(Section { code, direction: *direction })
         });
         let section = section.transpose().map_err(|error| raised(py, error))?;
+        let series = matches!(integrator, Integrator::Table(Method { scheme: Scheme::Taylor(_), .. }));
+        let series = series.then(|| of.model.series()).transpose().map_err(|error| raised(py, error))?;
         Ok(Request {
             section,
+            series,
             integrator,
             span: self.span,
             rtol: self.rtol,

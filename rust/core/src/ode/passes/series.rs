@@ -32,6 +32,56 @@ impl<S: Element> Pass<S> for LargestRoot<S> {
     }
 }
 
+/// The largest squared ratio of the coefficients of two orders to how far their number goes in a step, times a tolerance.
+#[derive(Debug)]
+pub(in crate::ode) struct OwnSizes<'a, S> {
+    /// Blocks of coefficients, from order 0 on.
+    pub(in crate::ode) blocks: &'a [S],
+    /// Numbers of a block.
+    pub(in crate::ode) len: usize,
+    /// The two orders.
+    pub(in crate::ode) orders: [usize; 2],
+    /// The step.
+    pub(in crate::ode) step: &'a S,
+    /// The tolerance.
+    pub(in crate::ode) tolerance: &'a S,
+}
+
+/// Orders that tell how far a number goes: a place, a velocity and an acceleration may vanish, but seldom all of them.
+const TELLING: usize = 3;
+
+impl<S: Element> Pass<S> for OwnSizes<'_, S> {
+    type Output = [S; 2];
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> [S; 2] {
+        let (blocks, step) = (V::view(self.blocks), V::load(*self.step));
+        let tolerance = V::load(*self.tolerance);
+        let mut largest = [V::zero(); 2];
+        for number in 0..self.len {
+            let (mut size, mut later, mut power) = (V::zero(), V::zero(), V::one());
+            for order in 1..=self.orders[0] / 2 {
+                power = power * step;
+                let goes = (blocks[order * self.len + number] * power).abs();
+                if order <= TELLING {
+                    size = goes.max(size);
+                } else {
+                    later = goes.max(later);
+                }
+            }
+            let size = V::select(V::zero().less(size), size, later) * tolerance;
+            for which in 0..2 {
+                let of = blocks[self.orders[which] * self.len + number].abs();
+                let ratio = V::select(of.less_equal(V::zero()), V::zero(), of / size);
+                let square = ratio * ratio;
+                // No number is as bad as an infinite one.
+                let sound = square.less(V::splat(HUGE));
+                largest[which] = V::select(sound, square, V::splat(f64::INFINITY)).max(largest[which]);
+            }
+        }
+        [largest[0].store(), largest[1].store()]
+    }
+}
+
 /// The choice of a step.
 #[derive(Debug)]
 pub(in crate::ode) struct Choice<'a, S: Real> {

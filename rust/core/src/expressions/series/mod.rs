@@ -1,0 +1,146 @@
+//! Expressions as Taylor series: what a [`Program`] computes from numbers, from coefficients, order by order.
+//!
+//! The one idea: the coefficient of order n of every operation is a sum of products of coefficients of lower orders and of its
+//! arguments' coefficient of order n, so one walk over the operations for each order expands them all. A function is the
+//! integral of its derivative, which is made of the same operations; a linear system is factored once for all orders.
+//! R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank & A. Walther, *Evaluating Derivatives* (2008), chapter 13.
+
+mod lowered;
+mod recurrence;
+
+use super::execute::Scalar;
+use super::graph::Graph;
+use super::program::{self, LinearSystem, Output};
+use crate::error::Result;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::real::Real;
+use crate::tiered;
+use recurrence::Recurrence;
+use std::sync::Arc;
+
+/// Coefficients that there is room for.
+pub(crate) const ORDERS: usize = 24;
+
+/// A program as recurrences. Series begin at multiples of [`ORDERS`]; constants, which have no other coefficient, lie before
+/// them.
+#[derive(Clone, Debug)]
+pub struct Series {
+    variables: usize,
+    parameters: usize,
+    /// What is done once for each set of parameters.
+    preamble: Vec<Recurrence>,
+    body: Vec<Recurrence>,
+    /// Where the state and the time are, and the results.
+    inputs: Vec<usize>,
+    outputs: Vec<usize>,
+    /// Numbers in all, and room for factored matrices.
+    numbers: usize,
+    scratch: usize,
+}
+
+impl Series {
+    /// Of these outputs, as functions of so many numbers of a state, the time, and so many parameters.
+    ///
+    /// # Errors
+    /// A variable that is not there.
+    pub fn new(
+        graph: &Graph,
+        inputs: (usize, usize),
+        systems: &[LinearSystem],
+        outputs: &[Output],
+    ) -> Result<Self> {
+        Ok(lowered::lowered(&program::write(graph, inputs, systems, outputs)?))
+    }
+}
+
+/// What series hold: a number, or eight.
+pub trait Coefficient: Real {
+    /// The coefficients of order `order` of everything that a list of recurrences makes.
+    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]);
+}
+
+impl Coefficient for f64 {
+    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
+        one(of, order, numbers, scratch);
+    }
+}
+
+impl Coefficient for Lanes {
+    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
+        lanes(of, order, numbers, scratch);
+    }
+}
+
+#[inline(always)]
+fn lanes_body<V: Vector8 + Scalar>(
+    of: &[Recurrence],
+    order: usize,
+    numbers: &mut [Lanes],
+    scratch: &mut [Lanes],
+) {
+    recurrence::expand(of, order, V::view_mut(numbers), V::view_mut(scratch));
+}
+
+#[inline(always)]
+#[expect(clippy::extra_unused_type_parameters, reason = "the tier gives its instructions, not its lanes")]
+fn one_body<V: Vector8>(of: &[Recurrence], order: usize, numbers: &mut [f64], scratch: &mut [f64]) {
+    recurrence::expand(of, order, numbers, scratch);
+}
+
+tiered! {
+    fn lanes[][](of: &[Recurrence], order: usize, numbers: &mut [Lanes], scratch: &mut [Lanes]) = lanes_body;
+    fn one[][](of: &[Recurrence], order: usize, numbers: &mut [f64], scratch: &mut [f64]) = one_body;
+}
+
+/// Series with their coefficients, whose preamble is done.
+#[derive(Clone, Debug)]
+pub struct Expansion<S> {
+    of: Arc<Series>,
+    numbers: Vec<S>,
+    scratch: Vec<S>,
+}
+
+impl<S: Coefficient> Expansion<S> {
+    /// For these parameters.
+    pub fn new(of: Arc<Series>, parameters: &[S]) -> Self {
+        let (numbers, scratch) = (vec![S::zero(); of.numbers], vec![S::zero(); of.scratch]);
+        let mut expansion = Self { of, numbers, scratch };
+        expansion.set_parameters(parameters);
+        expansion
+    }
+
+    /// For other parameters from now on.
+    pub fn set_parameters(&mut self, parameters: &[S]) {
+        let Self { of, numbers, scratch } = self;
+        numbers[..of.parameters].copy_from_slice(parameters);
+        S::expand(&of.preamble, 0, numbers, scratch);
+    }
+
+    /// Sets the coefficient of an order of a number of the state, or of the time, which comes after them.
+    #[inline]
+    pub fn set(&mut self, index: usize, order: usize, value: S) {
+        self.numbers[self.of.inputs[index] + order] = value;
+    }
+
+    /// Finds all coefficients of an order; those of lower orders were found before.
+    #[inline]
+    pub fn expand(&mut self, order: usize) {
+        S::expand(&self.of.body, order, &mut self.numbers, &mut self.scratch);
+    }
+
+    /// The coefficient of an order of a result.
+    #[inline]
+    pub fn output(&self, index: usize, order: usize) -> S {
+        let place = self.of.outputs[index];
+        // Constants have no further coefficient.
+        if order > 0 && place < self.of.inputs[0] { S::zero() } else { self.numbers[place + order] }
+    }
+
+    /// The index of the time among the inputs.
+    pub fn time(&self) -> usize {
+        self.of.variables
+    }
+}
+
+#[cfg(test)]
+mod tests;

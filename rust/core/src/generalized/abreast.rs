@@ -1,0 +1,359 @@
+//! Many trajectories of a model, eight side by side.
+//!
+//! The one idea: a lane is a trajectory, with steps of its own; when one ends, the next that waits takes its lane. Each
+//! lane does what [`solve`](super::run::solve) does for one, operation by operation, so a copy has the bits that it has alone.
+//! Methods with equal steps go from node to node together, and take up copies eight at a time.
+
+use super::fixed::FixedSteps;
+use super::model::Model;
+use super::motion::Motion;
+use super::run::{Integrator, Request, Solution, norm, too_many_steps};
+use crate::error::{Error, Result};
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::embedded::EmbeddedStep;
+use crate::ode::norm::Norm;
+use crate::ode::run::{Ending, smallest_step};
+use crate::ode::state::State;
+use crate::ode::step_control::{Clock, Rule, Settled};
+use crate::ode::system::{Form, System};
+use crate::ode::taylor::TaylorStep;
+use crate::ode::trial::{Cost, Trial};
+use crate::ode::{Method, Scheme};
+use crate::parallel::Ticker;
+
+/// Whether a run goes side by side: outputs are read at given times, and no state is put elsewhere on the way.
+pub fn together(model: &Model, request: &Request) -> bool {
+    matches!(request.integrator, Integrator::Table(_))
+        && request.outputs.is_some()
+        && request.section.is_none()
+        && model.projection.is_none()
+        && request.span.0 != request.span.1
+}
+
+/// A trajectory in its lane.
+struct Slot {
+    /// Its place among all.
+    index: usize,
+    solution: Solution,
+    next_output: usize,
+    /// The shortest step from where it is.
+    smallest: f64,
+    /// Where the step that is tried begins.
+    from: f64,
+    /// Evaluations before it began.
+    before: u64,
+}
+
+/// What is at work.
+struct Abreast<'a> {
+    request: &'a Request,
+    outputs: &'a [f64],
+    system: Motion<Lanes>,
+    trial: Box<dyn Trial<Lanes>>,
+    cost: Cost,
+    /// Whether all lanes are on the same steps.
+    in_step: bool,
+    norm: Norm<Lanes>,
+    clock: Clock<Lanes>,
+    state: State<Lanes>,
+    between: State<Lanes>,
+    parameters: Vec<Lanes>,
+    slots: [Option<Slot>; WIDTH],
+    done: Vec<Option<Solution>>,
+}
+
+/// Runs states (n numbers each) with their parameters. Each that ends is told to the ticker.
+///
+/// # Errors
+/// As [`solve`](super::run::solve).
+pub fn solve_together(
+    model: &Model,
+    request: &Request,
+    (states, parameters): (&[f64], &[f64]),
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Solution>> {
+    let (numbers, count) = (model.numbers(), model.source.parameters);
+    let members = states.len() / numbers;
+    let member =
+        |index: usize| (&states[index * numbers..][..numbers], &parameters[index * count..][..count]);
+    let mut run = Abreast::new(model, request, member(0), members)?;
+    let mut waiting = 0..members;
+    let outcome = loop {
+        let fresh = run.take_up(&mut waiting, member);
+        let running = run.running();
+        if !running.any() {
+            break Ok(());
+        }
+        if let Err(error) = run.advance(fresh, running, ticker) {
+            break Err(error);
+        }
+    };
+    match outcome {
+        Ok(()) => {}
+        Err(Error::Interrupted) => run.interrupt(),
+        Err(error) => return Err(error),
+    }
+    let untouched = |solution: Option<Solution>| {
+        solution.unwrap_or_else(|| Solution { ending: Ending::Interrupted, ..Solution::at(request.span.0) })
+    };
+    Ok(run.done.into_iter().map(untouched).collect())
+}
+
+impl<'a> Abreast<'a> {
+    /// For runs like that of the first member, which stands in idle lanes.
+    fn new(
+        model: &Model,
+        request: &'a Request,
+        (y0, parameters): (&[f64], &[f64]),
+        members: usize,
+    ) -> Result<Self> {
+        let wide = |values: &[f64]| values.iter().map(|&x| Lanes::splat(x)).collect::<Vec<_>>();
+        let (t0, end) = request.span;
+        let parameters = wide(parameters);
+        let mut system = Motion::<Lanes>::of(model, request, &parameters, Lanes::splat(t0));
+        let y0 = wide(y0);
+        let state = match system.form() {
+            Form::FirstOrder(_) => State::first_order(y0),
+            Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
+        };
+        let max_step = Lanes::splat(request.max_step.unwrap_or(f64::INFINITY));
+        let Integrator::Table(method) = request.integrator else {
+            return Err(Error::Internal("stages and trajectories cannot both be the lanes".to_owned()));
+        };
+        let trial = trial(method, request, &mut system, &state, max_step)?;
+        Ok(Self {
+            request,
+            outputs: request.outputs.as_deref().unwrap_or_default(),
+            cost: trial.cost(),
+            trial,
+            in_step: !matches!(method.scheme, Scheme::Embedded(_) | Scheme::Taylor(_)),
+            norm: norm(request, system.form().len()),
+            system,
+            clock: Clock::new(Lanes::splat(end - t0)),
+            between: state.clone(),
+            state,
+            parameters,
+            slots: [const { None }; WIDTH],
+            done: (0..members).map(|_| None).collect(),
+        })
+    }
+
+    fn running(&self) -> Bits {
+        let lanes = self.slots.iter().enumerate().filter(|(_, slot)| slot.is_some());
+        lanes.fold(Bits(0), |mask, (lane, _)| mask.or(Bits(1 << lane)))
+    }
+
+    /// Gives free lanes to those that wait; which lanes were given.
+    fn take_up<'m>(
+        &mut self,
+        waiting: &mut core::ops::Range<usize>,
+        member: impl Fn(usize) -> (&'m [f64], &'m [f64]),
+    ) -> Bits {
+        let mut fresh = Bits(0);
+        if self.in_step && self.slots.iter().any(Option::is_some) {
+            return fresh;
+        }
+        let (t0, end) = self.request.span;
+        for lane in 0..WIDTH {
+            if self.slots[lane].is_some() {
+                continue;
+            }
+            let Some(index) = waiting.next() else { break };
+            let (y0, parameters) = member(index);
+            let (y, rest) = self.state.all_mut();
+            for ((y, rest), &value) in y.iter_mut().zip(rest).zip(y0) {
+                (y.0[lane], rest.0[lane]) = (value, 0.0);
+            }
+            for (own, &value) in self.parameters.iter_mut().zip(parameters) {
+                own.0[lane] = value;
+            }
+            fresh = fresh.or(Bits(1 << lane));
+            let solution = Solution::at(t0);
+            let (from, before) = (t0, self.system.evaluations());
+            self.slots[lane] = Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before });
+        }
+        if fresh.any() {
+            self.system.set_parameters(&self.parameters);
+            self.clock.restart(fresh, Lanes::splat(end - t0));
+        }
+        fresh
+    }
+
+    /// Tries a step in every lane, and keeps those that are accepted.
+    fn advance(&mut self, fresh: Bits, running: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
+        if fresh.any() {
+            let Self { trial, system, state, clock, norm, .. } = self;
+            let before = system.evaluations();
+            trial.start(fresh, system, state, clock, norm, ticker)?;
+            let start = self.system.evaluations() - before;
+            for (_, slot) in self.in_lanes(fresh) {
+                slot.solution.evaluations += start;
+            }
+        }
+        self.begin_steps(running);
+        ticker.tick()?;
+        let Self { trial, system, state, clock, norm, .. } = self;
+        let outcome = trial.attempt(running, system, state, clock, norm, ticker)?;
+        let kept = self.judge(&outcome, running, ticker);
+        self.record(&outcome, kept, ticker)?;
+        self.trial.keep(kept, &mut self.state);
+        for lane in 0..WIDTH {
+            if outcome.finished.and(kept).lane(lane) {
+                self.end(lane, Ending::Finished, None, ticker);
+            }
+        }
+        Ok(())
+    }
+
+    /// The slots in the lanes of a mask.
+    fn in_lanes(&mut self, mask: Bits) -> impl Iterator<Item = (usize, &mut Slot)> {
+        let slots = self.slots.iter_mut().enumerate().filter(move |(lane, _)| mask.lane(*lane));
+        slots.filter_map(|(lane, slot)| slot.as_mut().map(|slot| (lane, slot)))
+    }
+
+    /// Where steps begin that are no second tries: no step is shorter than the time can tell.
+    fn begin_steps(&mut self, running: Bits) {
+        let (t0, end) = self.request.span;
+        let mut clock = self.clock;
+        for (lane, slot) in self.in_lanes(running).filter(|(_, slot)| slot.smallest == 0.0) {
+            slot.from = t0 + clock.elapsed.0[lane];
+            slot.smallest = smallest_step(slot.from);
+            let h = &mut clock.h.0[lane];
+            if h.abs() < slot.smallest && clock.elapsed.0[lane] != clock.end.0[lane] {
+                *h = slot.smallest.copysign(end - t0);
+            }
+        }
+        self.clock = clock;
+    }
+
+    /// Ends the lanes that cannot go on, and counts; those whose step is to be kept.
+    fn judge(&mut self, outcome: &Settled<Lanes>, running: Bits, ticker: &mut Ticker<'_>) -> Bits {
+        let mut kept = Bits(0);
+        let (t0, end) = self.request.span;
+        for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
+            let finite = self.trial.next().all().0.iter().all(|y| y.0[lane].is_finite());
+            let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
+            let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
+            let Some(slot) = &mut self.slots[lane] else { continue };
+            let Slot { solution, smallest, .. } = slot;
+            solution.evaluations += cost.tried;
+            if in_step {
+                solution.evaluations = now - slot.before;
+            }
+            if !outcome.accepted.lane(lane) {
+                if h.is_nan() || h.abs() < *smallest {
+                    self.end(lane, Ending::StepTooSmall, None, ticker);
+                }
+                continue;
+            }
+            solution.evaluations += cost.kept;
+            if !finite {
+                self.end(lane, Ending::NotFinite, None, ticker);
+                continue;
+            }
+            if solution.steps == self.request.max_steps {
+                let why = too_many_steps(self.request.max_steps);
+                self.end(lane, Ending::StepTooSmall, Some(why), ticker);
+                continue;
+            }
+            *smallest = 0.0;
+            solution.steps += 1;
+            solution.reached = if outcome.finished.lane(lane) { end } else { t0 + elapsed };
+            let length = (solution.reached - slot.from).abs();
+            solution.h = if length > solution.h { length } else { solution.h };
+            kept = kept.or(Bits(1 << lane));
+        }
+        kept
+    }
+
+    /// Reads the output times that the kept steps pass.
+    fn record(&mut self, outcome: &Settled<Lanes>, kept: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
+        let forward = self.request.span.0 <= self.request.span.1;
+        let mut dense = false;
+        loop {
+            let (mut theta, mut between) = (Lanes::zero(), Bits(0));
+            let (outputs, cost) = (self.outputs, self.cost);
+            let Self { slots, trial, state, .. } = self;
+            for (lane, slot) in slots.iter_mut().enumerate().filter(|(lane, _)| kept.lane(*lane)) {
+                let Some(slot) = slot else { continue };
+                let (from, to) = (slot.from, slot.solution.reached);
+                while let Some(&t) = outputs.get(slot.next_output)
+                    && (if forward { t <= to } else { t >= to })
+                {
+                    let at = if t == to {
+                        trial.next()
+                    } else if t == from {
+                        &*state
+                    } else {
+                        theta.0[lane] = (t - from) / (to - from);
+                        between = between.or(Bits(1 << lane));
+                        slot.solution.evaluations += if dense { cost.read } else { cost.dense + cost.read };
+                        break;
+                    };
+                    slot.write(t, at, lane);
+                }
+            }
+            if !between.any() {
+                return Ok(());
+            }
+            let Self { trial, system, state, between: there, .. } = self;
+            if !dense {
+                trial.dense(outcome, system, state, ticker)?;
+                dense = true;
+            }
+            trial.at(outcome, system, state, theta, there, ticker)?;
+            let (in_step, now) = (self.in_step, self.system.evaluations());
+            for (lane, slot) in self.slots.iter_mut().enumerate().filter(|(lane, _)| between.lane(*lane)) {
+                let Some(slot) = slot else { continue };
+                slot.write(outputs[slot.next_output], &self.between, lane);
+                if in_step {
+                    slot.solution.evaluations = now - slot.before;
+                }
+            }
+        }
+    }
+
+    /// Ends a trajectory.
+    fn end(&mut self, lane: usize, ending: Ending, failure: Option<String>, ticker: &mut Ticker<'_>) {
+        let Some(Slot { index, mut solution, .. }) = self.slots[lane].take() else { return };
+        solution.ending = ending;
+        solution.failure = failure.or_else(|| ending.reason());
+        self.done[index] = Some(solution);
+        ticker.advance(1);
+    }
+
+    /// Ends all that run where they are.
+    fn interrupt(&mut self) {
+        for slot in self.slots.iter_mut().filter_map(Option::take) {
+            self.done[slot.index] = Some(Solution { ending: Ending::Interrupted, ..slot.solution });
+        }
+    }
+}
+
+impl Slot {
+    /// Writes a row.
+    fn write(&mut self, t: f64, state: &State<Lanes>, lane: usize) {
+        self.solution.t.push(t);
+        self.solution.y.extend(state.all().0.iter().map(|y| y.0[lane]));
+        self.next_output += 1;
+    }
+}
+
+/// The method for eight trajectories.
+fn trial(
+    method: &'static Method,
+    request: &Request,
+    system: &mut Motion<Lanes>,
+    state: &State<Lanes>,
+    max_step: Lanes,
+) -> Result<Box<dyn Trial<Lanes>>> {
+    Ok(match &method.scheme {
+        Scheme::Embedded(tableau) => {
+            let rule = Rule::new(tableau.error_exponent, max_step);
+            Box::new(EmbeddedStep::with_rule(tableau, system, state, rule))
+        }
+        Scheme::Taylor(orders) => Box::new(TaylorStep::new(*orders, system, state, max_step)),
+        _ => Box::new(FixedSteps::new(method, request.fixed_step(method)?, system, state)?),
+    })
+}
