@@ -39,6 +39,8 @@ _HOME = {
     "EnsembleScene": "ensemble",
     "EnsembleTrajectory": "ensemble",
     "Error": "errors",
+    "ExpressedForce": "forces",
+    "ExpressionForce": "expression_force",
     "FrozenAttribute": "errors",
     "Gravity": "forces",
     "Hamiltonian": "generalized",
@@ -123,6 +125,8 @@ __all__ = [
     "EnsembleScene",
     "EnsembleTrajectory",
     "Error",
+    "ExpressedForce",
+    "ExpressionForce",
     "FrozenAttribute",
     "Gravity",
     "Hamiltonian",
@@ -221,12 +225,14 @@ if TYPE_CHECKING:
         InvalidInput,
         UnknownKeyword,
     )
+    from visviva.expression_force import ExpressionForce
     from visviva.forces import (
         CentralField,
         Coulomb,
         Damper,
         Drag,
         DrivenForce,
+        ExpressedForce,
         Gravity,
         Harmonic,
         LinearDrag,

@@ -14,6 +14,7 @@ __all__ = [
     "Damper",
     "Drag",
     "DrivenForce",
+    "ExpressedForce",
     "Force",
     "Gravity",
     "Harmonic",
@@ -174,5 +175,31 @@ class Damper(Force):
 class PairPotential(Force):
     potential: Potential
     def __init__(self, potential: Potential) -> None: ...
+
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class ExpressedForce(Force):
+    gives: Literal["force", "potential"]
+    nodes: NDArray[np.float64]
+    values: NDArray[np.float64]
+    first: tuple[float, float, float]
+    second: tuple[float, float, float]
+    third: tuple[float, float, float]
+    origin: tuple[float, float, float]
+    length: float
+    mass: float
+    time: float
+    def __init__(
+        self,
+        gives: Literal["force", "potential"],
+        nodes: ArrayLike,
+        values: ArrayLike,
+        first: ArrayLike,
+        second: ArrayLike,
+        third: ArrayLike,
+        origin: ArrayLike = (0.0, 0.0, 0.0),
+        length: float = 1.0,
+        mass: float = 1.0,
+        time: float = 1.0,
+    ) -> None: ...
 
 def force_from_core(description: dict[str, Any]) -> Force: ...

@@ -141,6 +141,24 @@ class Draw:
             lambda R: 6 * np.pi * slow / R + fast, 2.0**-6, last, **numbers, radius=radius, tolerance=1e-9
         )
 
+    def expression(self) -> vv.forces.Force:
+        """A force of one's own: a wave in a bowl, at rest or running, or what turns, slows down and shakes bodies."""
+        wave = tuple(self.number() for _ in range(3))
+        numbers = {name: self.number() for name in ("strength", "rate")} | {"bowl": self.number("positive")}
+
+        def potential(r: Any, _: Any, t: Any, **of: Any) -> Any:
+            phase = wave[0] * r[0] + wave[1] * r[1] + wave[2] * r[2] - (of["rate"] * t if running else 0.0)
+            return of["strength"] * np.cos(phase) + of["bowl"] * (r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+
+        def components(r: Any, v: Any, t: Any, **of: Any) -> Any:
+            shaken = of["strength"] * np.sin(of["rate"] * t)
+            return of["rate"] * v[1] - of["bowl"] * v[0], -of["rate"] * v[0] + shaken, np.tanh(r[2]) * shaken
+
+        running = self.random.random() < 0.3
+        given = {"force": components} if self.random.random() < 0.3 else {"potential": potential}
+        made = vv.ExpressionForce(**given, parameters=numbers)
+        return made if self.tame else made.shifted(np.array(self.vector()), np.zeros(3))
+
     # What has a table is drawn as a whole: its columns go together.
     TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {
         "Tabulated": tabulated,
@@ -182,6 +200,8 @@ def force(name: str, seed: int, bodies: int, *, tame: bool) -> Any:
     draw.potentials = FIRST_POTENTIALS if potentials else list(POTENTIALS)
     if name == "SampledDrag":
         return draw.sampled_drag()
+    if name == "ExpressedForce":
+        return draw.expression()
     arguments = {}
     for parameter in declared(FORCES[name]):
         value = draw.value(parameter)

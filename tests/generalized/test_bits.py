@@ -55,6 +55,8 @@ def columns(out: Any) -> list[Any]:
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("name", copies())
 def test_a_copy_has_the_bits_it_has_alone(name: str, method: str) -> None:
+    if (name, method) == ("curved", "taylor"):
+        pytest.skip("a square root has no series, see test_refused")
     many = copies()[name]
     how = {"method": method, **METHODS[method]}
     out = many.run(T, threads=1, **how)

@@ -82,6 +82,7 @@ FORCES = [
     vv.Drag(density=1.5, viscosity=0.25, radius=[0.5, 0.0]),
     vv.Drag(1.5, 0.25, 0.5, law="turton_levenspiel"),
     vv.drag.custom(lambda R: 20.0 / R + 1.0, 0.5, 64.0, density=1.5, viscosity=0.25, radius=0.5),
+    vv.ExpressionForce(potential=lambda r, v, t, k: k * r[0] ** 2 * np.cos(r[1] + t), parameters={"k": 2.0}),
     vv.UniformElectricField([0.0, 1.0, -2.0], charge=[1.0, -3.0]),
     vv.RotatingFrame([0.0, 1.0, -2.0], center=[1.0, 0.0, 0.5]),
     vv.Damper([0, 1], [1, 0], c=[1.0, 2.0]),
@@ -126,7 +127,9 @@ def test_a_force_is_documented_by_its_declaration(force: vv.forces.Force) -> Non
     assert all(f"\n{name} : " in document for name in force._values())
 
 
-@pytest.mark.parametrize("force", [force for force in FORCES if type(force) is not vv.SampledDrag], ids=repr)
+@pytest.mark.parametrize(
+    "force", [force for force in FORCES if type(force) not in (vv.SampledDrag, vv.ExpressedForce)], ids=repr
+)
 def test_repr_evaluates(force: vv.forces.Force) -> None:
     # Two classes are called Coulomb, a force and a potential.
     within, own = vars(vv.potentials), vars(vv.forces)

@@ -207,7 +207,7 @@ class Hamiltonian(GeneralizedSystem):
 
     def _check_start(self) -> None:
         rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]
-        if not np.all(np.isfinite(rates)):
+        if not np.isfinite(rates).all():
             raise InvalidInput(
                 "position", "the equations have no meaning at the start: a singularity of H; start away from it"
             )

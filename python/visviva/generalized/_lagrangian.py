@@ -401,7 +401,7 @@ class Lagrangian(GeneralizedSystem):
                             "pass consistent='project' to Lagrangian",
                         )
         rates = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
-        if not np.all(np.isfinite(rates)):
+        if not np.isfinite(rates).all():
             index = int(np.argmin(np.isfinite(rates)))
             raise InvalidInput(
                 "position",

@@ -11,7 +11,7 @@ from visviva.errors import InvalidInput
 from visviva.generalized._nodes import Expression, Nodes, check_call, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
-__all__ = ["Source", "described"]
+__all__ = ["Source", "calls", "described"]
 
 #: What the second half of a state is.
 _SECOND = {"lagrangian": "velocity", "hamiltonian": "momentum"}
@@ -38,7 +38,7 @@ class Source:
 
     def _walk(self, nodes: Nodes) -> Callable[[str, Any], int]:
         if self.symbols is None:
-            return _calls(nodes, self.names, self.parameters, _SECOND[self.kind])
+            return calls(nodes, self.names, self.parameters, _SECOND[self.kind])
         first, second, parameters = self.symbols
         return Symbols(nodes, first, second, parameters).node
 
@@ -67,7 +67,7 @@ def described(
         names = tuple(_name(each) for each in listed)
         keys = tuple(_name(each) for each in given)
         symbols = None
-        walk = _calls(nodes, names, keys, _SECOND[kind])
+        walk = calls(nodes, names, keys, _SECOND[kind])
     else:
         sp = sympy()
         first = tuple(_coordinate(sp, each) for each in listed)
@@ -174,7 +174,7 @@ def _parameter(sp: Any, key: Any, function: Any) -> Any:
     return named[0] if named else sp.Symbol(key)
 
 
-def _calls(
+def calls(
     nodes: Nodes, names: tuple[str, ...], parameters: tuple[str, ...], second_name: str
 ) -> Callable[[str, Any], int]:
     """Record functions of (first, second, t, **parameters)."""

@@ -203,18 +203,7 @@ class GeneralizedSystem(Flow):
     def _asked(
         self, t: ArrayLike, method: str, rtol: float, dt: float | None, max_step: float | None
     ) -> tuple[dict[str, Any], NDArray[np.float64]]:
-        outputs = np.atleast_1d(float_array("t", t, None))
-        if outputs.ndim > 1 or not outputs.size:
-            raise InvalidInput(
-                "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
-            )
-        if np.ndim(np.asarray(t)) == 0:
-            # The start, and the end where it is another.
-            outputs = np.unique([self.t0, outputs[0]])[:: 1 if outputs[0] >= self.t0 else -1]
-        steps = np.diff(np.concatenate([[self.t0], outputs]))
-        direction = 1.0 if outputs[-1] >= self.t0 else -1.0
-        if np.any(direction * steps < 0.0) or np.any(direction * steps[1:] <= 0.0):
-            raise InvalidInput("t", f"expected times in order from t0 = {self.t0:g} on, each once")
+        outputs = self._outputs(t)
         rtol = number("rtol", rtol)
         if not 1e-15 <= rtol <= 1e-2:
             raise InvalidInput("rtol", f"expected a tolerance between 1e-15 and 1e-2, got {rtol:g}")
@@ -232,6 +221,21 @@ class GeneralizedSystem(Flow):
             "section": None,
         }
         return asked, outputs
+
+    def _outputs(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Give the times that are read: all that are asked for, or of an end the start and it."""
+        if np.ndim(t) == 0:
+            end = number("t", t)
+            return np.array([self.t0] if end == self.t0 else [self.t0, end])
+        outputs = float_array("t", t, None)
+        if outputs.ndim > 1 or not outputs.size:
+            raise InvalidInput(
+                "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
+            )
+        steps = np.diff(outputs, prepend=self.t0) * (1.0 if outputs[-1] >= self.t0 else -1.0)
+        if (steps < 0.0).any() or (steps[1:] <= 0.0).any():
+            raise InvalidInput("t", f"expected times in order from t0 = {self.t0:g} on, each once")
+        return outputs
 
     def _constraints(self) -> int:
         description = self._source.description

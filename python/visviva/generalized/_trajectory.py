@@ -72,8 +72,9 @@ class GeneralizedTrajectory:
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
     ) -> None:
-        ends = np.cumsum([0, *result["lengths"]])
-        rows = slice(int(ends[member]), int(ends[member + 1]))
+        lengths = result["lengths"]
+        first = sum(lengths[:member])
+        rows = slice(first, first + lengths[member])
         self.system = system
         self.t = result["t"][rows]
         self._states = result["y"][rows]

@@ -4,9 +4,9 @@ use crate::closed_forms::{self, ClosedForm};
 use crate::error::{Error, Result};
 use crate::forces::gravity::newton;
 use crate::forces::{
-    ForceDeclaration, central_field, coulomb as charges, damper, drag, driven_force, harmonic, linear_drag,
-    oblate, pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring, uniform_electric_field,
-    uniform_field, uniform_magnetic_field,
+    ForceDeclaration, central_field, coulomb as charges, damper, drag, driven_force, expression, harmonic,
+    linear_drag, oblate, pair_potential, post_newtonian, quadratic_drag, rotating_frame, spring,
+    uniform_electric_field, uniform_field, uniform_magnetic_field,
 };
 use crate::ode::Method;
 use crate::ode::methods::{
@@ -149,6 +149,7 @@ pub static FORCES: &[&ForceDeclaration] = &[
     &spring::DECLARATION,
     &damper::DECLARATION,
     &pair_potential::DECLARATION,
+    &expression::DECLARATION,
 ];
 
 /// The force of a name.

@@ -12,6 +12,7 @@ pub mod function;
 pub mod graph;
 mod identity;
 pub mod machine;
+pub mod nodes;
 pub mod program;
 pub mod series;
 mod verify;

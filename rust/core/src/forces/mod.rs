@@ -14,6 +14,7 @@ pub mod coulomb;
 pub mod damper;
 pub mod drag;
 pub mod driven_force;
+pub mod expression;
 pub mod gravity;
 pub mod harmonic;
 mod limits;

@@ -215,8 +215,12 @@ impl<'a> Abreast<'a> {
     /// Where steps begin that are no second tries: no step is shorter than the time can tell.
     fn begin_steps(&mut self, running: Bits) {
         let (t0, end) = self.request.span;
-        let mut clock = self.clock;
-        for (lane, slot) in self.in_lanes(running).filter(|(_, slot)| slot.smallest == 0.0) {
+        let Self { clock, slots, .. } = self;
+        for (lane, slot) in slots.iter_mut().enumerate().filter(|(lane, _)| running.lane(*lane)) {
+            let Some(slot) = slot else { continue };
+            if slot.smallest != 0.0 {
+                continue;
+            }
             slot.from = t0 + clock.elapsed.0[lane];
             slot.smallest = smallest_step(slot.from);
             let h = &mut clock.h.0[lane];
@@ -224,15 +228,17 @@ impl<'a> Abreast<'a> {
                 *h = slot.smallest.copysign(end - t0);
             }
         }
-        self.clock = clock;
     }
 
     /// Ends the lanes that cannot go on, and counts; those whose step is to be kept.
     fn judge(&mut self, outcome: &Settled<Lanes>, running: Bits, ticker: &mut Ticker<'_>) -> Bits {
         let mut kept = Bits(0);
         let (t0, end) = self.request.span;
+        // Nothing times a number is no number where that is none, or infinite.
+        let next = self.trial.next().all().0.iter();
+        let nothing = next.fold(Lanes::zero(), |sum, &y| y.multiply_add(Lanes::zero(), sum));
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
-            let finite = self.trial.next().all().0.iter().all(|y| y.0[lane].is_finite());
+            let finite = nothing.0[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
             let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
             let Some(slot) = &mut self.slots[lane] else { continue };

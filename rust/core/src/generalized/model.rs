@@ -129,8 +129,24 @@ impl Model {
     /// Its equations as recurrences of Taylor coefficients.
     ///
     /// # Errors
-    /// None that its code has not.
+    /// Functions in it that [turn sharply](Series::sharp).
     pub fn series(&self) -> Result<Arc<Series>> {
+        let of_systems =
+            self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
+        let of_rates = self.rates.iter().filter_map(|rate| match rate {
+            Output::Node(id) => Some(id),
+            Output::Unknown(_) => None,
+        });
+        let roots: Vec<Id> = of_systems.chain(of_rates).copied().collect();
+        if let Some(function) = Series::sharp(&self.source.graph, &roots) {
+            return Err(Error::invalid(
+                "method",
+                format!(
+                    "taylor takes equations that are smooth wherever they go; {function} in these may turn sharply, which \
+                     no series tells; gauss16 and dop853 do"
+                ),
+            ));
+        }
         let inputs = (self.numbers, self.source.parameters);
         Series::new(&self.source.graph, inputs, &self.systems, &self.rates).map(Arc::new)
     }

@@ -5,7 +5,7 @@ use super::run::{Integrator, Request};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
 use crate::expressions::machine::Width;
-use crate::expressions::series::{Coefficient, Expansion};
+use crate::expressions::series::{Coefficient, Coefficients, Equations, Expansion};
 use crate::numerics::element::Element;
 use crate::ode::series::Jet;
 use crate::ode::system::{Form, Needs, System};
@@ -23,8 +23,8 @@ pub struct Motion<S> {
     evaluations: u64,
     /// Whether equations of the second order are shown as those of the first, velocities being rates.
     flat: bool,
-    /// The equations as recurrences, and room for a coefficient of what they give.
-    series: Option<(Expansion<S>, Vec<S>)>,
+    /// The equations as recurrences of Taylor coefficients.
+    series: Option<Expansion<S>>,
 }
 
 impl<S: Width + Coefficient> Motion<S> {
@@ -44,11 +44,10 @@ impl<S: Width + Coefficient> Motion<S> {
     /// As what is asked wants it: of the first order, with recurrences of Taylor coefficients.
     pub fn of(model: &Model, request: &Request, parameters: &[S], t0: S) -> Self {
         let motion = Self::new(model, parameters, t0);
-        let room = vec![S::zero(); motion.form.evaluated()];
         let series = request.series.as_ref();
         Self {
             flat: matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })),
-            series: series.map(|series| (Expansion::new(series.clone(), parameters), room)),
+            series: series.map(|series| Expansion::new(series.clone(), parameters)),
             ..motion
         }
     }
@@ -56,7 +55,7 @@ impl<S: Width + Coefficient> Motion<S> {
     /// With other parameters from now on.
     pub fn set_parameters(&mut self, parameters: &[S]) {
         self.machine.set_parameters(parameters);
-        if let Some((series, _)) = &mut self.series {
+        if let Some(series) = &mut self.series {
             series.set_parameters(parameters);
         }
     }
@@ -110,41 +109,14 @@ impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
 
     fn expand(&mut self, jet: &mut Jet<S>, _: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
-        let Some((series, rates)) = &mut self.series else {
+        let Some(series) = &mut self.series else {
             return Err(Error::Internal("a motion without its series".to_owned()));
         };
-        let per_unit = S::one() / jet.unit;
-        let (time, len) = (series.time(), jet.len);
-        for n in 0..jet.order {
-            for (index, &q) in jet.position(n).iter().enumerate() {
-                series.set(index, n, q);
-            }
-            if let Form::SecondOrder(_) = self.form
-                && self.needs.velocity
-            {
-                for (index, &v) in jet.velocity(n).iter().enumerate() {
-                    series.set(len + index, n, v * per_unit);
-                }
-            }
-            match n {
-                0 => series.set(time, 0, self.t0 + jet.t),
-                1 => series.set(time, 1, jet.unit),
-                2 => series.set(time, 2, S::zero()),
-                _ => {}
-            }
-            series.expand(n);
-            let unit = match self.form {
-                Form::FirstOrder(_) => jet.unit,
-                Form::SecondOrder(_) => jet.unit * jet.unit,
-            };
-            for (index, rate) in rates.iter_mut().enumerate() {
-                *rate = series.output(index, n) * unit;
-            }
-            match self.form {
-                Form::FirstOrder(_) => jet.raise_rates(n, rates),
-                Form::SecondOrder(_) => jet.raise(n, rates),
-            }
-        }
+        let second_order = matches!(self.form, Form::SecondOrder(_));
+        let Jet { order, len, ref mut q, ref mut v, t, unit, ref inverse, .. } = *jet;
+        let (velocity, t) = (self.needs.velocity, self.t0 + t);
+        let equations = Equations { second_order, velocity, t, unit, inverse };
+        series.motion(&equations, Coefficients { order, len, q, v });
         Ok(())
     }
 }

@@ -11,6 +11,7 @@ pub mod elliptic;
 pub mod exponentials;
 pub mod functions;
 pub mod fused_double;
+pub(crate) mod integrals;
 pub mod inverse_cube;
 pub mod lanes;
 pub mod logarithm;

@@ -8,7 +8,7 @@ use super::state::State;
 use super::system::Form;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Pass, Scaled, View};
-use crate::numerics::real::Real;
+use crate::numerics::integrals::raise;
 
 /// Taylor coefficients of a state in powers of the time since its expansion, in units of [`unit`](Self::unit).
 #[derive(Clone, Debug)]
@@ -88,12 +88,6 @@ impl<S: Element> Jet<S> {
         let (v, q) = (&mut self.v[(n + 1) * len..][..len], &mut self.q[(n + 2) * len..][..len]);
         S::pass(Raise { a, of_v, of_q, v, q });
     }
-
-    /// Takes up the coefficient of order `n` of the rates of a system of the first order.
-    pub fn raise_rates(&mut self, n: usize, rates: &[S]) {
-        let next = &mut self.q[(n + 1) * self.len..][..self.len];
-        S::pass(RaiseRates { rates, over: &self.inverse[n + 1], next });
-    }
 }
 
 /// The coefficients of order 0 and 1 that a state gives.
@@ -136,35 +130,5 @@ impl<S: Element> Pass<S> for Raise<'_, S> {
     fn run<V: View<S>>(self) {
         let (of_v, of_q) = (V::scaled(self.of_v), V::scaled(self.of_q));
         raise(V::view(self.a), of_v, of_q, V::view_mut(self.v), V::view_mut(self.q));
-    }
-}
-
-/// The next coefficients that follow from those of rates.
-struct RaiseRates<'a, S> {
-    rates: &'a [S],
-    over: &'a Scaled<S>,
-    next: &'a mut [S],
-}
-
-impl<S: Element> Pass<S> for RaiseRates<'_, S> {
-    type Output = ();
-    #[inline(always)]
-    fn run<V: View<S>>(self) {
-        let over = V::scaled(self.over);
-        for (next, &rate) in V::view_mut(self.next).iter_mut().zip(V::view(self.rates)) {
-            *next = rate.multiply_add(over.0, rate * over.1);
-        }
-    }
-}
-
-/// `v = a/(n+1)`, `q = v/(n+2)`: what the inverses leave out goes with them, else they would bias every step alike.
-#[inline(always)]
-pub(crate) fn raise<V: Real>(a: &[V], of_v: Scaled<V>, of_q: Scaled<V>, v: &mut [V], q: &mut [V]) {
-    let n = a.len();
-    let (v, q) = (&mut v[..n], &mut q[..n]);
-    for i in 0..n {
-        let speed = a[i].multiply_add(of_v.0, a[i] * of_v.1);
-        v[i] = speed;
-        q[i] = speed.multiply_add(of_q.0, speed * of_q.1);
     }
 }

@@ -2,8 +2,8 @@
 //!
 //! A node is `(operation, arguments, value)`, its arguments numbers of nodes before it.
 
-use visviva_core::expressions::function::Function;
 use visviva_core::expressions::graph::{Graph, Id, Node, number};
+use visviva_core::expressions::nodes::join;
 use visviva_core::{Error, Result};
 
 /// A node.
@@ -13,45 +13,7 @@ pub(super) type NodeParts = (String, Vec<u32>, f64);
 pub(super) fn added(graph: &mut Graph, nodes: &[NodeParts]) -> Result<Vec<Id>> {
     let mut ids: Vec<Id> = Vec::with_capacity(nodes.len());
     for (operation, arguments, value) in nodes {
-        let of = |index: usize| {
-            let argument = arguments.get(index).copied().map(|argument| argument as usize);
-            argument
-                .and_then(|argument| ids.get(argument).copied())
-                .ok_or_else(|| Error::Internal(format!("{operation} lacks its argument {index}")))
-        };
-        let all = || (0..arguments.len()).map(of).collect::<Result<Vec<Id>>>();
-        let id = match operation.as_str() {
-            "constant" => graph.constant(*value),
-            "variable" => graph.variable(*value as u32),
-            "parameter" => graph.parameter(*value as u32),
-            "time" => graph.time(),
-            "sum" => {
-                let terms: Vec<(f64, Id)> = all()?.into_iter().map(|id| (1.0, id)).collect();
-                graph.sum(0.0, &terms)
-            }
-            "product" => {
-                let factors = all()?;
-                graph.product(&factors)
-            }
-            "quotient" => {
-                let (a, b) = (of(0)?, of(1)?);
-                graph.divide(a, b)
-            }
-            "atan2" => {
-                let (y, x) = (of(0)?, of(1)?);
-                graph.angle(y, x)
-            }
-            "power" => {
-                let (a, b) = (of(0)?, of(1)?);
-                graph.general_power(a, b)
-            }
-            name => {
-                let function =
-                    Function::named(name).ok_or_else(|| Error::Internal(format!("no operation {name}")))?;
-                let a = of(0)?;
-                graph.call(function, a)
-            }
-        };
+        let id = join(graph, &ids, operation, arguments, *value)?;
         ids.push(id);
     }
     Ok(ids)

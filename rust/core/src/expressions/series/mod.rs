@@ -6,15 +6,19 @@
 //! R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank & A. Walther, *Evaluating Derivatives* (2008), chapter 13.
 
 mod lowered;
+mod motion;
 mod recurrence;
 
 use super::execute::Scalar;
-use super::graph::Graph;
+use super::function::Function;
+use super::graph::{Dependence, Graph, Id, Node};
 use super::program::{self, LinearSystem, Output};
 use crate::error::Result;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::numerics::real::Real;
 use crate::tiered;
+use motion::Room;
+pub use motion::{Coefficients, Equations};
 use recurrence::Recurrence;
 use std::sync::Arc;
 
@@ -39,6 +43,21 @@ pub struct Series {
 }
 
 impl Series {
+    /// A function among these expressions that turns sharply where it is as smooth from either side as if it went on: of a
+    /// series, which tells of the one side, a step would go over that without a word.
+    pub fn sharp(graph: &Graph, roots: &[Id]) -> Option<&'static str> {
+        let varies = |id: Id| graph.dependence(id) > Dependence::Parameters;
+        graph.reachable(roots).into_iter().filter(|&id| varies(id)).find_map(|id| match graph.node(id) {
+            Node::Call(
+                function @ (Function::Sqrt | Function::Asin | Function::Acos | Function::Acosh),
+                _,
+            ) => Some(function.name()),
+            Node::Power(..) => Some("a broken power"),
+            Node::Angle(..) => Some("atan2"),
+            _ => None,
+        })
+    }
+
     /// Of these outputs, as functions of so many numbers of a state, the time, and so many parameters.
     ///
     /// # Errors
@@ -57,17 +76,28 @@ impl Series {
 pub trait Coefficient: Real {
     /// The coefficients of order `order` of everything that a list of recurrences makes.
     fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]);
+
+    /// All coefficients of a motion.
+    fn motion(room: Room<'_, Self>, equations: &Equations<'_, Self>, into: Coefficients<'_, Self>);
 }
 
 impl Coefficient for f64 {
     fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
         one(of, order, numbers, scratch);
     }
+
+    fn motion(room: Room<'_, Self>, equations: &Equations<'_, Self>, into: Coefficients<'_, Self>) {
+        motion::one(room, equations, into);
+    }
 }
 
 impl Coefficient for Lanes {
     fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
         lanes(of, order, numbers, scratch);
+    }
+
+    fn motion(room: Room<'_, Self>, equations: &Equations<'_, Self>, into: Coefficients<'_, Self>) {
+        motion::lanes(room, equations, into);
     }
 }
 

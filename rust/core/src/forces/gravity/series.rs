@@ -12,10 +12,11 @@ use super::RING_MAX;
 use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::series::Series;
 use crate::numerics::element::{Element, Shape, View};
+use crate::numerics::integrals::raise;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
-use crate::ode::series::{Jet, raise};
+use crate::ode::series::Jet;
 
 mod each;
 mod pair;

@@ -7,10 +7,11 @@
 use super::ORDERS;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::element::{Element, Pass, View};
+use crate::numerics::integrals::raise;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
-use crate::ode::series::{Jet, raise};
+use crate::ode::series::Jet;
 
 /// The numbers of an order.
 #[derive(Clone, Copy, Debug)]

@@ -1,0 +1,144 @@
+"""Forces of one's own in scenes, as expressions: `ExpressionForce`.
+
+The one idea: what is written here is only a table of nodes; the core derives, compiles and runs it, for eight bodies at
+once, beside any other force.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, Literal
+
+from visviva._arrays import number
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.forces import ExpressedForce
+from visviva.generalized._nodes import FUNCTIONS, Nodes, check_call
+from visviva.generalized._source import calls
+from visviva.generalized._symbolic import Symbols, sympy, time
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
+__all__ = ["ExpressionForce"]
+
+#: Operations by their numbers in a table; functions come after them.
+_OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
+_PLACES = ("x", "y", "z")
+_VELOCITIES = ("vx", "vy", "vz")
+_AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
+
+
+@known_keywords
+def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and makes one)
+    *,
+    potential: Any = None,
+    force: Sequence[Any] | Callable[..., Any] | None = None,
+    parameters: Mapping[Any, float] | None = None,
+) -> ExpressedForce:
+    """A force on every body of a scene, from an expression, at the speed of the forces that visviva has.
+
+    Parameters
+    ----------
+    potential : sympy.Expr or callable, optional
+        The potential energy V of a body, of its place and the time. The force is −∇V, derived exactly.
+    force : sequence of three expressions, or callable that gives three, optional
+        The components of the force on a body, of its place, its velocity and the time.
+    parameters : mapping of symbol or str to float, optional
+        The values of what else stands in the expressions.
+
+    Returns
+    -------
+    ExpressedForce
+        Frozen, hashable, picklable; a part of a scene like any other force.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If not one of `potential` and `force` is given; for a symbol without a value; for a potential that depends on
+        velocities; for what the core does not know, with what it knows.
+
+    Notes
+    -----
+    Expressions of SymPy are of the symbols ``x``, ``y``, ``z``, ``vx``, ``vy``, ``vz``, ``t``, whatever they assume.
+    Functions are called once with ``(position, velocity, t, **parameters)``, with expressions in the place of numbers:
+    arithmetic and NumPy's functions, and no branches. All numbers are in the units of the scene; ``t`` is its own time.
+    A potential without time in it is conserved together with the kinetic energy.
+
+    References
+    ----------
+    A. Griewank & A. Walther, *Evaluating Derivatives* (2008), for the derivatives.
+
+    Examples
+    --------
+    A quartic trap beside gravity:
+
+    >>> import numpy as np, visviva as vv
+    >>> trap = vv.ExpressionForce(potential=lambda r, v, t, k: k * (r[0] ** 2 + r[1] ** 2) ** 2, parameters={"k": 0.25})
+    >>> scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), trap, vv.UniformField([0.0, 0.0, -1.0]))
+    >>> out = scene.run(t=2.0, rtol=1e-12)
+    >>> print(f"{out.position[-1, 0, 2]:.6f}", bool(np.ptp(out.energy) < 1e-11))
+    -2.000000 True
+    """
+    if (potential is None) == (force is None):
+        raise InvalidInput("potential", "expected one of potential and force")
+    if parameters is not None and not hasattr(parameters, "items"):
+        kind = type(parameters).__name__
+        raise InvalidInput("parameters", f"expected values by parameter, as {{k: 4.0}}, got {kind}")
+    given = dict(parameters or {})
+    names = tuple(_parameter_name(key) for key in given)
+    values = [number(f"parameters[{name!r}]", value) for name, value in zip(names, given.values(), strict=True)]
+    if len(set(names)) < len(names):
+        raise InvalidInput("parameters", f"expected different names, got {list(names)}")
+    nodes = Nodes()
+    argument: Literal["potential", "force"] = "potential" if force is None else "force"
+    roots = (potential,) if force is None else _components(force, names)
+    found = [_node(argument, root, nodes, names) for root in roots]
+    return ExpressedForce(argument, _table(nodes, found), values, *_AXES)
+
+
+def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
+    """Give three expressions: those of a sequence, or functions that give one component each."""
+    if callable(force):
+        check_call("force", force, ("position", "velocity", "t"), names)
+        return tuple((lambda *state, c=c, **own: _component(force(*state, **own), c)) for c in range(3))
+    if isinstance(force, str) or not hasattr(force, "__len__") or len(force) != 3:
+        raise InvalidInput("force", f"expected three components, or a function that gives them, got {force!r}")
+    return tuple(force)
+
+
+def _component(components: Any, which: int) -> Any:
+    try:
+        three = tuple(components)
+    except TypeError:
+        three = ()
+    if len(three) != 3:
+        raise InvalidInput("force", f"expected three components of the function, got {components!r}")
+    return three[which]
+
+
+def _parameter_name(key: Any) -> str:
+    name = str(key)
+    if not name.isidentifier() or name in (*_PLACES, *_VELOCITIES, "t"):
+        raise InvalidInput("parameters", f"expected names that are not x, y, z, vx, vy, vz or t, got {key!r}")
+    return name
+
+
+def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) -> int:
+    """Give the node of one expression, of SymPy or a function."""
+    if not hasattr(expression, "free_symbols"):
+        return calls(nodes, _PLACES, names, "velocity")(argument, expression)
+    sp = sympy()
+    # Symbols go by their names: what is assumed of them makes others of them.
+    found = {symbol.name: symbol for symbol in expression.free_symbols}
+    plain = {found[name]: sp.Symbol(name) for name in (*_PLACES, *_VELOCITIES, "t", *names) if name in found}
+    known = [[sp.Symbol(name) for name in group] for group in (_PLACES, _VELOCITIES, names)]
+    plain.pop(time._sympy_(), None)
+    return Symbols(nodes, *known).node(argument, expression.xreplace(plain))
+
+
+def _table(nodes: Nodes, roots: list[int]) -> list[float]:
+    """Write nodes as numbers: how many roots, and which; then each node, with its number of arguments."""
+    table: list[float] = [len(roots), *roots]
+    for operation, arguments, value in nodes.all:
+        table += [_OPERATIONS.index(operation), value, len(arguments), *arguments]
+    return table

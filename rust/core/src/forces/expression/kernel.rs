@@ -1,0 +1,219 @@
+//! The kernel of an expression: eight bodies at once from the lanes to its coordinates, through its code, and back.
+
+use super::{Expressions, Place, VARIABLES};
+use crate::error::Result;
+use crate::expressions::Machine;
+use crate::expressions::execute::{self, Part, Scalar};
+use crate::expressions::series::Expansion;
+use crate::forces::context::Context;
+use crate::forces::series::Series;
+use crate::forces::{Adds, Force, Phase};
+use crate::numerics::element::Shape;
+use crate::numerics::lanes::{Lanes, Vector8};
+use crate::numerics::power_of_two::scale;
+use crate::numerics::real::Real;
+use crate::ode::series::Jet;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::tiered;
+
+/// The exponents of length, mass and time in a force.
+pub(super) const FORCE: [i32; 3] = [1, 1, -2];
+
+/// The way from the units and axes of the integration to those of the expressions, and back.
+#[derive(Clone, Debug)]
+struct Way {
+    shape: Shape,
+    /// Axes, unless they are those of the scene.
+    axes: Option<[[f64; 3]; 3]>,
+    /// What places, velocities and times are multiplied with.
+    place: f64,
+    velocity: f64,
+    time: f64,
+    /// What is taken away from places and added to times, then.
+    origin: [f64; 3],
+    t0: f64,
+    /// One over the mass of each body, times the unit of force; none where there is no body.
+    force: Vec<Lanes>,
+}
+
+impl Way {
+    fn new(place: &Place, context: &Context<'_>) -> Self {
+        let [length, mass, time] = place.scales;
+        let units = context.units;
+        let force = units.take(mass * length / (time * time), FORCE);
+        Self {
+            shape: context.shape,
+            axes: (place.axes != [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]]).then_some(place.axes),
+            place: scale(1.0 / length, units.length),
+            velocity: scale(time / length, units.length - units.time),
+            time: scale(1.0 / time, units.time),
+            origin: place.origin.map(|x| x / length),
+            t0: context.t0 / time,
+            force: context.per_body(|system, slot| force / system.mass[slot]),
+        }
+    }
+}
+
+/// An expression at work.
+pub(super) struct Kernel {
+    way: Way,
+    machine: Machine<Lanes>,
+    needs: Needs,
+}
+
+impl Kernel {
+    pub(super) fn new(expressions: &Expressions, place: &Place, context: &Context<'_>) -> Self {
+        let parameters: Vec<Lanes> = expressions.parameters.iter().map(|&p| Lanes::splat(p)).collect();
+        Self {
+            way: Way::new(place, context),
+            machine: Machine::new(expressions.force.clone(), &parameters),
+            needs: expressions.needs,
+        }
+    }
+}
+
+/// Three components along the axes.
+#[inline(always)]
+fn turned<V: Real>(axes: &Option<[[f64; 3]; 3]>, x: [V; 3], back: bool) -> [V; 3] {
+    let Some(axes) = axes else { return x };
+    let mut found = [V::zero(); 3];
+    for to in 0..3 {
+        for from in 0..3 {
+            let along = if back { axes[from][to] } else { axes[to][from] };
+            found[to] = V::splat(along).multiply_add(x[from], found[to]);
+        }
+    }
+    found
+}
+
+#[inline(always)]
+fn apply_body<V: Vector8 + Scalar>(
+    kernel: &mut Kernel,
+    phase: &Phase<'_, Lanes>,
+    a: &mut [Lanes],
+    first: bool,
+) {
+    let Kernel { way, machine, needs } = kernel;
+    let rows = way.shape.rows;
+    let (code, registers) = machine.parts();
+    let outputs = code.output_registers();
+    let registers = V::view_mut(registers);
+    let (q, v, a) = (V::view(phase.q), V::view(phase.v), V::view_mut(a));
+    let t = V::splat(way.time).multiply_add(V::load(*phase.t), V::splat(way.t0));
+    for row in 0..rows {
+        let mut place = [V::zero(); 3];
+        for c in 0..way.shape.components {
+            let origin = V::splat(-way.origin[c]);
+            place[c] = V::splat(way.place).multiply_add(q[c * rows + row], origin);
+        }
+        registers[..3].copy_from_slice(&turned(&way.axes, place, false));
+        if needs.velocity {
+            let mut speed = [V::zero(); 3];
+            for c in 0..way.shape.components {
+                speed[c] = V::splat(way.velocity) * v[c * rows + row];
+            }
+            registers[3..VARIABLES].copy_from_slice(&turned(&way.axes, speed, false));
+        }
+        registers[VARIABLES] = t;
+        execute::execute::<V, 1>(code, Part::Body, registers);
+        let mut force = [V::zero(); 3];
+        for c in 0..3 {
+            force[c] = registers[usize::from(outputs[c])];
+        }
+        let force = turned(&way.axes, force, true);
+        let factor = V::load(way.force[row]);
+        // Where there is no body the expression may be anything.
+        let none = factor.less_equal(V::zero());
+        for c in 0..way.shape.components {
+            let term = V::select(none, V::zero(), force[c] * factor);
+            let a = &mut a[c * rows + row];
+            *a = if first { term } else { *a + term };
+        }
+    }
+}
+
+tiered! {
+    fn apply_tier[][](kernel: &mut Kernel, phase: &Phase<'_, Lanes>, a: &mut [Lanes], first: bool) = apply_body;
+}
+
+impl Force<Lanes> for Kernel {
+    fn apply(
+        &mut self,
+        phase: &Phase<'_, Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        apply_tier(self, phase, a, first);
+        Ok(())
+    }
+    fn needs(&self) -> Needs {
+        self.needs
+    }
+    fn adds(&self) -> Adds {
+        Adds::Once
+    }
+}
+
+/// An expression as Taylor series, one for each row of bodies.
+pub(super) struct Expanded {
+    way: Way,
+    rows: Vec<Expansion<Lanes>>,
+    needs: Needs,
+}
+
+impl Expanded {
+    pub(super) fn new(expressions: &Expressions, place: &Place, context: &Context<'_>) -> Option<Self> {
+        let parameters: Vec<Lanes> = expressions.parameters.iter().map(|&p| Lanes::splat(p)).collect();
+        let row = Expansion::new(expressions.series.clone()?, &parameters);
+        let way = Way::new(place, context);
+        Some(Self { rows: vec![row; way.shape.rows], way, needs: expressions.needs })
+    }
+}
+
+impl Series<Lanes> for Expanded {
+    fn coefficient(
+        &mut self,
+        n: usize,
+        jet: &Jet<Lanes>,
+        a: &mut [Lanes],
+        first: bool,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let Self { way, rows, needs } = self;
+        let count = way.shape.rows;
+        let per_unit = Lanes::splat(way.velocity) / jet.unit;
+        let square = jet.unit * jet.unit;
+        let time = match n {
+            0 => Lanes::splat(way.time).multiply_add(jet.t, Lanes::splat(way.t0)),
+            1 => Lanes::splat(way.time) * jet.unit,
+            _ => Lanes::zero(),
+        };
+        for (row, expansion) in rows.iter_mut().enumerate() {
+            let (mut place, mut speed) = ([Lanes::zero(); 3], [Lanes::zero(); 3]);
+            for c in 0..way.shape.components {
+                let origin = Lanes::splat(if n == 0 { -way.origin[c] } else { 0.0 });
+                place[c] = Lanes::splat(way.place).multiply_add(jet.position(n)[c * count + row], origin);
+                if needs.velocity {
+                    speed[c] = per_unit * jet.velocity(n)[c * count + row];
+                }
+            }
+            let variables =
+                turned(&way.axes, place, false).into_iter().chain(turned(&way.axes, speed, false));
+            for (index, value) in variables.enumerate() {
+                expansion.set(index, n, value);
+            }
+            expansion.set(expansion.time(), n, time);
+            expansion.expand(n);
+            let force = turned(&way.axes, [0, 1, 2].map(|c| expansion.output(c, n)), true);
+            let none = way.force[row].less_equal(Lanes::zero());
+            for c in 0..way.shape.components {
+                let term = Lanes::select(none, Lanes::zero(), force[c] * way.force[row] * square);
+                let a = &mut a[c * count + row];
+                *a = if first { term } else { *a + term };
+            }
+        }
+        Ok(())
+    }
+}

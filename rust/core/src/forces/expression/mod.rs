@@ -1,0 +1,223 @@
+//! Forces of one's own, as expressions: a potential energy or the components of a force, of places, velocities and time.
+//!
+//! The one idea: what a user writes is a graph in the scene's own coordinates and units, with derivatives taken on it; a
+//! scene that is shifted, turned or rescaled changes the few numbers that lead from its bodies to those coordinates.
+
+mod kernel;
+mod table;
+
+use super::Force;
+use super::bodies::{Of, PreciseBodies};
+use super::context::Context;
+use super::series::Series;
+use super::term::{Conserves, ForceDeclaration, ForceTerm};
+use crate::error::{Error, Result};
+use crate::expressions::{Code, Machine, series};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::lanes::Lanes;
+use crate::numerics::power_of_two::scale;
+use crate::numerics::scaled::Scaled;
+use crate::ode::system::Needs;
+use crate::parallel::Ticker;
+use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign, Value};
+use crate::units::Units;
+use kernel::{Expanded, Kernel};
+use std::sync::Arc;
+
+/// Numbers that expressions are of: a place and a velocity.
+const VARIABLES: usize = 6;
+
+/// What it declares about itself.
+pub static DECLARATION: ForceDeclaration = Declaration {
+    name: "expressed_force",
+    class_name: "ExpressedForce",
+    summary: "A force of one's own on every body, as `visviva.ExpressionForce` makes it",
+    formula: "F of x, y, z, vx, vy, vz and t, or V(x, y, z, t) with F = −∇V",
+    notes: "The place, the velocity and the time in the expressions are those of a body from `origin`, along the axes \
+            `first`, `second` and `third`, in the units `length`, `mass` and `time`: so a scene that is shifted, turned or \
+            rescaled takes the force along. It acts by its force, so every mass must be positive. A potential energy without \
+            time in it is conserved with the kinetic energy; one with time is not counted.",
+    source: "A. Griewank & A. Walther, Evaluating Derivatives (2008), for the derivatives",
+    example: ">>> spring = vv.ExpressionForce(potential=lambda r, v, t, k: k * r[0] ** 2 / 2, parameters={\"k\": 4.0})\n\
+              >>> ion = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), spring)\n\
+              >>> ion.run(t=1.0, rtol=1e-12).position[-1, 0, 0].round(9).item()\n\
+              -0.416146837",
+    at_rest: "field",
+    one_way: "what velocities and time do in it is not known",
+    parameters: &[
+        Parameter::new("gives", Kind::Choice(&["force", "potential"]), "What the expressions give"),
+        Parameter::new(
+            "nodes",
+            Kind::Table(Sign::Any),
+            "The expressions, as `visviva.ExpressionForce` writes them",
+        ),
+        Parameter::new("values", Kind::Table(Sign::Any), "Of the parameters in them"),
+        Parameter::new("first", Kind::Vector, "The axis of x"),
+        Parameter::new("second", Kind::Vector, "The axis of y"),
+        Parameter::new("third", Kind::Vector, "The axis of z"),
+        Parameter::new("origin", Kind::Point, "Where x, y and z are 0").of([1, 0, 0]).or(0.0),
+        Parameter::positive("length", [1, 0, 0], "The unit of length in the expressions").or(1.0),
+        Parameter::positive("mass", [0, 1, 0], "The unit of mass in them").or(1.0),
+        Parameter::positive("time", [0, 0, 1], "The unit of time in them").or(1.0),
+    ],
+    make: |values| match values {
+        [gives, nodes, parameters, first, second, third, origin, length, mass, time] => {
+            let axes = [first.vector(), second.vector(), third.vector()];
+            check_axes(&axes)?;
+            let expressions = table::read(gives.word() == "potential", nodes.table(), parameters.table())?;
+            Ok(Arc::new(ExpressionForce {
+                expressions,
+                place: Place {
+                    axes,
+                    origin: origin.vector(),
+                    scales: [length, mass, time].map(Value::number),
+                },
+            }))
+        }
+        _ => Err(Error::Internal("ExpressedForce takes ten parameters".to_owned())),
+    },
+};
+
+/// How far from one and zero products of axes may be: they have been turned, perhaps often.
+const SQUARE: f64 = 1e-9;
+
+/// Refuses axes that are not of length one and at right angles.
+fn check_axes(axes: &[[f64; 3]; 3]) -> Result<()> {
+    for (i, name) in ["first", "second", "third"].into_iter().enumerate() {
+        for j in 0..=i {
+            let product: f64 = (0..3).map(|c| axes[i][c] * axes[j][c]).sum();
+            let wanted = if i == j { 1.0 } else { 0.0 };
+            if (product - wanted).abs() > SQUARE {
+                return Err(Error::invalid(name, "expected axes of length 1 at right angles to each other"));
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Expressions as they run.
+#[derive(Debug)]
+struct Expressions {
+    /// The components of the force.
+    force: Arc<Code>,
+    /// The same as recurrences of Taylor coefficients, if it is smooth wherever it goes.
+    series: Option<Arc<series::Series>>,
+    /// The potential energy, if that was given.
+    potential: Option<Arc<Code>>,
+    parameters: Vec<f64>,
+    needs: Needs,
+}
+
+/// What leads from a scene to the coordinates of the expressions.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    axes: [[f64; 3]; 3],
+    origin: [f64; 3],
+    /// The units of length, mass and time.
+    scales: [f64; 3],
+}
+
+#[derive(Debug)]
+struct ExpressionForce {
+    expressions: Expressions,
+    place: Place,
+}
+
+impl Place {
+    /// The place and the velocity of a body, in the scene's units, as the expressions have them.
+    fn local(&self, position: [f64; 3], velocity: [f64; 3]) -> [f64; VARIABLES] {
+        let [length, _, time] = self.scales;
+        let mut found = [0.0; VARIABLES];
+        for (axis, along) in self.axes.iter().enumerate() {
+            for c in 0..3 {
+                found[axis] += along[c] * (position[c] - self.origin[c]) / length;
+                found[3 + axis] += along[c] * velocity[c] * time / length;
+            }
+        }
+        found
+    }
+
+    /// A force of the expressions along the scene's axes, in its units.
+    fn global(&self, force: &[f64; 3]) -> [f64; 3] {
+        let [length, mass, time] = self.scales;
+        core::array::from_fn(|c| {
+            let along: f64 = (0..3).map(|axis| self.axes[axis][c] * force[axis]).sum();
+            along * (mass * length / (time * time))
+        })
+    }
+}
+
+impl ForceTerm for ExpressionForce {
+    fn declaration(&self) -> &'static ForceDeclaration {
+        &DECLARATION
+    }
+    fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
+        Box::new(Kernel::new(&self.expressions, &self.place, context))
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        Some(Box::new(Expanded::new(&self.expressions, &self.place, context)?))
+    }
+    fn has_series(&self) -> bool {
+        self.expressions.series.is_some()
+    }
+
+    fn potential_and_virial(
+        &self,
+        bodies: &PreciseBodies,
+        _: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(Scaled, Scaled)> {
+        let Expressions { force, potential, parameters, needs, .. } = &self.expressions;
+        if needs.time {
+            return Ok((Scaled::ZERO, Scaled::from(f64::NAN)));
+        }
+        let (mut energy, mut work) = (Scaled::ZERO, Scaled::ZERO);
+        let [length, mass, time] = self.place.scales;
+        let mut force = Machine::new(force.clone(), parameters);
+        let mut potential = potential.as_ref().map(|code| Machine::new(code.clone(), parameters));
+        for body in 0..bodies.len() {
+            let place = bodies.vector(Of::Position, body);
+            let whole = |value: DoubleDouble, unit: i32| scale(value.to_f64(), unit);
+            let position = place.map(|x| whole(x, bodies.units.length));
+            let velocity = bodies.vector(Of::Velocity, body).map(|v| whole(v, bodies.units.speed));
+            let state = self.place.local(position, velocity);
+            if let Some(potential) = &mut potential {
+                let mut value = [0.0];
+                potential.evaluate(0.0, &state, &mut value);
+                let unit = length / time;
+                energy = energy.plus(Scaled::from(value[0]).times(mass).times(unit).times(unit));
+            }
+            let mut pull = [0.0; 3];
+            force.evaluate(0.0, &state, &mut pull);
+            for (place, pull) in place.iter().zip(self.place.global(&pull)) {
+                work = work.plus(Scaled::new(*place, bodies.units.length).times(pull));
+            }
+            ticker.tick()?;
+        }
+        Ok((energy, work))
+    }
+
+    fn needs_mass(&self, _: usize) -> bool {
+        true
+    }
+    fn needs(&self) -> Needs {
+        self.expressions.needs
+    }
+    fn conserves(&self) -> Conserves {
+        let energy = self.expressions.potential.is_some() && !self.expressions.needs.time;
+        Conserves { energy, ..Conserves::NOTHING }
+    }
+    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+        let Expressions { force, parameters, .. } = &self.expressions;
+        let mut force = Machine::new(force.clone(), parameters);
+        let mut strongest = 0.0;
+        for &(_, mass, position) in bodies {
+            let position = position.map(|x| scale(x, units.length));
+            let mut pull = [0.0; 3];
+            force.evaluate(0.0, &self.place.local(position, [0.0; 3]), &mut pull);
+            let pull = units.take_vector(self.place.global(&pull), kernel::FORCE);
+            strongest = pull.iter().fold(strongest, |most: f64, x| most.max(x.abs() / mass));
+        }
+        Ok(strongest)
+    }
+}

@@ -1,0 +1,189 @@
+"""Forces of one's own: what visviva has already, written as expressions, and what nobody else has."""
+
+import pickle
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import visviva as vv
+
+x, y, z, vx, vy, vz, t = sp.symbols("x y z vx vy vz t", real=True)
+k, q = sp.symbols("k q", positive=True)
+
+
+def bodies(count: int = 5) -> vv.Particles:
+    rng = np.random.default_rng(count)
+    return vv.Particles(rng.uniform(0.5, 2.0, count), rng.normal(size=(count, 3)), rng.normal(size=(count, 3)))
+
+
+def bowl(r: Any, v: Any, t: Any, k: Any) -> Any:
+    return k * (r[0] ** 2 + r[1] ** 2 + r[2] ** 2) / 2
+
+
+def turning(r: Any, v: Any, t: Any, q: Any) -> Any:
+    return q * (0.5 * v[1] - 0.25 * v[2]), -0.5 * q * v[0], 0.25 * q * v[0]
+
+
+# A force of visviva, the same of SymPy and of a function.
+TWINS = {
+    "oscillator": (
+        vv.Harmonic(k=3.0),
+        lambda: vv.ExpressionForce(potential=k * (x**2 + y**2 + z**2) / 2, parameters={k: 3.0}),
+        lambda: vv.ExpressionForce(potential=bowl, parameters={"k": 3.0}),
+    ),
+    "magnetic field": (
+        vv.UniformMagneticField([0.0, 0.25, 0.5], charge=2.0),
+        lambda: vv.ExpressionForce(force=[q * (vy / 2 - vz / 4), -q * vx / 2, q * vx / 4], parameters={"q": 2.0}),
+        lambda: vv.ExpressionForce(force=turning, parameters={"q": 2.0}),
+    ),
+    "central": (
+        vv.CentralField(vv.potentials.Yukawa(k=-2.0, length=3.0)),
+        lambda: vv.ExpressionForce(
+            potential=-2 * sp.exp(-sp.sqrt(x**2 + y**2 + z**2) / 3) / sp.sqrt(x**2 + y**2 + z**2)
+        ),
+        lambda: vv.ExpressionForce(
+            potential=lambda r, v, t: -2 * np.exp(-abs_of(r) / 3) / abs_of(r),
+        ),
+    ),
+    "drive": (
+        vv.DrivenForce([1.0, 0.0, 0.5], frequency=3.0, phase=0.25),
+        lambda: vv.ExpressionForce(force=[sp.cos(3 * t + sp.Rational(1, 4)), 0, sp.cos(3 * t + 0.25) / 2]),
+        lambda: vv.ExpressionForce(
+            force=lambda r, v, t: (np.cos(3 * t + 0.25), 0.0, np.cos(3 * t + 0.25) / 2),
+        ),
+    ),
+}
+
+
+def abs_of(r: Any) -> Any:
+    return np.sqrt(r[0] ** 2 + r[1] ** 2 + r[2] ** 2)
+
+
+@pytest.mark.parametrize("method", [{"method": "dop853"}, {"method": "taylor"}, {"method": "rk4", "dt": 2.0**-9}])
+@pytest.mark.parametrize("name", TWINS)
+def test_what_there_is_moves_as_the_same_expression(name: str, method: dict[str, Any]) -> None:
+    own, *expressions = TWINS[name]
+    how = {"rtol": 1e-12, **method} if "dt" not in method else method
+    if (name, how["method"]) == ("central", "taylor"):
+        # On a line through the center a square root turns sharply, and a series does not tell.
+        with pytest.raises(
+            vv.InvalidInput, match="needs the Taylor series of every force, and ExpressedForce has none"
+        ):
+            vv.Scene(bodies(), expressions[0]()).run(t=2.5, **how)
+        return
+    wanted = vv.Scene(bodies(), own, t0=0.5).run(t=2.5, **how)
+    for make in expressions:
+        scene = vv.Scene(bodies(), make(), t0=0.5)
+        out = scene.run(t=2.5, **how)
+        # Two tolerances, on motions that magnify them some ten times.
+        assert np.abs(out.position - wanted.position).max() < 1e-10
+        assert np.abs(out.velocity - wanted.velocity).max() < 1e-10
+    if name in ("oscillator", "central"):
+        assert np.allclose(out.potential_energy, wanted.potential_energy, rtol=1e-9)
+        assert np.ptp(out.energy) < 1e-10 * np.abs(out.kinetic_energy).max()
+
+
+def test_accelerations_are_those_of_the_formula() -> None:
+    rng = np.random.default_rng(3)
+    for count in (1, 2, 9, 40):
+        mass, r, v = rng.uniform(0.5, 2.0, count), rng.normal(size=(count, 3)), rng.normal(size=(count, 3))
+        force = vv.ExpressionForce(
+            force=[k * sp.sin(x * y) - vz, sp.atan2(y, x) + t * vx, sp.tanh(z) * sp.sqrt(1 + vy**2)],
+            parameters={k: 1.5},
+        )
+        found = vv.Scene(vv.Particles(mass, r, v), force, t0=0.75).acceleration()
+        components = [
+            1.5 * np.sin(r[:, 0] * r[:, 1]) - v[:, 2],
+            np.arctan2(r[:, 1], r[:, 0]) + 0.75 * v[:, 0],
+            np.tanh(r[:, 2]) * np.sqrt(1 + v[:, 1] ** 2),
+        ]
+        assert np.abs(found - np.stack(components, axis=1) / mass[:, None]).max() < 1e-14
+
+
+def test_a_shifted_turned_and_rescaled_force_is_the_same() -> None:
+    force = vv.ExpressionForce(potential=sp.cos(x + 2 * y) + z**4 + x**2)
+    scene = vv.Scene(bodies(3), force, vv.Gravity(G=0.5))
+    wanted = scene.run(t=1.0, rtol=1e-13)
+    turn, _ = np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))
+    far = scene.shifted(position=[3.0, -2.0, 1.0]).rotated(turn).rescaled(length=2.0, mass=3.0, time=0.7)
+    out = far.run(t=0.7, rtol=1e-13)
+    back = ((out.position[-1] / 2.0) @ turn) - [3.0, -2.0, 1.0]
+    assert np.abs(back - wanted.position[-1]).max() < 1e-11
+
+
+def test_the_bits_are_the_same_alone_in_copies_and_with_threads() -> None:
+    force = vv.ExpressionForce(force=lambda r, v, t: (np.sin(r[1]) - v[0], np.cos(t) * r[0], -(r[2] ** 3)))
+    scene = vv.Scene(bodies(3), force, vv.Gravity(G=1.0, softening=0.1))
+    starts = scene.particles.position + np.linspace(0.0, 1.0, 11)[:, None, None]
+    for method in ({"method": "dop853"}, {"method": "rk4", "dt": 0.01}, {"method": "verner98"}):
+        one, three = (scene.ensemble(position=starts).run(t=1.0, threads=n, **method) for n in (1, 3))
+        assert np.array_equal(one.position, three.position)
+        alone = vv.Scene(one[4].final.particles, *scene.forces)
+        assert alone.forces == scene.forces
+        for member in (0, 10):
+            copy = vv.Scene(vv.Particles(scene.particles.mass, starts[member], scene.particles.velocity), *scene.forces)
+            assert np.array_equal(copy.run(t=1.0, **method).position, one[member].position)
+
+
+def test_files_and_pickles_hold_it(tmp_path: Any) -> None:
+    force = vv.ExpressionForce(potential=k * x**2 * sp.exp(-(y**2)), parameters={"k": 0.1})
+    assert pickle.loads(pickle.dumps(force)) == force
+    assert hash(force) == hash(vv.ExpressionForce(potential=k * x**2 * sp.exp(-(y**2)), parameters={"k": 0.1}))
+    out = vv.Scene(bodies(2), force).run(t=1.0)
+    out.save(tmp_path / "run.npz")
+    again = vv.load(tmp_path / "run.npz")
+    assert again.scene.forces == (force,)
+    assert np.array_equal(again.scene.run(t=1.0).position, out.position)
+
+
+def test_what_leaves_the_domain_ends_there_with_what_was_computed() -> None:
+    """Of x″ = −1/√x from rest at 1, x = 0 is reached at the time 4/3."""
+    fall = vv.ExpressionForce(force=[-1 / sp.sqrt(x), 0, 0])
+    with pytest.raises(vv.ConvergenceError) as caught:
+        vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), fall).run(t=[1.0, 10.0], rtol=1e-10)
+    assert abs(caught.value.time - 4 / 3) < 1e-6
+    assert np.isfinite(caught.value.trajectory.position).all()
+
+
+@pytest.mark.parametrize(
+    ("make", "argument", "message"),
+    [
+        (vv.ExpressionForce, "potential", "one of potential and force"),
+        (lambda: vv.ExpressionForce(potential=x, force=[x, y, z]), "potential", "one of potential and force"),
+        (lambda: vv.ExpressionForce(potential=k * x), "potential", "free symbol 'k' has no value"),
+        (lambda: vv.ExpressionForce(potential=vx * x), "potential", "one of velocities; pass the force instead"),
+        (lambda: vv.ExpressionForce(potential="x**2"), "potential", "expected a number|got the text|number"),
+        (lambda: vv.ExpressionForce(potential=sp.Piecewise((x, x > 0), (0, True))), "potential", "switches"),
+        (lambda: vv.ExpressionForce(potential=sp.besselj(0, x)), "potential", "not known"),
+        (lambda: vv.ExpressionForce(force=[x, y]), "force", "three components"),
+        (lambda: vv.ExpressionForce(force="xyz"), "force", "three components"),
+        (lambda: vv.ExpressionForce(force=lambda r, v, t: (r[0], 0.0)), "force", "three components"),
+        (lambda: vv.ExpressionForce(force=lambda r, v, t: 1.0), "force", "three components"),
+        (lambda: vv.ExpressionForce(force=lambda r: r), "force", "called with"),
+        (lambda: vv.ExpressionForce(potential=x, parameters={"x": 1.0}), "parameters", "names that are not x"),
+        (lambda: vv.ExpressionForce(potential=k * x, parameters={k: "2"}), "parameters['k']", "number"),
+        (lambda: vv.ExpressionForce(potential=k * x, parameters=[2.0]), "parameters", "values by parameter"),
+        (lambda: vv.ExpressionForce(potential=k * x, parameters={k: np.nan}), "parameters['k']", "finite"),
+        (lambda: vv.ExpressedForce("force", [3.0, 0.0], [], *np.eye(3)), "nodes", "ends too early"),
+        (lambda: vv.ExpressedForce("force", [1.0, 0.0, 0.0, 1.0, 0.0], [], *np.eye(3)), "nodes", "expected 3"),
+        (lambda: vv.ExpressedForce("potential", [1.0, 0.0, 99.0, 1.0, 0.0], [], *np.eye(3)), "nodes", "no such"),
+        (lambda: vv.ExpressedForce("potential", [1.0, 0.0, 1.0, 9.0, 0.0], [], *np.eye(3)), "nodes", "not there"),
+        (lambda: vv.ExpressedForce("potential", [1.0, 5.0, 1.0, 0.0, 0.0], [], *np.eye(3)), "nodes", "missing"),
+        (lambda: vv.ExpressedForce("potential", [1.0, 0.0, 7.0, 0.0, 0.0], [], *np.eye(3)), "nodes", "argument"),
+        (lambda: vv.ExpressedForce("potential", [1.0, 0.0, 1.0, 0.0, 0.0], [], *2 * np.eye(3)), "first", "length 1"),
+    ],
+)
+def test_what_is_wrong_is_refused_by_name(make: Any, argument: str, message: str) -> None:
+    def build() -> None:
+        vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), make()).plan(t=1.0)
+
+    with pytest.raises(vv.InvalidInput, match=message) as caught:
+        build()
+    assert caught.value.argument == argument
+
+
+def test_what_acts_by_its_force_needs_masses() -> None:
+    with pytest.raises(vv.InvalidInput, match="every mass must be positive"):
+        vv.Scene(vv.Particles([0.0], [[1.0, 0.0, 0.0]]), vv.ExpressionForce(potential=x)).run(t=1.0)
