@@ -5,6 +5,8 @@ laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile
 broadcast against each other; the functions of one array keep its shape.
 """
 
+from visviva.scattering._beam import Beam, Spectrum
+from visviva.scattering._bins import Bins
 from visviva.scattering._cross_sections import (
     capture_cross_section,
     collision_integral,
@@ -46,10 +48,11 @@ from visviva.scattering._rutherford import (
     rutherford_impact_parameter,
 )
 from visviva.scattering._structure import Glory, Orbit, Rainbow, glories, impact_parameter, orbiting, rainbows
-from visviva.scattering._tally import Beam, CrossSection, JointTally, Spectrum, Tally
+from visviva.scattering._tally import CrossSection, JointTally, Tally
 
 __all__ = [
     "Beam",
+    "Bins",
     "Bombardment",
     "CrossSection",
     "Deflection",

@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,19 +13,21 @@ from visviva._keywords import known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
+from visviva.scattering._beam import Beam, Spectrum, described
+from visviva.scattering._bins import asked_for
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._spread import spread
-from visviva.scattering._tally import Beam, JointTally, Spectrum, Tally
+from visviva.scattering._tally import JointTally, Tally
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Iterable, Mapping
+
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva._progress import Progress
+    from visviva.scattering._bins import Axes, Bins
 
 __all__ = ["monte_carlo", "scattering_events"]
-
-# Names of quantities, each with a number of bins or edges.
-Axes: TypeAlias = list[tuple[str, Any]]
 
 
 @known_keywords
@@ -39,7 +40,7 @@ def monte_carlo(
     n_events: int,
     seed: int,
     tally: str | Iterable[str | tuple[str, str]] | Mapping[Any, Any] = "cm_angle",
-    bins: int = 180,
+    bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
     threads: int | None = None,
     first_event: int = 0,
     progress: Progress = False,
@@ -74,11 +75,14 @@ def monte_carlo(
     tally : str, iterable of str, or mapping
         What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
-        ``{name: edges}``, where a whole number in place of edges is a number of equal bins. Angles are in radians.
+        ``{name: edges}``, where a whole number in place of edges is a number of equal bins, and `Bins` are bins by
+        name: ``Bins.logarithmic(60, 1e-3)``, ``Bins.solid_angle(50)``. Angles are in radians.
         A pair of names in place of a name counts both together: ``[("lab_angle", "energy")]``, or
         ``{("lab_angle", "energy"): (edges, edges)}``, a `JointTally`.
-    bins : int
-        Number of equal bins, over all possible values, of each tally that is given by its name only; up to 65536.
+    bins : int, Bins, array_like or mapping
+        Of each tally that is given by its name only: a number of equal bins over all values, up to 65536; `Bins`;
+        edges; or ``{name: any of these}``, with 180 equal bins of a quantity that is not among them. Values below the
+        first and above the last edge are counted too, as ``underflow`` and ``overflow``.
     threads : int, optional
         By default ``VISVIVA_THREADS``, else all cores.
     first_event : int
@@ -119,7 +123,7 @@ def monte_carlo(
     """
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    asked = _tallies(tally, whole_number("bins", bins, 1, 2**16))
+    asked = asked_for(tally, bins)
     beam = Beam(potential, _energy(beam_energy), _pair(masses), number("b_max", b_max), np.nan)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
 
@@ -174,7 +178,7 @@ def scattering_events(
     first, count, key = _which(first_event, n_events, seed)
     with callback(progress) as report:
         component, deflection, values = _core.scattering_events(
-            beam=_described(beam),
+            beam=described(beam),
             n_events=count,
             seed=key,
             first_event=first,
@@ -220,18 +224,6 @@ def _which(first_event: object, n_events: object, seed: object) -> tuple[int, in
     return first, count, whole_number("seed", seed, 0, 2**64 - 1)
 
 
-def _described(beam: Beam) -> dict[str, Any]:
-    energy = beam.beam_energy
-    lines = (energy.energy, energy.weight) if isinstance(energy, Spectrum) else ((energy,), (1.0,))
-    return {
-        "potential": beam.potential._to_core(),
-        "energies": list(lines[0]),
-        "weights": list(lines[1]),
-        "masses": beam.masses,
-        "b_max": beam.b_max,
-    }
-
-
 def _run(
     beam: Beam,
     asked: list[Axes],
@@ -244,7 +236,7 @@ def _run(
 ) -> MonteCarlo:
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
-    request: dict[str, Any] = {"beam": _described(beam), "tallies": asked, "seed": key, "threads": several}
+    request: dict[str, Any] = {"beam": described(beam), "tallies": asked, "seed": key, "threads": several}
     with callback(progress) as report:
         if executor is not None:
             counted = spread(executor, request, first, count, report)
@@ -271,50 +263,3 @@ def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, in
     reachable, covered = single
     under, over = int(flow[0]), int(flow[-1])
     return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
-
-
-def _tallies(tally: object, bins: int) -> list[Axes]:
-    if isinstance(tally, str):
-        tally = (tally,)
-    pairs: list[tuple[Any, Any]]
-    if isinstance(tally, Mapping):
-        pairs = list(tally.items())
-    elif isinstance(tally, Iterable):
-        # A set has no order of its own that would be the same in the next process.
-        pairs = [(name, None) for name in (sorted(tally, key=str) if isinstance(tally, Set) else tally)]
-    else:
-        raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
-    names = [name for name, _ in pairs]
-    if not names or not all(_named(name) for name in names) or len(set(names)) < len(names):
-        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
-    return [_axes(name, given, bins) for name, given in pairs]
-
-
-def _named(name: object) -> bool:
-    """Whether it is the name of a quantity, or of two together."""
-    if isinstance(name, tuple):
-        return len(name) == 2 and all(isinstance(one, str) for one in name) and name[0] != name[1]
-    return isinstance(name, str)
-
-
-def _axes(name: str | tuple[str, str], given: Any, bins: int) -> Axes:
-    names = (name,) if isinstance(name, str) else name
-    if given is None:
-        each = (bins,) * len(names)
-    elif isinstance(name, str):
-        each = (given,)
-    elif not isinstance(given, tuple | list) or len(given) != len(names):
-        raise InvalidInput("tally", f"expected edges or a number of bins for each of {name}, got {given!r}")
-    else:
-        each = tuple(given)
-    # Half a surrogate pair is no text to the core; what remains is refused there as an unknown name.
-    told = [one.encode(errors="replace").decode() for one in names]
-    return [(one, _edges_or_bins(one, edges)) for one, edges in zip(told, each, strict=True)]
-
-
-def _edges_or_bins(name: str, given: Any) -> int | NDArray[np.float64]:
-    if isinstance(given, int | np.integer) and not isinstance(given, bool):
-        return whole_number(name, given, 1, 2**16)
-    if np.ndim(given) == 0:
-        raise InvalidInput(name, f"expected edges or a number of bins, got {given!r}; pass a list of edges, or an int")
-    return float_array(name, given, (None,))

@@ -12,7 +12,8 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
-from visviva.scattering._tally import Beam, JointTally, OfEvents, Spectrum, Tally, is_zero
+from visviva.scattering._beam import Beam, Spectrum
+from visviva.scattering._tally import JointTally, OfEvents, Tally, is_zero
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

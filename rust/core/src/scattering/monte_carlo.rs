@@ -85,12 +85,7 @@ pub fn monte_carlo(
     ticker: &mut Ticker<'_>,
 ) -> Result<Counted> {
     let end = end_of(first_event, n_events)?;
-    let beams: Vec<&Beam> = mixture.beams().collect();
-    let steps = |tally: &Tally| {
-        for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
-    };
-    let program =
-        Program { component: mixture.lookup(), steps: tallies.iter().map(steps).collect::<Result<_>>()? };
+    let program = Program::new(mixture, tallies, threads, ticker)?;
     let counts = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
@@ -115,6 +110,26 @@ pub fn monte_carlo(
     Ok(counted)
 }
 
+/// What part of all events falls into each slot of each tally, on the average: the area of the disc that leads there, of
+/// the very function by which events are counted.
+///
+/// # Errors
+/// `Interrupted`.
+pub fn expected(
+    mixture: &Mixture,
+    tallies: &[Tally],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Vec<f64>>> {
+    let program = Program::new(mixture, tallies, threads, ticker)?;
+    let of_tally = |(tally, steps): (&Tally, &Vec<Steps>)| {
+        let mut slots = vec![0.0; tally.slots()];
+        steps.iter().zip(mixture.parts()).for_each(|(steps, part)| steps.collect_parts(part, &mut slots));
+        slots
+    };
+    Ok(tallies.iter().zip(&program.steps).map(of_tally).collect())
+}
+
 /// Draws of a batch, sixteen events to each.
 type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
 
@@ -130,6 +145,14 @@ struct Program {
 type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
 
 impl Program {
+    fn new(mixture: &Mixture, tallies: &[Tally], threads: usize, ticker: &mut Ticker<'_>) -> Result<Self> {
+        let beams: Vec<&Beam> = mixture.beams().collect();
+        let steps = |tally: &Tally| {
+            for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
+        };
+        let steps = tallies.iter().map(steps).collect::<Result<_>>()?;
+        Ok(Self { component: mixture.lookup(), steps })
+    }
     /// Counts events in their order until they end or the run is cancelled.
     fn count(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> (u64, Counters) {
         if ticker.tick().is_err() {

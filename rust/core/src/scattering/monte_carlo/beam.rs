@@ -5,6 +5,7 @@ use crate::numerics::lanes::WIDTH;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::Ticker;
 use crate::potentials::Potential;
+use crate::scattering::bins::Bins;
 use crate::scattering::deflection::{Deflection, Deflector, Status};
 use crate::scattering::event_table::{EventTable, TOLERANCE};
 use crate::scattering::histogram::Edges;
@@ -159,30 +160,16 @@ impl Beam {
             Quantity::ImpactParameter => Limits::upto("b_max", self.b_max),
         }
     }
-    /// Given edges of a quantity.
+    /// Bins of a quantity.
     ///
     /// # Errors
-    /// `InvalidInput` naming the quantity, for what are no edges and for edges that it can never reach.
-    pub fn edges(&self, quantity: Quantity, edges: Vec<f64>) -> Result<Edges> {
-        let edges = Edges::new(quantity.name(), edges)?;
-        self.limits(quantity).check(quantity.name(), edges.values())?;
-        Ok(edges)
-    }
-    /// `bins` equal bins over all values a quantity can have.
-    ///
-    /// # Errors
-    /// `InvalidInput` naming `bins`, or what makes the greatest value too small to divide.
-    pub fn uniform_edges(&self, quantity: Quantity, bins: usize) -> Result<Edges> {
-        let (blamed, high) = match quantity {
-            Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
-            Quantity::RecoilAngle => ("bins", FRAC_PI_2),
-            Quantity::Energy => ("beam_energy", self.energy),
-            Quantity::RecoilEnergy => {
-                ("masses", self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
-            }
-            Quantity::ImpactParameter => ("b_max", self.b_max),
-        };
-        if high / (bins as f64) < f64::MIN_POSITIVE {
+    /// `InvalidInput` naming the quantity, for what are no bins and for edges that it can never reach; or what makes the
+    /// greatest value too small to divide.
+    pub fn edges(&self, quantity: Quantity, bins: &Bins) -> Result<Edges> {
+        let (blamed, high) = self.greatest(quantity);
+        if let Bins::Count(bins) = bins
+            && high / (*bins as f64) < f64::MIN_POSITIVE
+        {
             return Err(Error::invalid(
                 blamed,
                 format!(
@@ -193,7 +180,21 @@ impl Beam {
                 ),
             ));
         }
-        Edges::uniform(bins, 0.0, high)
+        let edges = bins.edges(quantity.name(), quantity.is_angle(), high)?;
+        self.limits(quantity).check(quantity.name(), edges.values())?;
+        Ok(edges)
+    }
+    /// The greatest value that a quantity can have, and what is to blame if it is none.
+    fn greatest(&self, quantity: Quantity) -> (&'static str, f64) {
+        match quantity {
+            Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
+            Quantity::RecoilAngle => ("bins", FRAC_PI_2),
+            Quantity::Energy => ("beam_energy", self.energy),
+            Quantity::RecoilEnergy => {
+                ("masses", self.energy * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
+            }
+            Quantity::ImpactParameter => ("b_max", self.b_max),
+        }
     }
     /// Half of an angle that no impact parameter beyond the disc exceeds.
     pub(super) fn edge(&self) -> HalfAngle {

@@ -97,6 +97,11 @@ impl Mixture {
         let starts: Vec<u64> = self.components.iter().map(|(start, _)| *start).collect();
         (starts.len() > 1).then(|| Lookup::new(starts, 16))
     }
+    /// The part of all draws that is each component's.
+    pub(super) fn parts(&self) -> impl Iterator<Item = f64> {
+        let ends = self.components.iter().skip(1).map(|(start, _)| *start).chain([1 << DRAW_BITS]);
+        self.components.iter().zip(ends).map(|((start, _), end)| (end - start) as f64 * UNIT)
+    }
     /// The component of a draw.
     pub(super) fn component(&self, draw: u64) -> Option<(usize, &Beam)> {
         let index = self.components.partition_point(|(start, _)| *start <= draw).checked_sub(1)?;
