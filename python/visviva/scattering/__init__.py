@@ -5,7 +5,7 @@ laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile
 broadcast against each other; the functions of one array keep its shape.
 """
 
-from visviva.scattering._beam import Beam, Spectrum
+from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._bins import Bins
 from visviva.scattering._cross_sections import (
     capture_cross_section,
@@ -70,6 +70,7 @@ __all__ = [
     "Orbit",
     "Rainbow",
     "Spectrum",
+    "Spread",
     "Tally",
     "capture_cross_section",
     "cm_angle",

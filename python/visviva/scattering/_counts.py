@@ -76,15 +76,18 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     edges = np.degrees(tally.edges) if angle else tally.edges
     # Of the disc, bin by bin: what is beyond it is missing from the simulation and from what is expected alike.
     scale = np.pi * tally.b_max**2 / (tally.n_events * tally._measure())
-    expected = tally.expected() * scale
+    beam = tally.beam
+    known = beam.energy_spread is None and not (beam.divergence and tally.name in ("lab_angle", "recoil_angle"))
+    expected = tally.expected() * scale if known else np.full(scale.shape, np.nan)
     # Where nothing can come the interval of no count would say that something might.
-    shown = np.where((tally.counts > 0) | (expected > 0.0), scale, np.nan)
+    shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)
     low, high = (np.append(end * shown, np.nan) for end in poisson_interval(tally.counts))
     axes.fill_between(
         edges, low, high, step="post", alpha=0.35, linewidth=0.0, color="C0", label="central 68 % of Poisson"
     )
     axes.stairs(tally.values() * scale, edges, linewidth=1.0, color="C0", label=f"{tally.n_events} events")
-    axes.stairs(expected, edges, linewidth=1.0, color="C1", linestyle="--", label="theory")
+    if known:
+        axes.stairs(expected, edges, linewidth=1.0, color="C1", linestyle="--", label="theory")
     across, up = _AXES[tally.name]
     axes.set(xlabel=across, ylabel=up)
     drawn = np.concatenate([(tally.values() * scale)[tally.counts > 0], expected[expected > 0.0]])

@@ -49,7 +49,8 @@ class OfEvents:
 
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
-        for name in ("potential", "beam_energy", "masses", "b_max", "tables"):
+        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "tables")
+        for name in names:
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
@@ -154,6 +155,11 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         -------
         ndarray, shape (B,)
 
+        Raises
+        ------
+        InvalidInput
+            With an energy spread, and of an angle that a divergence smears: no area of impact parameters tells those.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -167,7 +173,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         return parts[0][1:-2] * self.n_events
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
-        """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected.
+        """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
 
         The bands are those of `poisson_interval`, not √n. Where the disc does not reach, the simulation and `expected`
         lack the same.
@@ -205,6 +211,11 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         CrossSection
             (value, error): counts / n_events · π b_max², per steradian for angles, else per unit of the quantity.
 
+        Raises
+        ------
+        InvalidInput
+            For a beam with a spot, which does not fill the disc evenly.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -220,6 +231,8 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         >>> bool(np.isnan(value[0])), bool(abs(value[2] * 2 * np.pi - np.pi / 4) < 4 * error[2] * 2 * np.pi)
         (True, True)
         """
+        if self.beam.spot is not None:
+            raise InvalidInput("spot", f"expected a beam that fills the disc evenly, got a spot of {self.beam.spot}")
         width = self._measure()
         two_branches = self.name == "lab_angle" and self.beam.masses[0] > self.beam.masses[1]
         known = self.reachable == 1.0 if two_branches else self.reachable > 0.0

@@ -72,7 +72,9 @@ impl Spacing {
         }
         let of = |share: f64| match self {
             Self::Linear => low + (high - low) * share,
-            Self::Logarithmic => low * Exponential::exp((ln(high) - ln(low)) * share),
+            // From the nearer end: no power is beyond all numbers.
+            Self::Logarithmic if share < 0.5 => low * Exponential::exp((ln(high) - ln(low)) * share),
+            Self::Logarithmic => high * Exponential::exp((ln(low) - ln(high)) * (1.0 - share)),
             Self::SolidAngle => {
                 // The solid angle is 4π sin²(θ/2); 4π cos²(θ/2) is what is left, without a difference.
                 let [(sine, cosine), (last_sine, last_cosine)] =

@@ -11,7 +11,7 @@ use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Mixture, Quantity, Tally, events, expected, monte_carlo as simulate,
+    Beam, Mixture, Profile, Quantity, Spread, Tally, events, expected, monte_carlo as simulate,
 };
 use visviva_core::{Error, Result};
 
@@ -53,6 +53,9 @@ pub(crate) struct Described<'py> {
     weights: Vec<f64>,
     masses: (f64, f64),
     b_max: f64,
+    energy_spread: Option<(String, f64)>,
+    divergence: Option<(String, f64)>,
+    spot: Option<f64>,
 }
 
 /// What the work is given of one.
@@ -62,13 +65,21 @@ struct Taken {
     weights: Vec<f64>,
     masses: (f64, f64),
     b_max: f64,
+    profile: Profile,
 }
 
 impl Described<'_> {
-    fn taken(self) -> PyResult<Taken> {
+    fn taken(self, py: Python<'_>) -> PyResult<Taken> {
         let potential = described_potential(&self.potential)?;
-        let Self { energies, weights, masses, b_max, .. } = self;
-        Ok(Taken { potential, energies, weights, masses, b_max })
+        let spread = |argument: &str, told: Option<(String, f64)>| {
+            told.map(|(name, size)| Spread::named(argument, &name, size))
+                .transpose()
+                .map_err(|error| raised(py, error))
+        };
+        let Self { energies, weights, masses, b_max, energy_spread, divergence, spot, .. } = self;
+        let energy_spread = spread("energy_spread", energy_spread)?;
+        let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
+        Ok(Taken { potential, energies, weights, masses, b_max, profile })
     }
 }
 
@@ -79,6 +90,7 @@ impl Taken {
             (&self.energies, &self.weights),
             self.masses,
             self.b_max,
+            self.profile,
             threads,
             ticker,
         )
@@ -120,7 +132,7 @@ pub(crate) fn monte_carlo<'py>(
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Counted<'py>> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
-    let beam = beam.taken()?;
+    let beam = beam.taken(py)?;
     let asked = taken(py, tallies)?;
     let ((mixture, tallies, counted), interrupted) = compute(py, n_events, progress.as_ref(), |ticker| {
         // What is tabulated on the way is no part of what is to be done.
@@ -150,7 +162,7 @@ pub(crate) fn monte_carlo<'py>(
         };
         results.push((names, edges, moved(py, slots, &shape)?, captured, single));
     }
-    let tables = mixture.beams().filter_map(Beam::table);
+    let tables = mixture.beams().flat_map(Beam::tables);
     let tables =
         tables.map(|table| (table.hash(), table.bytes(), table.error(), table.unresolved())).collect();
     Ok((counted.events, interrupted, mixture.smallest_angle(), tables, results))
@@ -165,7 +177,7 @@ pub(crate) fn monte_carlo_expected<'py>(
     tallies: Axes<AskedBins<'py>>,
 ) -> PyResult<Vec<Column<'py>>> {
     let threads = thread_count(None).map_err(|error| raised(py, error))?;
-    let (beam, asked) = (beam.taken()?, taken(py, tallies)?);
+    let (beam, asked) = (beam.taken(py)?, taken(py, tallies)?);
     let parts = compute(py, 0, None, |ticker| {
         let mixture = beam.mixture(threads, ticker)?;
         expected(&mixture, &binned(&mixture, asked)?, threads, ticker)
@@ -180,7 +192,7 @@ pub(crate) fn monte_carlo_expected<'py>(
         .collect()
 }
 
-/// The events of a range: their components, ψ, and all quantities, event after event.
+/// The events of a range: their components; energy before, direction, ψ, and all quantities, event after event.
 #[pyfunction]
 #[pyo3(signature = (*, beam, n_events, seed, first_event, threads, progress))]
 pub(crate) fn scattering_events<'py>(
@@ -191,25 +203,25 @@ pub(crate) fn scattering_events<'py>(
     first_event: u64,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Bound<'py, PyArrayDyn<u64>>, Column<'py>, Column<'py>)> {
+) -> PyResult<(Bound<'py, PyArrayDyn<u64>>, Column<'py>)> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
-    let beam = beam.taken()?;
-    let (components, deflections, values) = compute(py, n_events, progress.as_ref(), |ticker| {
+    let beam = beam.taken(py)?;
+    let (components, values) = compute(py, n_events, progress.as_ref(), |ticker| {
         ticker.control().count_whole(n_events);
         let mixture = beam.mixture(threads, ticker)?;
         let found = events(&mixture, seed, first_event, n_events, ticker)?;
         let columns = "their values";
         Ok((
             collected("n_events", columns, found.iter().map(|event| event.component))?,
-            collected("n_events", columns, found.iter().map(|event| event.deflection))?,
-            found.iter().flat_map(|event| event.values).collect::<Vec<f64>>(),
+            found
+                .iter()
+                .flat_map(|event| {
+                    [event.beam_energy, event.incidence, event.deflection].into_iter().chain(event.values)
+                })
+                .collect::<Vec<f64>>(),
         ))
     })?
     .whole(py)?;
     let count = components.len();
-    Ok((
-        moved(py, components, &[count])?,
-        moved(py, deflections, &[count])?,
-        moved(py, values, &[count, Quantity::ALL.len()])?,
-    ))
+    Ok((moved(py, components, &[count])?, moved(py, values, &[count, 3 + Quantity::ALL.len()])?))
 }

@@ -281,7 +281,7 @@ fn rainbows_turns_and_captured_ones_are_counted() {
         (potential("lennard_jones", [1.0, 1.0]), 1.0),
         (potential("power_law", [-1.0, 4.0]), 1.0),
     ] {
-        let beam = Beam::new(&potential, energy, (1.0, 1.0), 3.0, 1, ticker).unwrap();
+        let beam = Beam::new(&potential, energy, (1.0, 1.0), 3.0, Profile::default(), 1, ticker).unwrap();
         let counts = run(&beam, &all(&beam, 41), 0, 30_000, 2);
         for (tally, counts) in all(&beam, 41).iter().zip(&counts) {
             let (quantity, edges) = &tally.axes()[0];
