@@ -27,6 +27,7 @@ from visviva.scattering._energies import (
     threshold_energy,
     two_branch_energy,
 )
+from visviva.scattering._events import scattering_events
 from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
@@ -39,7 +40,7 @@ from visviva.scattering._kinematics import (
     recoil_angle,
     recoil_jacobian,
 )
-from visviva.scattering._monte_carlo import monte_carlo, scattering_events
+from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (
     rutherford_angle,

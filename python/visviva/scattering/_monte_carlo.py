@@ -22,12 +22,12 @@ from visviva.scattering._tally import JointTally, Tally
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Axes, Bins
 
-__all__ = ["monte_carlo", "scattering_events"]
+__all__ = ["monte_carlo"]
 
 
 @known_keywords
@@ -144,81 +144,6 @@ def monte_carlo(
     asked = asked_for(tally, bins)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
-
-
-@known_keywords
-def scattering_events(
-    potential: Potential,
-    *,
-    beam_energy: float | Spectrum,
-    masses: tuple[float, float],
-    b_max: float,
-    n_events: int,
-    seed: int,
-    first_event: int = 0,
-    threads: int | None = None,
-    progress: Progress = False,
-    energy_spread: float | Spread | None = None,
-    divergence: float | Spread | None = None,
-    spot: float | None = None,
-) -> dict[str, NDArray[Any]]:
-    """The very events that `monte_carlo` counts, one by one.
-
-    Parameters
-    ----------
-    potential, beam_energy, masses, b_max, seed, threads, progress, energy_spread, divergence, spot
-        As of `monte_carlo`.
-    n_events, first_event : int
-        Which events.
-
-    Returns
-    -------
-    dict of ndarray
-        Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
-        ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
-        folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
-        ``"impact_parameter"``.
-
-    Raises
-    ------
-    InvalidInput
-        As `monte_carlo`.
-    Interrupted
-        After Ctrl-C.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> events = vv.scattering.scattering_events(
-    ...     vv.potentials.LennardJones(1.0, 1.0), beam_energy=2.0, masses=(1.0, 1.0), b_max=3.0, n_events=3, seed=1)
-    >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
-    ([0, 1, 2], True)
-    """
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
-    first, count, key = _which(first_event, n_events, seed)
-    with callback(progress) as report:
-        component, values = _core.scattering_events(
-            beam=described(beam),
-            n_events=count,
-            seed=key,
-            first_event=first,
-            threads=None if threads is None else whole_number("threads", threads, 1, 1024),
-            progress=report,
-        )
-    columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
-    return {
-        "event": np.arange(first, first + count, dtype=np.uint64),
-        "component": component,
-        **columns,
-    }
-
-
-_QUANTITIES = (
-    *("beam_energy", "incidence", "deflection"),
-    *("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"),
-)
 
 
 def _beam(

@@ -68,7 +68,7 @@ impl Energies {
             // (−1)^k, and half of it at the ends.
             let weight = |k: usize| {
                 let size = if k == 0 || k + 1 == order { 0.5 } else { 1.0 };
-                if k % 2 == 0 { size } else { -size }
+                if k.is_multiple_of(2) { size } else { -size }
             };
             let tables = tables.into_iter().enumerate().map(|(k, table)| (energies[k], weight(k), table));
             let mut made = Self { tables: tables.collect(), error: 0.0 };
