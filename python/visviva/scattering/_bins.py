@@ -4,21 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Set
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
-if TYPE_CHECKING:
-    from numpy.typing import NDArray
-
 __all__ = ["Axes", "Bins", "asked_for"]
 
 # How many, by name, or edges: what the core takes.
-Told: TypeAlias = "int | tuple[str, int, float | None, float | None] | NDArray[np.float64]"
+Told: TypeAlias = int | tuple[str, int, float | None, float | None] | NDArray[np.float64]
 # Names of quantities, each with its bins.
 Axes: TypeAlias = list[tuple[str, Told]]
 
