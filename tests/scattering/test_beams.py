@@ -174,6 +174,10 @@ def test_a_narrow_spread_has_the_cross_section_of_the_middle() -> None:
     law = run(p.Coulomb(1.0), tally={"cm_angle": np.linspace(0.5, 3.0, 9)})["cm_angle"]
     rings = vv._core.solid_angles(law.edges)
     assert (np.abs(value - law.expected() / law.n_events * np.pi * 9.0 / rings) < 4.5 * error).all()
+    # A bin that the disc's edge cuts holds events of the higher energies from beyond what is covered.
+    wide = run(p.Coulomb(1.0), energy_spread=0.1)["cm_angle"]
+    assert set(wide.reachable.tolist()) == {0.0, 1.0}
+    assert wide.counts[: int((wide.reachable == 0.0).sum())].any()
     smeared = run(p.Coulomb(1.0), divergence=0.01, tally="lab_angle")["lab_angle"]
     assert np.isnan(smeared.cross_section().value).all()
     with pytest.raises(vv.InvalidInput, match="divergence"):

@@ -55,7 +55,7 @@ pub struct Beam {
     energy: f64,
     pub(super) b_max: f64,
     target: Target,
-    pub(super) profile: Profile,
+    pub(in crate::scattering) profile: Profile,
 }
 
 impl Beam {
