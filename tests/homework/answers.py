@@ -7,8 +7,27 @@ no closed form.
 from collections.abc import Callable
 from typing import Any
 
-from mpmath import acos, atan, atan2, cos, cosh, diff, ellipfun, ellipk, exp, findroot, lambertw, log, mp, mpf, pi
-from mpmath import polyroots, quad, sin, sqrt
+from mpmath import (
+    acos,
+    atan,
+    atan2,
+    cos,
+    cosh,
+    diff,
+    ellipfun,
+    ellipk,
+    exp,
+    findroot,
+    lambertw,
+    log,
+    mp,
+    mpf,
+    pi,
+    polyroots,
+    quad,
+    sin,
+    sqrt,
+)
 
 with mp.workdps(30):
     g = mpf("9.81")
