@@ -19,6 +19,7 @@ from rutherford import peer
 
 import visviva as vv
 from visviva import _core
+from visviva.scattering._beam import described
 
 p = vv.potentials
 BEAM = {"masses": (4.0, 27.0), "b_max": 5.0, "seed": 1}
@@ -58,9 +59,10 @@ def throughput(n: int, threads: int) -> list[Row]:
 def tables() -> list[Row]:
     rows = []
     for name, potential in TARGETS.items():
-        described = {"potential": potential._to_core(), "masses": BEAM["masses"], "b_max": BEAM["b_max"]}
-        one = described | {"energies": [1.0], "weights": [1.0]}
-        several = described | {"energies": list(LINES.energy), "weights": list(LINES.weight)}
+        one, several = (
+            described(vv.scattering.Beam(potential, energy, BEAM["masses"], BEAM["b_max"], 0.0))
+            for energy in (1.0, LINES)
+        )
 
         def build(beam: dict[str, object] = one) -> list[tuple[int, int, float, float]]:
             keywords = {"n_events": 1, "seed": 1, "first_event": 0, "threads": 2, "progress": None}

@@ -157,7 +157,7 @@ def monte_carlo(
     n_events: int,
     seed: int,
     first_event: int,
-    tallies: list[list[tuple[str, int | NDArray[np.float64]]]],
+    tallies: list[list[tuple[str, int | tuple[str, int, float | None, float | None] | NDArray[np.float64]]]],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[
@@ -183,7 +183,7 @@ def foil_run(
     n_events: int,
     seed: int,
     first_event: int,
-    tallies: list[tuple[str, int | NDArray[np.float64]]],
+    tallies: list[tuple[str, int | tuple[str, int, float | None, float | None] | NDArray[np.float64]]],
     threads: int | None,
     progress: Callable[[int, int], object] | None,
 ) -> tuple[
@@ -224,6 +224,11 @@ def collision_integrals(
     diameter: float,
     threads: int | None,
 ) -> NDArray[np.float64]: ...
+def monte_carlo_expected(
+    *,
+    beam: dict[str, Any],
+    tallies: list[list[tuple[str, int | tuple[str, int, float | None, float | None] | NDArray[np.float64]]]],
+) -> list[NDArray[np.float64]]: ...
 def scattering_events(
     *,
     beam: dict[str, Any],
@@ -232,7 +237,7 @@ def scattering_events(
     first_event: int,
     threads: int | None,
     progress: Callable[[int, int], object] | None,
-) -> tuple[NDArray[np.uint64], NDArray[np.float64], NDArray[np.float64]]: ...
+) -> tuple[NDArray[np.uint64], NDArray[np.float64]]: ...
 def deflections(
     description: dict[str, Any],
     energy: NDArray[np.float64],

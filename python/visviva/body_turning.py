@@ -41,7 +41,7 @@ class BodyTurning(Rotation):
     energy : ndarray, shape (T,)
         ½ ω·I ω.
     casimir : ndarray, shape (T,)
-        ``|L|²``, which no torque-free motion changes, whatever the moments.
+        L·L, which no torque-free motion changes, whatever the moments.
 
     Examples
     --------

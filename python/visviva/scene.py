@@ -106,11 +106,13 @@ class Scene(Runnable[Trajectory], Framed):
         all_parts = tuple(chain.from_iterable(_flat(part) for part in (*parts, *by_name, forces)))
         found = [part for part in all_parts if isinstance(part, Particles)]
         rigid = [part for part in all_parts if isinstance(part, RigidBodies)]
-        for part in all_parts:
+        named = sum(len(_flat(part)) for part in (*parts, *by_name))  # what follows came as forces=
+        for place, part in enumerate(all_parts):
             if not isinstance(part, Particles | RigidBodies | Force | BodyForce):
                 came = f"the class {part.__name__}" if isinstance(part, type) else article(type(part).__name__)
                 known = ", ".join(name for name in force_classes.__all__ if name != "Force")
-                raise InvalidInput("parts", f"expected Particles, RigidBodies and forces ({known}), got {came}")
+                argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
+                raise InvalidInput(argument, f"expected {wanted}forces ({known}), got {came}")
         if len(found) > 1 or not (found or rigid):
             advice = "join their arrays" if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
@@ -416,7 +418,7 @@ class Scene(Runnable[Trajectory], Framed):
         return scene
 
 
-def _flat(part: object) -> Iterable[object]:
+def _flat(part: object) -> Sequence[object]:
     return part if isinstance(part, list | tuple) else (part,)
 
 

@@ -114,7 +114,7 @@ delattr(scene, "t0")                                | t0          | a Scene is f
 type("Drag", (vv.forces.Force,), {})                | Force       | got Drag: the core knows its own only
 type("Well", (vv.potentials.Potential,), {})        | Potential   | got Well: the core knows its own only; .*CentralField
 type("Mine", (vv.potentials.Yukawa,), {})           | Yukawa      | got Mine
-vv.Scene(particles=P([1], [[0, 0, 0]]), forces=[3]) | parts       | got an int
+vv.Scene(particles=P([1], [[0, 0, 0]]), forces=[3]) | forces      | got an int
 copies["first"]                                     | index       | expected a whole number or a slice, got 'first'
 copies.run(1)[1.0]                                  | index       | expected a whole number or a slice, got 1.0
 copies[2:2]                                         | position    | at least one copy

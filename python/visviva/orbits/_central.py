@@ -21,14 +21,22 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
-def core_potentials(potential: Potential | Sequence[Potential]) -> list[dict[str, Any]]:
-    """What the core takes for one potential, or for several that are added."""
-    terms = [potential] if isinstance(potential, Potential) else list(potential)
+def terms_of(potential: Potential | Sequence[Potential]) -> tuple[Potential, ...]:
+    """One potential, or several that are added, as several."""
+    try:
+        terms = (potential,) if isinstance(potential, Potential) else tuple(potential)
+    except TypeError:  # not a sequence
+        terms = ()
     if not terms or not all(isinstance(term, Potential) for term in terms):
         raise InvalidInput(
             "potential", f"expected one of visviva.potentials, or several to be added, got {potential!r}"
         )
-    return [term._to_core() for term in terms]
+    return terms
+
+
+def core_potentials(potential: Potential | Sequence[Potential]) -> list[dict[str, Any]]:
+    """What the core takes for one potential, or for several that are added."""
+    return [term._to_core() for term in terms_of(potential)]
 
 
 def checked(**columns: ArrayLike) -> tuple[tuple[int, ...], list[NDArray[np.float64]]]:

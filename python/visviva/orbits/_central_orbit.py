@@ -11,15 +11,16 @@ from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.orbits._central import core_potentials
+from visviva.orbits._central import core_potentials, terms_of
 from visviva.orbits._radial import RadialMotion, described_motion
-from visviva.potentials import Potential
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.potentials import Potential
 
 
 @known_keywords
@@ -207,7 +208,7 @@ def central_orbit(
     >>> round(orbit.radial_period, 9), round(orbit.precession, 9)
     (6.179901372, 0.339873537)
     """
-    terms = (potential,) if isinstance(potential, Potential) else tuple(potential)
+    terms = terms_of(potential)
     described = core_potentials(terms)
     m = positive("mass", mass)
     place, speed = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))

@@ -33,6 +33,6 @@ class Rotation:
 
     @property
     def casimir(self) -> NDArray[np.float64]:
-        """|L|² of the angular momentum in the body, (T,), a Casimir function: no moments matter to it."""
+        """L·L of the angular momentum in the body, (T,), a Casimir function: no moments matter to it."""
         value: NDArray[np.float64] = (self.body_angular_momentum**2).sum(axis=-1)
         return value

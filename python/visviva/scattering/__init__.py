@@ -5,6 +5,8 @@ laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile
 broadcast against each other; the functions of one array keep its shape.
 """
 
+from visviva.scattering._beam import Beam, Spectrum, Spread
+from visviva.scattering._bins import Bins
 from visviva.scattering._cross_sections import (
     capture_cross_section,
     collision_integral,
@@ -25,6 +27,7 @@ from visviva.scattering._energies import (
     threshold_energy,
     two_branch_energy,
 )
+from visviva.scattering._events import scattering_events
 from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
@@ -37,7 +40,7 @@ from visviva.scattering._kinematics import (
     recoil_angle,
     recoil_jacobian,
 )
-from visviva.scattering._monte_carlo import monte_carlo, scattering_events
+from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (
     rutherford_angle,
@@ -46,10 +49,11 @@ from visviva.scattering._rutherford import (
     rutherford_impact_parameter,
 )
 from visviva.scattering._structure import Glory, Orbit, Rainbow, glories, impact_parameter, orbiting, rainbows
-from visviva.scattering._tally import Beam, CrossSection, JointTally, Spectrum, Tally
+from visviva.scattering._tally import CrossSection, JointTally, Tally
 
 __all__ = [
     "Beam",
+    "Bins",
     "Bombardment",
     "CrossSection",
     "Deflection",
@@ -67,6 +71,7 @@ __all__ = [
     "Orbit",
     "Rainbow",
     "Spectrum",
+    "Spread",
     "Tally",
     "capture_cross_section",
     "cm_angle",

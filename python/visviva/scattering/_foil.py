@@ -14,9 +14,10 @@ from visviva._keywords import did_you_mean, known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
+from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally
-from visviva.scattering._monte_carlo import _tallies, _which
+from visviva.scattering._monte_carlo import _which
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -24,6 +25,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva._progress import Progress
+    from visviva.scattering._bins import Bins
 
 __all__ = ["Foil"]
 
@@ -154,7 +156,7 @@ class Foil:
         n_events: int,
         seed: int,
         tally: str | Iterable[str] | Mapping[str, Any] = _TALLIES,
-        bins: int = 180,
+        bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
         incidence: float = 0.0,
         lowest_energy: float | None = None,
         collisions: Literal["multiple", "single"] = "multiple",
@@ -182,9 +184,9 @@ class Foil:
             What to count: ``"transmitted_angle"``, ``"reflected_angle"``, ``"lab_angle"`` (of both) from the beam's
             direction, ``"transmitted_energy"`` and ``"reflected_energy"`` in eV, ``"stopped_depth"`` in µm, and of a
             forced collision ``"cm_angle"``; one name, several, or ``{name: edges}``, where a whole number in place of
-            edges is a number of equal bins.
-        bins : int, optional
-            Number of equal bins, over all possible values, of each tally that is given by its name only.
+            edges is a number of equal bins, and `Bins` are bins by name.
+        bins : int, Bins, array_like or mapping, optional
+            Of each tally that is given by its name only: as of `monte_carlo`.
         incidence : float, optional
             Angle between the beam and the foil's normal.
         lowest_energy : float, optional
@@ -231,7 +233,7 @@ class Foil:
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
         first, count, key = _which(first_event, n_events, seed)
         asked = []
-        for axes in _tallies(tally, whole_number("bins", bins, 1, 2**16)):
+        for axes in asked_for(tally, bins):
             if len(axes) > 1:
                 raise InvalidInput("tally", f"expected single quantities, got {tuple(name for name, _ in axes)}")
             asked += axes

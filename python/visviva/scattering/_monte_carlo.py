@@ -2,31 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Set
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, number, whole_number
+from visviva._arrays import float_array, number, positive, whole_number
 from visviva._keywords import known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
+from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
+from visviva.scattering._bins import asked_for
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._spread import spread
-from visviva.scattering._tally import Beam, JointTally, Spectrum, Tally
+from visviva.scattering._tally import JointTally, Tally
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from collections.abc import Iterable, Mapping
+
+    from numpy.typing import ArrayLike
 
     from visviva._progress import Progress
+    from visviva.scattering._bins import Axes, Bins
 
-__all__ = ["monte_carlo", "scattering_events"]
-
-# Names of quantities, each with a number of bins or edges.
-Axes: TypeAlias = list[tuple[str, Any]]
+__all__ = ["monte_carlo"]
 
 
 @known_keywords
@@ -39,17 +40,22 @@ def monte_carlo(
     n_events: int,
     seed: int,
     tally: str | Iterable[str | tuple[str, str]] | Mapping[Any, Any] = "cm_angle",
-    bins: int = 180,
+    bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
     threads: int | None = None,
     first_event: int = 0,
     progress: Progress = False,
     executor: Any = None,
+    energy_spread: float | Spread | None = None,
+    divergence: float | Spread | None = None,
+    spot: float | None = None,
 ) -> MonteCarlo:
-    """Scatter a parallel beam off one centre and count every event.
+    """Scatter a beam off one centre and count every event.
 
-    The impact parameter is uniform over a disc: b² uniform in [0, b_max²). Event i takes its random number from
+    The impact parameter is uniform over a disc: b² uniform in [0, b_max²). Event i takes its random numbers from
     Philox 4x32-10 with ``seed`` as the key and i as the counter, so the counts do not depend on threads, processor or
-    partition, and results of separate ranges of events add up to that of the whole.
+    partition, and results of separate ranges of events add up to that of the whole. Each number of an event is for one
+    thing: 0 for the impact parameter, 1 for the line of a `Spectrum`, 2 and 3 for the spread of the energy, 4 for the
+    direction and 5 for the azimuth of the plane of scattering; so nothing that is asked for beside changes the others.
 
     Parameters
     ----------
@@ -74,11 +80,14 @@ def monte_carlo(
     tally : str, iterable of str, or mapping
         What to count: ``"cm_angle"`` (size of the deflection in the centre-of-mass frame), ``"lab_angle"``,
         ``"recoil_angle"``, ``"energy"``, ``"recoil_energy"``, ``"impact_parameter"``; one name, several, or
-        ``{name: edges}``, where a whole number in place of edges is a number of equal bins. Angles are in radians.
+        ``{name: edges}``, where a whole number in place of edges is a number of equal bins, and `Bins` are bins by
+        name: ``Bins.logarithmic(60, 1e-3)``, ``Bins.solid_angle(50)``. Angles are in radians.
         A pair of names in place of a name counts both together: ``[("lab_angle", "energy")]``, or
         ``{("lab_angle", "energy"): (edges, edges)}``, a `JointTally`.
-    bins : int
-        Number of equal bins, over all possible values, of each tally that is given by its name only; up to 65536.
+    bins : int, Bins, array_like or mapping
+        Of each tally that is given by its name only: a number of equal bins over all values, up to 65536; `Bins`;
+        edges; or ``{name: any of these}``, with 180 equal bins of a quantity that is not among them. Values below the
+        first and above the last edge are counted too, as ``underflow`` and ``overflow``.
     threads : int, optional
         By default ``VISVIVA_THREADS``, else all cores.
     first_event : int
@@ -88,6 +97,19 @@ def monte_carlo(
     executor : concurrent.futures.Executor or dask.distributed.Client, optional
         Who counts: ranges of events go out, counts come home, with the bits of the run without one. Tables are built
         by each worker and compared by their hashes. Each worker uses ``threads`` threads, or one.
+    energy_spread : float or Spread, optional
+        Of the projectiles' energies about `beam_energy`, or about each energy of a `Spectrum`; a number is the standard
+        deviation of a Gaussian, which ends at 6 of them. Angles are interpolated between tables of 3 to 9 energies,
+        tried against direct quadrature to 4e-6 in sin²(ψ/2); where the deflection is not that smooth in the energy
+        (orbiting, capture) the run is refused.
+    divergence : float or Spread, optional
+        Of the directions about the axis, in radians: a number is the standard deviation of a Gaussian in each of two
+        planes. ``lab_angle`` and ``recoil_angle`` are then measured from the axis; ``cm_angle`` stays that of the
+        collision.
+    spot : float, optional
+        Standard deviation, in each of two dimensions, of the places at which projectiles come, about the centre and cut
+        at ``b_max``; by default the disc is filled evenly (of another radius: that is ``b_max``). There is no cross
+        section of a beam that does not fill the disc evenly.
 
     Returns
     -------
@@ -119,78 +141,30 @@ def monte_carlo(
     """
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    asked = _tallies(tally, whole_number("bins", bins, 1, 2**16))
-    beam = Beam(potential, _energy(beam_energy), _pair(masses), number("b_max", b_max), np.nan)
+    asked = asked_for(tally, bins)
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
 
 
-@known_keywords
-def scattering_events(
+def _beam(
     potential: Potential,
-    *,
-    beam_energy: float | Spectrum,
-    masses: tuple[float, float],
-    b_max: float,
-    n_events: int,
-    seed: int,
-    first_event: int = 0,
-    threads: int | None = None,
-    progress: Progress = False,
-) -> dict[str, NDArray[Any]]:
-    """The very events that `monte_carlo` counts, one by one.
-
-    Parameters
-    ----------
-    potential, beam_energy, masses, b_max, seed, threads, progress
-        As of `monte_carlo`.
-    n_events, first_event : int
-        Which events.
-
-    Returns
-    -------
-    dict of ndarray
-        Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"deflection"`` (ψ,
-        signed and not folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
-        ``"impact_parameter"``.
-
-    Raises
-    ------
-    InvalidInput
-        As `monte_carlo`.
-    Interrupted
-        After Ctrl-C.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> events = vv.scattering.scattering_events(
-    ...     vv.potentials.LennardJones(1.0, 1.0), beam_energy=2.0, masses=(1.0, 1.0), b_max=3.0, n_events=3, seed=1)
-    >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
-    ([0, 1, 2], True)
-    """
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    beam = Beam(potential, _energy(beam_energy), _pair(masses), number("b_max", b_max), np.nan)
-    first, count, key = _which(first_event, n_events, seed)
-    with callback(progress) as report:
-        component, deflection, values = _core.scattering_events(
-            beam=_described(beam),
-            n_events=count,
-            seed=key,
-            first_event=first,
-            threads=None if threads is None else whole_number("threads", threads, 1, 1024),
-            progress=report,
-        )
-    columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
-    return {
-        "event": np.arange(first, first + count, dtype=np.uint64),
-        "component": component,
-        "deflection": deflection,
-        **columns,
-    }
-
-
-_QUANTITIES = ("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter")
+    beam_energy: object,
+    masses: object,
+    b_max: object,
+    energy_spread: object,
+    divergence: object,
+    spot: object,
+) -> Beam:
+    return Beam(
+        potential,
+        _energy(beam_energy),
+        _pair(masses),
+        number("b_max", b_max),
+        np.nan,
+        energy_spread=as_spread("energy_spread", energy_spread),
+        divergence=as_spread("divergence", divergence),
+        spot=None if spot is None else positive("spot", spot),
+    )
 
 
 def again(result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any) -> MonteCarlo:
@@ -220,18 +194,6 @@ def _which(first_event: object, n_events: object, seed: object) -> tuple[int, in
     return first, count, whole_number("seed", seed, 0, 2**64 - 1)
 
 
-def _described(beam: Beam) -> dict[str, Any]:
-    energy = beam.beam_energy
-    lines = (energy.energy, energy.weight) if isinstance(energy, Spectrum) else ((energy,), (1.0,))
-    return {
-        "potential": beam.potential._to_core(),
-        "energies": list(lines[0]),
-        "weights": list(lines[1]),
-        "masses": beam.masses,
-        "b_max": beam.b_max,
-    }
-
-
 def _run(
     beam: Beam,
     asked: list[Axes],
@@ -244,7 +206,7 @@ def _run(
 ) -> MonteCarlo:
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
-    request: dict[str, Any] = {"beam": _described(beam), "tallies": asked, "seed": key, "threads": several}
+    request: dict[str, Any] = {"beam": described(beam), "tallies": asked, "seed": key, "threads": several}
     with callback(progress) as report:
         if executor is not None:
             counted = spread(executor, request, first, count, report)
@@ -271,50 +233,3 @@ def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, in
     reachable, covered = single
     under, over = int(flow[0]), int(flow[-1])
     return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
-
-
-def _tallies(tally: object, bins: int) -> list[Axes]:
-    if isinstance(tally, str):
-        tally = (tally,)
-    pairs: list[tuple[Any, Any]]
-    if isinstance(tally, Mapping):
-        pairs = list(tally.items())
-    elif isinstance(tally, Iterable):
-        # A set has no order of its own that would be the same in the next process.
-        pairs = [(name, None) for name in (sorted(tally, key=str) if isinstance(tally, Set) else tally)]
-    else:
-        raise InvalidInput("tally", f"expected a name, several names or a mapping to edges, got {tally!r}")
-    names = [name for name, _ in pairs]
-    if not names or not all(_named(name) for name in names) or len(set(names)) < len(names):
-        raise InvalidInput("tally", f"expected one or more different names, got {names!r}")
-    return [_axes(name, given, bins) for name, given in pairs]
-
-
-def _named(name: object) -> bool:
-    """Whether it is the name of a quantity, or of two together."""
-    if isinstance(name, tuple):
-        return len(name) == 2 and all(isinstance(one, str) for one in name) and name[0] != name[1]
-    return isinstance(name, str)
-
-
-def _axes(name: str | tuple[str, str], given: Any, bins: int) -> Axes:
-    names = (name,) if isinstance(name, str) else name
-    if given is None:
-        each = (bins,) * len(names)
-    elif isinstance(name, str):
-        each = (given,)
-    elif not isinstance(given, tuple | list) or len(given) != len(names):
-        raise InvalidInput("tally", f"expected edges or a number of bins for each of {name}, got {given!r}")
-    else:
-        each = tuple(given)
-    # Half a surrogate pair is no text to the core; what remains is refused there as an unknown name.
-    told = [one.encode(errors="replace").decode() for one in names]
-    return [(one, _edges_or_bins(one, edges)) for one, edges in zip(told, each, strict=True)]
-
-
-def _edges_or_bins(name: str, given: Any) -> int | NDArray[np.float64]:
-    if isinstance(given, int | np.integer) and not isinstance(given, bool):
-        return whole_number(name, given, 1, 2**16)
-    if np.ndim(given) == 0:
-        raise InvalidInput(name, f"expected edges or a number of bins, got {given!r}; pass a list of edges, or an int")
-    return float_array(name, given, (None,))

@@ -12,7 +12,8 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
-from visviva.scattering._tally import Beam, JointTally, OfEvents, Spectrum, Tally, is_zero
+from visviva.scattering._beam import Beam, Spectrum, Spread
+from visviva.scattering._tally import JointTally, OfEvents, Tally, is_zero
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MonteCarlo"]
 
-_FORMAT, _VERSION = "visviva scattering", 1
+# Version 2 knows beams that differ in energy, direction and place.
+_FORMAT, _VERSION = "visviva scattering", 2
 
 
 @known_keywords
@@ -180,6 +182,9 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
             "spectrum": [lines.energy, lines.weight] if lines else None,
             "masses": beam.masses,
             "b_max": beam.b_max,
+            "energy_spread": beam.energy_spread and [beam.energy_spread.shape, beam.energy_spread.width],
+            "divergence": beam.divergence and [beam.divergence.shape, beam.divergence.width],
+            "spot": beam.spot,
             "smallest_angle": beam.smallest_angle,
             "tables": beam.tables,
             "events": self.events,
@@ -238,6 +243,12 @@ def _told(tally: Tally | JointTally) -> dict[str, Any]:
     return {name: getattr(tally, name) for name in ("name", "underflow", "overflow", "covered", "captured")}
 
 
+def _spread(told: list[Any] | None) -> Spread | None:
+    if told is None:
+        return None
+    return {"gaussian": Spread.gaussian, "uniform": Spread.uniform}[told[0]](told[1])
+
+
 def _restored(arrays: dict[str, Any]) -> MonteCarlo:
     header = json.loads(arrays["header"].tobytes())
     if header["format"] != _FORMAT or header["version"] > _VERSION:
@@ -250,6 +261,9 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
         header["b_max"],
         header["smallest_angle"],
         tuple(header["tables"]),
+        _spread(header.get("energy_spread")),
+        _spread(header.get("divergence")),
+        header.get("spot"),
     )
     events = tuple((seed, first, end) for seed, first, end in header["events"])
     tallies: list[Tally | JointTally] = []

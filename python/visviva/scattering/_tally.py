@@ -8,16 +8,16 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.scattering._beam import Beam, described
+from visviva.scattering._counts import plot_tally, poisson_interval
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from visviva.potentials import Potential
-
-__all__ = ["Beam", "CrossSection", "JointTally", "OfEvents", "Spectrum", "Tally", "is_zero"]
+__all__ = ["CrossSection", "JointTally", "OfEvents", "Tally", "is_zero"]
 
 _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
@@ -29,76 +29,6 @@ class CrossSection(NamedTuple):
     """Area per steradian for angles, else area per unit of the quantity."""
     error: NDArray[np.float64]
     """One standard deviation of the count, as an area likewise."""
-
-
-@known_keywords
-@dataclass(frozen=True)
-class Spectrum:
-    """Energies of a beam, each with its part of the projectiles.
-
-    Parameters
-    ----------
-    energy : array_like
-        Positive.
-    weight : array_like
-        Positive, one for each energy; only their ratios count.
-
-    Raises
-    ------
-    InvalidInput
-        For what is no such list.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> lines = vv.scattering.Spectrum([5.486, 5.443], [84.8, 13.1])
-    >>> lines.energy
-    (5.486, 5.443)
-    """
-
-    energy: tuple[float, ...]
-    weight: tuple[float, ...]
-
-    def __post_init__(self) -> None:
-        for name in ("energy", "weight"):
-            values = float_array(name, getattr(self, name), (None,))
-            if not values.size or not (values > 0.0).all():
-                raise InvalidInput(name, f"expected one or more positive numbers, got {values.tolist()}")
-            object.__setattr__(self, name, tuple(values.tolist()))
-        if len(self.energy) != len(self.weight):
-            raise InvalidInput(
-                "weight", f"expected one for each of {len(self.energy)} energies, got {len(self.weight)}"
-            )
-
-
-@known_keywords
-@dataclass(frozen=True)
-class Beam:
-    """A parallel beam on a disc around one centre: what results must have in common to be added.
-
-    Attributes
-    ----------
-    potential : Potential
-        V(r).
-    beam_energy : float or Spectrum
-        Of the projectile in the laboratory.
-    masses : tuple of float
-        Projectile and target.
-    b_max : float
-        Radius of the disc of impact parameters.
-    smallest_angle : float
-        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where
-        deflections fall with the impact parameter, no event is scattered by less.
-    tables : tuple of int
-        The hash of the event table of each energy, from which angles are taken; none of a Coulomb target.
-    """
-
-    potential: Potential
-    beam_energy: float | Spectrum
-    masses: tuple[float, float]
-    b_max: float
-    smallest_angle: float
-    tables: tuple[int, ...] = ()
 
 
 class OfEvents:
@@ -119,7 +49,8 @@ class OfEvents:
 
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
-        for name in ("potential", "beam_energy", "masses", "b_max", "tables"):
+        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "tables")
+        for name in names:
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
@@ -189,6 +120,84 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         counts = self.values()
         return counts * (1.0 - counts / self.n_events)
 
+    def poisson_interval(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The exact central 68.27 % intervals of the means that counts come from.
+
+        Returns
+        -------
+        tuple of ndarray, shape (B,)
+            Lower ends μ with P(N ≥ n; μ) = 15.87 %, 0 where nothing was counted; upper ends, P(N ≤ n; μ) = 15.87 %:
+            about n ± √n where counts are large, [0, 1.84] where there is none.
+
+        References
+        ----------
+        F. Garwood, *Fiducial limits for the Poisson distribution*, Biometrika **28**, 437 (1936).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> tally = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1, seed=1,
+        ...     tally={"cm_angle": [0.0, 1.0, 3.1]})["cm_angle"]
+        >>> low, high = tally.poisson_interval()
+        >>> sorted(low.round(3).tolist()), sorted(high.round(3).tolist())
+        ([0.0, 0.173], [1.841, 3.3])
+        """
+        return poisson_interval(self.counts)
+
+    def expected(self) -> NDArray[np.float64]:
+        """Counts that the deflection function leads to on the average: of each bin the area of its impact parameters.
+
+        Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
+        certified table), all branches and energies together.
+
+        Returns
+        -------
+        ndarray, shape (B,)
+
+        Raises
+        ------
+        InvalidInput
+            With an energy spread, and of an angle that a divergence smears: no area of impact parameters tells those.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> tally = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
+        ...     tally={"cm_angle": vv.scattering.Bins.solid_angle(4)})["cm_angle"]
+        >>> tally.expected().round(6)
+        array([250., 250., 250., 250.])
+        """
+        parts = _core.monte_carlo_expected(beam=described(self.beam), tallies=[[(self.name, self.edges)]])
+        return parts[0][1:-2] * self.n_events
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
+
+        The bands are those of `poisson_interval`, not √n. Where the disc does not reach, the simulation and `expected`
+        lack the same.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure, ``.figure`` of what is returned.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+        """
+        return plot_tally(self, ax)
+
+    def _measure(self) -> NDArray[np.float64]:
+        """Of each bin the solid angle, or the width."""
+        return _core.solid_angles(self.edges) if self.name in _ANGLES else np.diff(self.edges)
+
     def cross_section(self) -> CrossSection:
         """Differential cross section averaged over each bin, as far as the bin is reachable.
 
@@ -201,6 +210,11 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         -------
         CrossSection
             (value, error): counts / n_events · π b_max², per steradian for angles, else per unit of the quantity.
+
+        Raises
+        ------
+        InvalidInput
+            For a beam with a spot, which does not fill the disc evenly.
 
         Examples
         --------
@@ -217,7 +231,9 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         >>> bool(np.isnan(value[0])), bool(abs(value[2] * 2 * np.pi - np.pi / 4) < 4 * error[2] * 2 * np.pi)
         (True, True)
         """
-        width = _core.solid_angles(self.edges) if self.name in _ANGLES else np.diff(self.edges)
+        if self.beam.spot is not None:
+            raise InvalidInput("spot", f"expected a beam that fills the disc evenly, got a spot of {self.beam.spot}")
+        width = self._measure()
         two_branches = self.name == "lab_angle" and self.beam.masses[0] > self.beam.masses[1]
         known = self.reachable == 1.0 if two_branches else self.reachable > 0.0
         scale = np.full(width.shape, np.nan)

@@ -92,7 +92,7 @@ def central_force(
     Parameters
     ----------
     potential : callable, optional
-        V(r, **parameters), of arithmetic and NumPy's functions; −k/r with k = 1 if not given.
+        ``V(r, **parameters)``, of arithmetic and NumPy's functions; −k/r with k = 1 if not given.
     m : float
         Mass.
     parameters : dict of str to float, optional

@@ -204,6 +204,13 @@ impl Steps {
             counters[steps.lookup.find(*draw)][event % Self::BANKS] += 1;
         }
     }
+    /// The part of all draws that falls into each slot, so many times, is added to the slots of the histogram.
+    pub fn collect_parts(&self, times: f64, slots: &mut [f64]) {
+        let ends = self.lookup.starts.iter().skip(1).map(|end| *end.min(&DRAWS));
+        for ((slot, start), end) in self.slots.iter().zip(&self.lookup.starts).zip(ends) {
+            slots[*slot] += times * ((end - start) as f64 / DRAWS as f64);
+        }
+    }
     /// Adds counters to the slots of the histogram.
     pub fn collect(&self, counters: &[[u64; Self::BANKS]], slots: &mut [u64]) {
         for (slot, banks) in self.slots.iter().zip(counters) {

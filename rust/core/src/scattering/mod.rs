@@ -1,5 +1,6 @@
 //! Scattering: two-body kinematics and collisions in space, Rutherford's closed forms, and the Monte Carlo.
 
+pub mod bins;
 pub mod contact;
 pub mod cross_sections;
 pub mod deflection;

@@ -8,21 +8,20 @@
 //! Nothing is computed that no tally needs: the azimuth is not drawn, and no angle is evaluated per
 //! event (see [`histogram`](super::histogram)).
 //!
-//! What an event uses of the numbers of [`philox`](crate::numerics::philox), all in stream 0, one per event each:
-//! - draw 0 is b² / b_max²;
-//! - draw 1 is the component of the mixture, in the order given; a beam of one energy does not look at it.
-//!
-//! Whatever else an event will need one day (azimuth, foil, detector) takes draws 2, 3, … and leaves these as they are,
-//! so that counts that were published stay what they are.
+//! An event of a beam whose projectiles differ in energy or direction is no function of one draw: it is followed by
+//! itself, with the draws after these. Which draw is for what is written in `draws.rs`.
 
 mod beam;
+mod draws;
 mod listed;
 mod mixture;
+mod profile;
 mod quantity;
 
 pub use beam::Beam;
 pub use listed::{Event, events};
 pub use mixture::{Mixture, Tally};
+pub use profile::{Profile, Spread};
 pub use quantity::Quantity;
 
 use super::histogram::{Lookup, Steps};
@@ -30,6 +29,7 @@ use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::{Error, Result};
 use core::ops::Range;
+use draws::{COMPONENT, Draws, PLACE};
 
 /// Events drawn at a time: their draws stay in the first-level cache.
 const BATCH: usize = 512;
@@ -85,12 +85,7 @@ pub fn monte_carlo(
     ticker: &mut Ticker<'_>,
 ) -> Result<Counted> {
     let end = end_of(first_event, n_events)?;
-    let beams: Vec<&Beam> = mixture.beams().collect();
-    let steps = |tally: &Tally| {
-        for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
-    };
-    let program =
-        Program { component: mixture.lookup(), steps: tallies.iter().map(steps).collect::<Result<_>>()? };
+    let program = Program::new(mixture, tallies, threads, ticker)?;
     let counts = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
@@ -115,63 +110,181 @@ pub fn monte_carlo(
     Ok(counted)
 }
 
+/// What part of all events falls into each slot of each tally, on the average: the area of the disc that leads there, of
+/// the very function by which events are counted.
+///
+/// # Errors
+/// `InvalidInput` naming the spread or divergence for a quantity that is no function of one draw; `Interrupted`.
+pub fn expected(
+    mixture: &Mixture,
+    tallies: &[Tally],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Vec<f64>>> {
+    for (quantity, beam) in tallies
+        .iter()
+        .flat_map(Tally::axes)
+        .flat_map(|(quantity, _)| mixture.beams().map(move |beam| (*quantity, beam)))
+    {
+        if !beam.is_of_one_draw(quantity) {
+            let blamed = if beam.profile.energy_spread.is_some() { "energy_spread" } else { "divergence" };
+            let name = quantity.name();
+            return Err(Error::invalid(
+                blamed,
+                format!(
+                    "expected none where the mean counts of {name} are asked for: the area of impact parameters does not tell them"
+                ),
+            ));
+        }
+    }
+    let steps = steps(mixture, tallies, threads, ticker)?;
+    let of_tally = |(tally, steps): (&Tally, &Vec<Steps>)| {
+        let mut slots = vec![0.0; tally.slots()];
+        steps.iter().zip(mixture.parts()).for_each(|(steps, part)| steps.collect_parts(part, &mut slots));
+        slots
+    };
+    Ok(tallies.iter().zip(&steps).map(of_tally).collect())
+}
+
 /// Draws of a batch, sixteen events to each.
 type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
 
-/// What counting looks up.
-struct Program {
-    /// Which component of the mixture a draw is, if there are several.
-    component: Option<Lookup>,
-    /// Of each tally, for each component.
-    steps: Vec<Vec<Steps>>,
+/// How events are counted.
+enum Program<'a> {
+    /// By looking up their draws: which component of the mixture one is, if there are several, and the step functions of
+    /// each tally, for each component.
+    Steps(Option<Lookup>, Vec<Vec<Steps>>),
+    /// One by one.
+    Drawn(&'a Mixture, &'a [Tally]),
 }
 
-/// Of each tally, for each component.
+/// Of each tally, for each component; of events that are counted one by one for all components together.
 type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
 
-impl Program {
+/// Of each tally, for each component.
+fn steps(
+    mixture: &Mixture,
+    tallies: &[Tally],
+    threads: usize,
+    ticker: &mut Ticker<'_>,
+) -> Result<Vec<Vec<Steps>>> {
+    let beams: Vec<&Beam> = mixture.beams().collect();
+    let of_tally = |tally: &Tally| {
+        for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
+    };
+    tallies.iter().map(of_tally).collect()
+}
+
+impl<'a> Program<'a> {
+    fn new(
+        mixture: &'a Mixture,
+        tallies: &'a [Tally],
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        if mixture.is_drawn() {
+            return Ok(Self::Drawn(mixture, tallies));
+        }
+        Ok(Self::Steps(mixture.lookup(), steps(mixture, tallies, threads, ticker)?))
+    }
+    fn counters(&self) -> Counters {
+        match self {
+            Self::Steps(_, steps) => {
+                steps.iter().map(|steps| steps.iter().map(Steps::counters).collect()).collect()
+            }
+            Self::Drawn(_, tallies) => {
+                tallies.iter().map(|tally| vec![vec![[0; Steps::BANKS]; tally.slots()]]).collect()
+            }
+        }
+    }
     /// Counts events in their order until they end or the run is cancelled.
     fn count(&self, seed: u64, events: Range<u64>, ticker: &mut Ticker<'_>) -> (u64, Counters) {
         if ticker.tick().is_err() {
             return (0, Vec::new());
         }
-        let of_tally = |steps: &Vec<Steps>| steps.iter().map(Steps::counters).collect();
-        let mut counters: Counters = self.steps.iter().map(of_tally).collect();
+        let mut counters = self.counters();
         let mut event = events.start;
         while event < events.end && ticker.tick().is_ok() {
             let stop = events.end.min(event + EVENTS_PER_TICK);
             ticker.control().count(stop - event);
-            while event < stop {
-                let mut draws: Batch = Default::default();
-                fill_draws(key(seed), event >> 1, 0, &mut draws);
-                // A block serves two events: an odd beginning leaves out its first.
-                let skipped = (event & 1) as usize;
-                let length = (stop - event).min((BATCH - skipped) as u64);
-                let used = skipped..skipped + length as usize;
-                let shares = &draws.as_flattened()[used.clone()];
-                if let Some(component) = &self.component {
-                    let mut draws: Batch = Default::default();
-                    fill_draws(key(seed), event >> 1, 1, &mut draws);
-                    let mut components = [0; BATCH];
-                    component.find_all(&draws.as_flattened()[used], &mut components);
-                    for (steps, counters) in self.steps.iter().zip(&mut counters) {
-                        Steps::count_mixed(steps, &components, shares, counters);
-                    }
-                } else {
-                    for (steps, counters) in self.steps.iter().flatten().zip(counters.iter_mut().flatten()) {
-                        steps.count(shares, counters);
-                    }
+            match self {
+                Self::Steps(component, steps) => {
+                    look_up(component.as_ref(), steps, seed, event..stop, &mut counters);
                 }
-                event += length;
+                Self::Drawn(mixture, tallies) => {
+                    follow(mixture, tallies, seed, event..stop, &mut counters);
+                }
             }
+            event = stop;
         }
         (event - events.start, counters)
     }
     /// Adds what was counted to the slots of each tally.
     fn collect(&self, counters: &Counters, counts: &mut [Vec<u64>]) {
-        for ((steps, counters), counts) in self.steps.iter().zip(counters).zip(counts) {
-            for (steps, counters) in steps.iter().zip(counters) {
-                steps.collect(counters, counts);
+        match self {
+            Self::Steps(_, steps) => {
+                for ((steps, counters), counts) in steps.iter().zip(counters).zip(counts) {
+                    for (steps, counters) in steps.iter().zip(counters) {
+                        steps.collect(counters, counts);
+                    }
+                }
+            }
+            Self::Drawn(..) => {
+                for (counters, counts) in counters.iter().zip(counts) {
+                    for (banks, count) in counters.iter().flatten().zip(counts) {
+                        *count += banks.iter().sum::<u64>();
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Counts events by the step functions of their draws.
+fn look_up(
+    component: Option<&Lookup>,
+    steps: &[Vec<Steps>],
+    seed: u64,
+    events: Range<u64>,
+    counters: &mut Counters,
+) {
+    let (mut event, stop) = (events.start, events.end);
+    while event < stop {
+        let mut draws: Batch = Default::default();
+        fill_draws(key(seed), event >> 1, PLACE, &mut draws);
+        // A block serves two events: an odd beginning leaves out its first.
+        let skipped = (event & 1) as usize;
+        let length = (stop - event).min((BATCH - skipped) as u64);
+        let used = skipped..skipped + length as usize;
+        let shares = &draws.as_flattened()[used.clone()];
+        if let Some(component) = component {
+            let mut draws: Batch = Default::default();
+            fill_draws(key(seed), event >> 1, COMPONENT, &mut draws);
+            let mut components = [0; BATCH];
+            component.find_all(&draws.as_flattened()[used], &mut components);
+            for (steps, counters) in steps.iter().zip(counters.iter_mut()) {
+                Steps::count_mixed(steps, &components, shares, counters);
+            }
+        } else {
+            for (steps, counters) in steps.iter().flatten().zip(counters.iter_mut().flatten()) {
+                steps.count(shares, counters);
+            }
+        }
+        event += length;
+    }
+}
+
+/// Counts events one by one.
+fn follow(mixture: &Mixture, tallies: &[Tally], seed: u64, events: Range<u64>, counters: &mut Counters) {
+    for event in events {
+        let draws = Draws::new(seed, event);
+        let Some((_, beam)) = mixture.component(draws.bits(COMPONENT)) else { continue };
+        let arrival = beam.arrival(draws);
+        let half = beam.half_angle(&arrival);
+        for (tally, counters) in tallies.iter().zip(counters.iter_mut()) {
+            let slot = tally.slot_of(beam, &arrival, half);
+            if let Some(counter) = counters.first_mut().and_then(|counters| counters.get_mut(slot)) {
+                counter[0] += 1;
             }
         }
     }

@@ -69,6 +69,9 @@ impl Beam {
     /// leads there: 1 if that is the whole bin, 0 if nothing of it.
     pub fn reachable(&self, quantity: Quantity, edges: &[f64]) -> Vec<f64> {
         let covered = self.covered(quantity);
+        if covered.0 == covered.1 {
+            return vec![0.0; edges.len() - 1];
+        }
         let meant =
             |end: f64| edges.iter().copied().find(|edge| (edge - end).abs() <= MEANT * end).unwrap_or(end);
         let (low, high) = (meant(covered.0), meant(covered.1));
@@ -83,8 +86,10 @@ impl Beam {
             // A bin that is cut, or that ends where b = ∞ leads, is never whole, however narrow what is missing.
             let cut = from < low || to > high || self.ends_forward(quantity, from, to);
             let part = if cut { part.min(1.0_f64.next_down()) } else { part };
-            // Below the covered values there are events of the disc too, unless the angle falls with b.
-            if self.table().is_some() && quantity != Quantity::ImpactParameter { part.floor() } else { part }
+            // Below the covered values there are events of the disc too, unless the angle falls with b and all events have
+            // one energy.
+            let alone = self.tables().is_empty() && self.profile.energy_spread.is_none();
+            if alone || quantity == Quantity::ImpactParameter { part } else { part.floor() }
         };
         edges.windows(2).map(part).collect()
     }

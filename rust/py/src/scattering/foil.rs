@@ -9,11 +9,12 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::Result;
 use visviva_core::parallel::thread_count;
+use visviva_core::scattering::bins::Bins;
 use visviva_core::scattering::foil::{
     Beam, Element, Fate, Foil, Model, Projectile, Quantity, Run, Slot, Stopping, Weights, number_densities,
 };
 
-use super::monte_carlo::Bins;
+use super::monte_carlo::AskedBins;
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Whole<'py> = Bound<'py, PyArrayDyn<u64>>;
@@ -102,12 +103,6 @@ impl DescribedRun {
     }
 }
 
-/// The bins of one tally, taken from Python.
-enum Asked {
-    Count(usize),
-    Edges(Vec<f64>),
-}
-
 /// Refuses what is no foil.
 #[pyfunction]
 pub(crate) fn check_foil(py: Python<'_>, foil: Described<'_>) -> PyResult<()> {
@@ -124,7 +119,7 @@ pub(crate) fn foil_run<'py>(
     n_events: u64,
     seed: u64,
     first_event: u64,
-    tallies: Vec<(String, Bins<'py>)>,
+    tallies: Vec<(String, AskedBins<'py>)>,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Counted<'py>> {
@@ -132,10 +127,7 @@ pub(crate) fn foil_run<'py>(
     let (foil, run) = (foil.taken(py)?, run.taken());
     let mut asked = Vec::with_capacity(tallies.len());
     for (name, bins) in tallies {
-        let bins = match bins {
-            Bins::Count(bins) => Asked::Count(bins),
-            Bins::Edges(edges) => Asked::Edges(copied(&name, &edges, [None])?.0),
-        };
+        let bins = bins.taken(py, &name)?;
         asked.push((name, bins));
     }
     let ((weights, told, tallies, counted), interrupted) =
@@ -143,13 +135,9 @@ pub(crate) fn foil_run<'py>(
             // What is tabulated on the way is no part of what is to be done.
             ticker.control().count_whole(n_events);
             let beam = Beam::new(&foil, &run, threads, ticker)?;
-            let tally = |(name, bins): (String, Asked)| -> Result<_> {
+            let tally = |(name, bins): (String, Bins)| -> Result<_> {
                 let quantity = Quantity::named(&name)?;
-                let edges = match bins {
-                    Asked::Count(bins) => beam.uniform_edges(quantity, bins)?,
-                    Asked::Edges(edges) => beam.edges(quantity, edges)?,
-                };
-                Ok((quantity, edges))
+                Ok((quantity, beam.edges(quantity, &bins)?))
             };
             let tallies = asked.into_iter().map(tally).collect::<Result<Vec<_>>>()?;
             let counted = beam.run(&tallies, seed, (first_event, n_events), threads, ticker)?;

@@ -9,9 +9,9 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
-use visviva_core::scattering::histogram::Edges;
+use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Mixture, Quantity, Tally, events, monte_carlo as simulate,
+    Beam, Mixture, Profile, Quantity, Spread, Tally, events, expected, monte_carlo as simulate,
 };
 use visviva_core::{Error, Result};
 
@@ -24,17 +24,24 @@ type Tables = Vec<(u64, usize, f64, f64)>;
 /// How many events, whether Ctrl-C ended them, the smallest deflection, the tables, and the tallies.
 type Counted<'py> = (u64, bool, f64, Tables, Vec<Counts<'py>>);
 
-/// The bins of one tally: how many, or their edges.
+/// The bins of one tally: how many, their edges, or by name: spacing, how many, from and to.
 #[derive(FromPyObject)]
-pub(crate) enum Bins<'py> {
+pub(crate) enum AskedBins<'py> {
     Count(usize),
+    Spaced((String, usize, Option<f64>, Option<f64>)),
     Edges(PyReadonlyArrayDyn<'py, f64>),
 }
 
-/// The same, taken from Python.
-enum Asked {
-    Count(usize),
-    Edges(Vec<f64>),
+impl AskedBins<'_> {
+    pub(super) fn taken(self, py: Python<'_>, name: &str) -> PyResult<Bins> {
+        Ok(match self {
+            Self::Count(bins) => Bins::Count(bins),
+            Self::Spaced((spacing, bins, low, high)) => {
+                Bins::Spaced(Spacing::named(&spacing).map_err(|error| raised(py, error))?, bins, low, high)
+            }
+            Self::Edges(edges) => Bins::Edges(copied(name, &edges, [None])?.0),
+        })
+    }
 }
 
 /// A beam as it is described.
@@ -46,6 +53,9 @@ pub(crate) struct Described<'py> {
     weights: Vec<f64>,
     masses: (f64, f64),
     b_max: f64,
+    energy_spread: Option<(String, f64)>,
+    divergence: Option<(String, f64)>,
+    spot: Option<f64>,
 }
 
 /// What the work is given of one.
@@ -55,13 +65,21 @@ struct Taken {
     weights: Vec<f64>,
     masses: (f64, f64),
     b_max: f64,
+    profile: Profile,
 }
 
 impl Described<'_> {
-    fn taken(self) -> PyResult<Taken> {
+    fn taken(self, py: Python<'_>) -> PyResult<Taken> {
         let potential = described_potential(&self.potential)?;
-        let Self { energies, weights, masses, b_max, .. } = self;
-        Ok(Taken { potential, energies, weights, masses, b_max })
+        let spread = |argument: &str, told: Option<(String, f64)>| {
+            told.map(|(name, size)| Spread::named(argument, &name, size))
+                .transpose()
+                .map_err(|error| raised(py, error))
+        };
+        let Self { energies, weights, masses, b_max, energy_spread, divergence, spot, .. } = self;
+        let energy_spread = spread("energy_spread", energy_spread)?;
+        let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
+        Ok(Taken { potential, energies, weights, masses, b_max, profile })
     }
 }
 
@@ -72,10 +90,32 @@ impl Taken {
             (&self.energies, &self.weights),
             self.masses,
             self.b_max,
+            self.profile,
             threads,
             ticker,
         )
     }
+}
+
+/// Names and bins, of each tally.
+type Axes<B> = Vec<Vec<(String, B)>>;
+
+fn taken(py: Python<'_>, tallies: Axes<AskedBins<'_>>) -> PyResult<Axes<Bins>> {
+    let of_axis = |(name, bins): (String, AskedBins<'_>)| {
+        let bins = bins.taken(py, &name)?;
+        Ok((name, bins))
+    };
+    tallies.into_iter().map(|axes| axes.into_iter().map(of_axis).collect()).collect()
+}
+
+fn binned(mixture: &Mixture, asked: Axes<Bins>) -> Result<Vec<Tally>> {
+    let fastest = mixture.fastest().ok_or_else(|| Error::Internal("a mixture of nothing".to_owned()))?;
+    let axis = |(name, bins): (String, Bins)| {
+        let quantity = Quantity::named(&name)?;
+        Ok((quantity, fastest.edges(quantity, &bins)?))
+    };
+    let tally = |axes: Vec<_>| Tally::new(axes.into_iter().map(axis).collect::<Result<_>>()?);
+    asked.into_iter().map(tally).collect()
 }
 
 /// Scatters `n_events` projectiles, or as many as come before Ctrl-C.
@@ -87,39 +127,18 @@ pub(crate) fn monte_carlo<'py>(
     n_events: u64,
     seed: u64,
     first_event: u64,
-    tallies: Vec<Vec<(String, Bins<'py>)>>,
+    tallies: Axes<AskedBins<'py>>,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
 ) -> PyResult<Counted<'py>> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
-    let beam = beam.taken()?;
-    let mut asked = Vec::with_capacity(tallies.len());
-    for axes in tallies {
-        let mut taken = Vec::with_capacity(axes.len());
-        for (name, bins) in axes {
-            let bins = match bins {
-                Bins::Count(bins) => Asked::Count(bins),
-                Bins::Edges(edges) => Asked::Edges(copied(&name, &edges, [None])?.0),
-            };
-            taken.push((name, bins));
-        }
-        asked.push(taken);
-    }
+    let beam = beam.taken(py)?;
+    let asked = taken(py, tallies)?;
     let ((mixture, tallies, counted), interrupted) = compute(py, n_events, progress.as_ref(), |ticker| {
         // What is tabulated on the way is no part of what is to be done.
         ticker.control().count_whole(n_events);
         let mixture = beam.mixture(threads, ticker)?;
-        let fastest = mixture.fastest().ok_or_else(|| Error::Internal("a mixture of nothing".to_owned()))?;
-        let axis = |(name, bins): (String, Asked)| -> Result<(Quantity, Edges)> {
-            let quantity = Quantity::named(&name)?;
-            let edges = match bins {
-                Asked::Count(bins) => fastest.uniform_edges(quantity, bins)?,
-                Asked::Edges(edges) => fastest.edges(quantity, edges)?,
-            };
-            Ok((quantity, edges))
-        };
-        let tally = |axes: Vec<_>| Tally::new(axes.into_iter().map(axis).collect::<Result<_>>()?);
-        let tallies: Vec<Tally> = asked.into_iter().map(tally).collect::<Result<_>>()?;
+        let tallies = binned(&mixture, asked)?;
         let counted = simulate(&mixture, &tallies, seed, first_event, n_events, threads, ticker)?;
         Ok((mixture, tallies, counted))
     })?
@@ -143,13 +162,37 @@ pub(crate) fn monte_carlo<'py>(
         };
         results.push((names, edges, moved(py, slots, &shape)?, captured, single));
     }
-    let tables = mixture.beams().filter_map(Beam::table);
+    let tables = mixture.beams().flat_map(Beam::tables);
     let tables =
         tables.map(|table| (table.hash(), table.bytes(), table.error(), table.unresolved())).collect();
     Ok((counted.events, interrupted, mixture.smallest_angle(), tables, results))
 }
 
-/// The events of a range: their components, ψ, and all quantities, event after event.
+/// What part of all events each slot of each tally has on the average: captured ones at the end.
+#[pyfunction]
+#[pyo3(signature = (*, beam, tallies))]
+pub(crate) fn monte_carlo_expected<'py>(
+    py: Python<'py>,
+    beam: Described<'py>,
+    tallies: Axes<AskedBins<'py>>,
+) -> PyResult<Vec<Column<'py>>> {
+    let threads = thread_count(None).map_err(|error| raised(py, error))?;
+    let (beam, asked) = (beam.taken(py)?, taken(py, tallies)?);
+    let parts = compute(py, 0, None, |ticker| {
+        let mixture = beam.mixture(threads, ticker)?;
+        expected(&mixture, &binned(&mixture, asked)?, threads, ticker)
+    })?
+    .whole(py)?;
+    parts
+        .into_iter()
+        .map(|slots| {
+            let count = slots.len();
+            moved(py, slots, &[count])
+        })
+        .collect()
+}
+
+/// The events of a range: their components; energy before, direction, ψ, and all quantities, event after event.
 #[pyfunction]
 #[pyo3(signature = (*, beam, n_events, seed, first_event, threads, progress))]
 pub(crate) fn scattering_events<'py>(
@@ -160,25 +203,25 @@ pub(crate) fn scattering_events<'py>(
     first_event: u64,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Bound<'py, PyArrayDyn<u64>>, Column<'py>, Column<'py>)> {
+) -> PyResult<(Bound<'py, PyArrayDyn<u64>>, Column<'py>)> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
-    let beam = beam.taken()?;
-    let (components, deflections, values) = compute(py, n_events, progress.as_ref(), |ticker| {
+    let beam = beam.taken(py)?;
+    let (components, values) = compute(py, n_events, progress.as_ref(), |ticker| {
         ticker.control().count_whole(n_events);
         let mixture = beam.mixture(threads, ticker)?;
         let found = events(&mixture, seed, first_event, n_events, ticker)?;
         let columns = "their values";
         Ok((
             collected("n_events", columns, found.iter().map(|event| event.component))?,
-            collected("n_events", columns, found.iter().map(|event| event.deflection))?,
-            found.iter().flat_map(|event| event.values).collect::<Vec<f64>>(),
+            found
+                .iter()
+                .flat_map(|event| {
+                    [event.beam_energy, event.incidence, event.deflection].into_iter().chain(event.values)
+                })
+                .collect::<Vec<f64>>(),
         ))
     })?
     .whole(py)?;
     let count = components.len();
-    Ok((
-        moved(py, components, &[count])?,
-        moved(py, deflections, &[count])?,
-        moved(py, values, &[count, Quantity::ALL.len()])?,
-    ))
+    Ok((moved(py, components, &[count])?, moved(py, values, &[count, 3 + Quantity::ALL.len()])?))
 }

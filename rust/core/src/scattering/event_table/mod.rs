@@ -10,11 +10,13 @@
 //! Source: W. Press et al., *Numerical Recipes*, §5.8 (Chebyshev series, Clenshaw's recurrence).
 
 mod build;
+mod energies;
 
 use crate::numerics::angles::atan2;
 use build::Built;
 
 pub use build::{MOST_ERROR, TOLERANCE};
+pub use energies::Energies;
 
 /// Coefficients of a piece. Beside a logarithm, where ψ orbits, an interval as long as its distance takes twelve for 1e-9.
 const DEGREE: usize = 12;

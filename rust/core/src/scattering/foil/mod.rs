@@ -30,6 +30,7 @@ pub use stopping::{Atoms, Model, Projectile, Stopping};
 pub use tally::{Counts, MOST_EVENTS, Quantity, Slot, Weights};
 pub use walk::{Ended, Fate, Met};
 
+use super::bins::Bins;
 use super::histogram::Edges;
 use super::reach::Limits;
 use crate::parallel::{Ticker, for_chunks};
@@ -194,23 +195,15 @@ impl Beam {
     pub fn told(&self) -> (f64, f64, usize) {
         self.medium.told()
     }
-    /// Given edges of a quantity.
+    /// Bins of a quantity.
     ///
     /// # Errors
-    /// `InvalidInput` naming the quantity, or `tally` for one that this run does not have.
-    pub fn edges(&self, quantity: Quantity, edges: Vec<f64>) -> Result<Edges> {
-        let (limits, _) = self.limits(quantity)?;
-        let edges = Edges::new(quantity.name(), edges)?;
+    /// `InvalidInput` naming the quantity or `bins`, or `tally` for one that this run does not have.
+    pub fn edges(&self, quantity: Quantity, bins: &Bins) -> Result<Edges> {
+        let (limits, high) = self.limits(quantity)?;
+        let edges = bins.edges(quantity.name(), quantity.is_angle(), high)?;
         limits.check(quantity.name(), edges.values())?;
         Ok(edges)
-    }
-    /// So many equal bins over all that a quantity can be.
-    ///
-    /// # Errors
-    /// As [`edges`](Self::edges), and naming `bins`.
-    pub fn uniform_edges(&self, quantity: Quantity, bins: usize) -> Result<Edges> {
-        let (_, high) = self.limits(quantity)?;
-        Edges::uniform(bins, 0.0, high)
     }
     fn limits(&self, quantity: Quantity) -> Result<(Limits, f64)> {
         let Medium { energy, thickness, .. } = self.medium;

@@ -60,6 +60,10 @@ impl Quantity {
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, quantity)| *quantity == self).map_or("", |(name, _)| name)
     }
+    /// Whether a bin of it is a ring of directions.
+    pub fn is_angle(self) -> bool {
+        matches!(self, Self::LabAngle | Self::TransmittedAngle | Self::ReflectedAngle | Self::CmAngle)
+    }
     /// Of an ion that has it.
     fn of(self, ended: &Ended) -> Option<f64> {
         let (through, back) = (ended.fate == Fate::Transmitted, ended.fate == Fate::Reflected);

@@ -1,9 +1,8 @@
 //! Events one by one, for whoever wants more than counts: the very events that are counted.
 
-use super::beam::UNIT;
+use super::draws::{COMPONENT, Draws};
 use super::{Mixture, Quantity, end_of};
 use crate::Result;
-use crate::numerics::philox::{draw_of, key};
 use crate::parallel::Ticker;
 
 /// What is known of one event.
@@ -15,6 +14,10 @@ pub struct Event {
     pub values: [f64; Quantity::ALL.len()],
     /// ψ, signed and not folded; NaN if captured.
     pub deflection: f64,
+    /// Of the projectile before, in the laboratory.
+    pub beam_energy: f64,
+    /// Between its direction and the axis of the beam.
+    pub incidence: f64,
 }
 
 /// The events `first_event..first_event + n_events`.
@@ -33,13 +36,21 @@ pub fn events(
     for event in first_event..end {
         ticker.tick()?;
         ticker.control().count(1);
-        let share = draw_of(key(seed), event, 0).number() as f64 * UNIT;
-        let Some((component, beam)) = mixture.component(draw_of(key(seed), event, 1).number()) else {
+        let draws = Draws::new(seed, event);
+        let Some((component, beam)) = mixture.component(draws.bits(COMPONENT)) else {
             continue;
         };
-        let values = Quantity::ALL.map(|(_, quantity)| beam.value(quantity, share).unwrap_or(f64::NAN));
-        let deflection = beam.deflection(share).unwrap_or(f64::NAN);
-        events.push(Event { component: component as u64, values, deflection });
+        let arrival = beam.arrival(draws);
+        let half = beam.half_angle(&arrival);
+        let values =
+            Quantity::ALL.map(|(_, quantity)| beam.value_at(quantity, &arrival, half).unwrap_or(f64::NAN));
+        events.push(Event {
+            component: component as u64,
+            values,
+            deflection: beam.deflection(&arrival).unwrap_or(f64::NAN),
+            beam_energy: arrival.energy,
+            incidence: arrival.direction.tilt,
+        });
     }
     Ok(events)
 }

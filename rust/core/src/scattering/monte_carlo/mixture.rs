@@ -1,11 +1,13 @@
 //! Beams of several energies side by side, and what is counted of their events.
 
-use super::beam::{Beam, UNIT};
+use super::beam::{Arrival, Beam, UNIT};
+use super::profile::Profile;
 use super::quantity::Quantity;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
 use crate::scattering::histogram::{Edges, Lookup, Steps};
+use crate::scattering::kinematics::HalfAngle;
 use crate::words::number;
 use crate::{Error, Result};
 use std::sync::Arc;
@@ -54,14 +56,15 @@ impl Mixture {
         (energies, weights): (&[f64], &[f64]),
         masses: (f64, f64),
         b_max: f64,
+        profile: Profile,
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let beams = if let [energy] = energies {
-            vec![Beam::new(potential, *energy, masses, b_max, threads, ticker)?]
+            vec![Beam::new(potential, *energy, masses, b_max, profile, threads, ticker)?]
         } else {
             for_chunks(threads, energies.len(), ticker, |index, ticker| {
-                Beam::new(potential, energies[index], masses, b_max, 1, ticker)
+                Beam::new(potential, energies[index], masses, b_max, profile, 1, ticker)
             })?
         };
         Self::new(beams, weights)
@@ -72,7 +75,11 @@ impl Mixture {
     }
     /// The beam of the highest energy.
     pub fn fastest(&self) -> Option<&Beam> {
-        self.beams().max_by(|a, b| a.energy().total_cmp(&b.energy()))
+        self.beams().max_by(|a, b| a.highest().total_cmp(&b.highest()))
+    }
+    /// Whether an event is more than its impact parameter and its component.
+    pub(super) fn is_drawn(&self) -> bool {
+        self.beams().any(|beam| beam.profile.is_drawn())
     }
     /// The least of the beams' smallest deflections.
     pub fn smallest_angle(&self) -> f64 {
@@ -96,6 +103,11 @@ impl Mixture {
     pub(super) fn lookup(&self) -> Option<Lookup> {
         let starts: Vec<u64> = self.components.iter().map(|(start, _)| *start).collect();
         (starts.len() > 1).then(|| Lookup::new(starts, 16))
+    }
+    /// The part of all draws that is each component's.
+    pub(super) fn parts(&self) -> impl Iterator<Item = f64> {
+        let ends = self.components.iter().skip(1).map(|(start, _)| *start).chain([1 << DRAW_BITS]);
+        self.components.iter().zip(ends).map(|((start, _), end)| (end - start) as f64 * UNIT)
     }
     /// The component of a draw.
     pub(super) fn component(&self, draw: u64) -> Option<(usize, &Beam)> {
@@ -136,13 +148,17 @@ impl Tally {
         self.axes.iter().map(|(_, edges)| edges.bins() + 2).product::<usize>() + 1
     }
     /// The slot of an event.
-    fn slot(&self, beam: &Beam, share: f64) -> usize {
+    fn slot(&self, value: impl Fn(Quantity) -> Option<f64>) -> usize {
         let mut slot = 0;
         for (quantity, edges) in &self.axes {
-            let Some(value) = beam.value(*quantity, share) else { return self.slots() - 1 };
+            let Some(value) = value(*quantity) else { return self.slots() - 1 };
             slot = slot * (edges.bins() + 2) + edges.slot(value);
         }
         slot
+    }
+    /// The slot of an event of several draws.
+    pub(super) fn slot_of(&self, beam: &Beam, arrival: &Arrival, half: Option<HalfAngle>) -> usize {
+        self.slot(|quantity| beam.value_at(quantity, arrival, half))
     }
     /// The step function of the draw that it is.
     pub(super) fn steps(&self, beam: &Beam, ticker: &mut Ticker<'_>) -> Result<Steps> {
@@ -151,6 +167,10 @@ impl Tally {
         turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
         turns.sort_unstable();
         turns.dedup();
-        Steps::new(&turns, |draw| self.slot(beam, draw as f64 * UNIT), ticker)
+        let slot = |draw: u64| {
+            let share = beam.share(draw as f64 * UNIT);
+            self.slot(|quantity| beam.value(quantity, share))
+        };
+        Steps::new(&turns, slot, ticker)
     }
 }

@@ -1,13 +1,14 @@
 use super::*;
 use crate::numerics::philox::{draw, draw_of};
 use crate::parallel::Control;
+use crate::scattering::bins::Bins;
 use crate::scattering::histogram::Edges;
 use crate::scattering::kinematics::HalfAngle;
 use core::f64::consts::{FRAC_PI_2, PI};
 use proptest::prelude::*;
 
 fn all(beam: &Beam, bins: usize) -> Vec<Tally> {
-    let one = |q: Quantity| Tally::new(vec![(q, beam.uniform_edges(q, bins).unwrap())]).unwrap();
+    let one = |q: Quantity| Tally::new(vec![(q, beam.edges(q, &Bins::Count(bins)).unwrap())]).unwrap();
     Quantity::ALL.iter().map(|(_, q)| one(*q)).collect()
 }
 
@@ -173,7 +174,7 @@ fn covered_values_and_reachable_bins() {
         // The forward direction is never whole, however wide the disc.
         let wide = Beam::coulomb(1.0, 1.0, masses, 1e100).unwrap();
         for (_, quantity) in Quantity::ALL.into_iter().filter(|(name, _)| *name != "impact_parameter") {
-            let parts = wide.reachable(quantity, wide.uniform_edges(quantity, 4).unwrap().values());
+            let parts = wide.reachable(quantity, wide.edges(quantity, &Bins::Count(4)).unwrap().values());
             let forward = if matches!(quantity, Quantity::RecoilAngle | Quantity::Energy) { 3 } else { 0 };
             for (bin, part) in parts.into_iter().enumerate() {
                 assert!((part == 1.0) == (bin != forward) && part > 0.999, "{quantity:?} {bin} {part}");
@@ -185,7 +186,7 @@ fn covered_values_and_reachable_bins() {
 #[test]
 fn edges_out_of_range_are_refused_with_the_cure() {
     let beam = Beam::coulomb(1.0, 1.5, (1.0, 4.0), 3.0).unwrap();
-    let text = |quantity: Quantity, edges: &[f64]| match beam.edges(quantity, edges.to_vec()) {
+    let text = |quantity: Quantity, edges: &[f64]| match beam.edges(quantity, &Bins::Edges(edges.to_vec())) {
         Err(error) => error.to_string(),
         Ok(_) => String::new(),
     };
@@ -222,7 +223,7 @@ fn bad_beams_are_refused_by_name() {
     assert_eq!(name(Beam::coulomb(1.0, 1.0, (1e-300, 1e300), 1.0)), "masses");
     let light = Beam::coulomb(1.0, 1e-100, (1e-250, 1.0), 1e99).unwrap();
     assert!(matches!(
-        light.uniform_edges(Quantity::RecoilEnergy, 10),
+        light.edges(Quantity::RecoilEnergy, &Bins::Count(10)),
         Err(Error::InvalidInput { argument, .. }) if argument == "masses"
     ));
 }
@@ -235,7 +236,7 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
         [1.0, 2.0].map(|energy| Beam::coulomb(1.0, energy, (3.0, 1.0), 3.0).unwrap()).into();
     let mixture = Mixture::new(beams.clone(), &[1.0, 3.0]).unwrap();
     let axis = |quantity: Quantity, bins| {
-        (quantity, mixture.fastest().unwrap().uniform_edges(quantity, bins).unwrap())
+        (quantity, mixture.fastest().unwrap().edges(quantity, &Bins::Count(bins)).unwrap())
     };
     let (angle, energy) = (axis(Quantity::LabAngle, 19), axis(Quantity::Energy, 7));
     let tallies = [vec![angle.clone()], vec![energy.clone()], vec![angle.clone(), energy.clone()]]
@@ -280,7 +281,7 @@ fn rainbows_turns_and_captured_ones_are_counted() {
         (potential("lennard_jones", [1.0, 1.0]), 1.0),
         (potential("power_law", [-1.0, 4.0]), 1.0),
     ] {
-        let beam = Beam::new(&potential, energy, (1.0, 1.0), 3.0, 1, ticker).unwrap();
+        let beam = Beam::new(&potential, energy, (1.0, 1.0), 3.0, Profile::default(), 1, ticker).unwrap();
         let counts = run(&beam, &all(&beam, 41), 0, 30_000, 2);
         for (tally, counts) in all(&beam, 41).iter().zip(&counts) {
             let (quantity, edges) = &tally.axes()[0];

@@ -1,0 +1,76 @@
+"""The site: `sphinx-build -W -b html docs docs/_build/html`, with `pip install '.[docs]'`.
+
+Pages are Markdown; the reference is made here from what each room calls public, so that no name is listed by hand.
+"""
+
+import inspect
+import re
+from pathlib import Path
+from typing import Any
+
+import visviva
+
+project = "visviva"
+author = "The visviva developers"
+version = release = visviva.__version__
+extensions = ["myst_parser", "sphinx.ext.autodoc", "numpydoc"]
+exclude_patterns = ["_build", "gallery/README.md"]
+html_theme = "alabaster"
+html_theme_options = {"description": "Classical mechanics at native speed", "page_width": "68rem"}
+myst_enable_extensions = ["dollarmath"]
+myst_heading_anchors = 3
+numpydoc_show_class_members = False
+numpydoc_class_members_toctree = False
+autodoc_typehints = "none"
+# Links into the sources, which are no pages, are checked by tests/docs/test_readme.py.
+suppress_warnings = ["myst.xref_missing", "ref.python"]
+
+REFERENCE = Path(__file__).parent / "_reference"
+
+
+def entries(module: object, where: str, names: list[str]) -> list[str]:
+    """The directives of a room's public names."""
+    lines: list[str] = []
+    for name in names:
+        documented = getattr(module, name)
+        if inspect.isclass(documented):
+            lines += [f".. autoclass:: {where}.{name}", "   :members:", ""]
+        elif inspect.isroutine(documented):
+            lines += [f".. autofunction:: {where}.{name}", ""]
+    return lines
+
+
+def write_reference() -> None:
+    """One page for the package and one for each of its rooms."""
+    REFERENCE.mkdir(exist_ok=True)
+    rooms = [name for name in visviva.__all__ if inspect.ismodule(getattr(visviva, name))]
+    pages = {"visviva": entries(visviva, "visviva", [name for name in visviva.__all__ if name not in rooms])}
+    for room in rooms:
+        module = getattr(visviva, room)
+        # What the package itself names is on its own page.
+        own = [name for name in module.__all__ if name not in visviva.__all__]
+        pages[room] = [(module.__doc__ or "").splitlines()[0], "", *entries(module, f"visviva.{room}", own)]
+    for room, lines in pages.items():
+        title = "visviva" if room == "visviva" else f"visviva.{room}"
+        text = "\n".join([title, "=" * len(title), "", *lines]).rstrip() + "\n"
+        page = REFERENCE / f"{room}.rst"
+        if not page.exists() or page.read_text(encoding="utf-8") != text:
+            page.write_text(text, encoding="utf-8")
+
+
+def keep_bars(app: Any, what: str, name: str, of: Any, options: Any, lines: list[str]) -> None:  # noqa: ARG001
+    """Write |v| in docstrings as the absolute value it is; reStructuredText would look for a substitution."""
+    example = False
+    for place, line in enumerate(lines):
+        example = line.lstrip().startswith(">>>") or (example and bool(line.strip()))
+        if not example and "|" in line:
+            parts = re.split(r"(``.*?``)", line)
+            lines[place] = "".join(p if p.startswith("``") else re.sub(r"(?<!\\)\|", r"\\|", p) for p in parts)
+
+
+def setup(app: Any) -> None:
+    """Called by Sphinx; 400 is before numpydoc."""
+    app.connect("autodoc-process-docstring", keep_bars, priority=400)
+
+
+write_reference()

@@ -1,0 +1,208 @@
+"""What is scattered by what: a beam, its energies, and the center it meets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from visviva._arrays import float_array, positive
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from visviva.potentials import Potential
+
+__all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
+
+
+@known_keywords
+@dataclass(frozen=True)
+class Spectrum:
+    """Energies of a beam, each with its part of the projectiles.
+
+    Parameters
+    ----------
+    energy : array_like
+        Positive.
+    weight : array_like
+        Positive, one for each energy; only their ratios count.
+
+    Raises
+    ------
+    InvalidInput
+        For what is no such list.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> lines = vv.scattering.Spectrum([5.486, 5.443], [84.8, 13.1])
+    >>> lines.energy
+    (5.486, 5.443)
+    """
+
+    energy: tuple[float, ...]
+    weight: tuple[float, ...]
+
+    def __post_init__(self) -> None:
+        for name in ("energy", "weight"):
+            values = float_array(name, getattr(self, name), (None,))
+            if not values.size or not (values > 0.0).all():
+                raise InvalidInput(name, f"expected one or more positive numbers, got {values.tolist()}")
+            object.__setattr__(self, name, tuple(values.tolist()))
+        if len(self.energy) != len(self.weight):
+            raise InvalidInput(
+                "weight", f"expected one for each of {len(self.energy)} energies, got {len(self.weight)}"
+            )
+
+
+@known_keywords
+@dataclass(frozen=True, init=False)
+class Spread:
+    """How energies or directions of a beam lie about their middle.
+
+    Attributes
+    ----------
+    shape : {"gaussian", "uniform"}
+        Of the distribution.
+    width : float
+        Standard deviation of a Gaussian, of directions in each of two planes; it ends at 6 of them. Half width of a
+        uniform one, of directions the half angle of the cone.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.scattering.Spread.gaussian(0.01), vv.scattering.Spread.uniform(0.02)
+    (Spread(shape='gaussian', width=0.01), Spread(shape='uniform', width=0.02))
+    """
+
+    shape: str
+    width: float
+
+    def __init__(self) -> None:
+        raise InvalidInput("spread", "expected Spread.gaussian or Spread.uniform, got Spread itself")
+
+    @staticmethod
+    @known_keywords
+    def gaussian(sigma: float) -> Spread:
+        """Make a Gaussian.
+
+        Parameters
+        ----------
+        sigma : float
+            Standard deviation, positive.
+
+        Returns
+        -------
+        Spread
+
+        Raises
+        ------
+        InvalidInput
+            For what is no positive number.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.scattering.Spread.gaussian(0.01).width
+        0.01
+        """
+        return _spread("gaussian", positive("sigma", sigma))
+
+    @staticmethod
+    @known_keywords
+    def uniform(half_width: float) -> Spread:
+        """Make an even distribution: of energies over an interval, of directions over a cone's solid angle.
+
+        Parameters
+        ----------
+        half_width : float
+            Half of the interval, or the cone's half angle in radians; positive.
+
+        Returns
+        -------
+        Spread
+
+        Raises
+        ------
+        InvalidInput
+            For what is no positive number.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.scattering.Spread.uniform(0.02).shape
+        'uniform'
+        """
+        return _spread("uniform", positive("half_width", half_width))
+
+
+def _spread(shape: str, width: float) -> Spread:
+    made = object.__new__(Spread)
+    object.__setattr__(made, "shape", shape)
+    object.__setattr__(made, "width", width)
+    return made
+
+
+def as_spread(name: str, given: object) -> Spread | None:
+    """A spread as an argument: a number is the standard deviation of a Gaussian."""
+    if given is None or isinstance(given, Spread):
+        return given
+    return _spread("gaussian", positive(name, given))
+
+
+@known_keywords
+@dataclass(frozen=True)
+class Beam:
+    """A beam on a disc around one centre: what results must have in common to be added.
+
+    Attributes
+    ----------
+    potential : Potential
+        V(r).
+    beam_energy : float or Spectrum
+        Of the projectile in the laboratory.
+    masses : tuple of float
+        Projectile and target.
+    b_max : float
+        Radius of the disc of impact parameters.
+    smallest_angle : float
+        The deflection at the edge of the disc, in the centre-of-mass frame, or a greater one beyond it: where
+        deflections fall with the impact parameter, no event is scattered by less.
+    tables : tuple of int
+        The hash of the event table of each energy, from which angles are taken; of a spread of energies, of those
+        between which is interpolated; none of a Coulomb target.
+    energy_spread, divergence : Spread or None
+        Of the energies about each one given, and of the directions about the axis.
+    spot : float or None
+        Standard deviation of the places, in each of two dimensions; None where the disc is filled evenly.
+    """
+
+    potential: Potential
+    beam_energy: float | Spectrum
+    masses: tuple[float, float]
+    b_max: float
+    smallest_angle: float
+    tables: tuple[int, ...] = ()
+    energy_spread: Spread | None = None
+    divergence: Spread | None = None
+    spot: float | None = None
+
+
+def described(beam: Beam) -> dict[str, Any]:
+    """A beam in the words of the core."""
+    energy = beam.beam_energy
+    lines = (energy.energy, energy.weight) if isinstance(energy, Spectrum) else ((energy,), (1.0,))
+    return {
+        "potential": beam.potential._to_core(),
+        "energies": list(lines[0]),
+        "weights": list(lines[1]),
+        "masses": beam.masses,
+        "b_max": beam.b_max,
+        "energy_spread": _pair(beam.energy_spread),
+        "divergence": _pair(beam.divergence),
+        "spot": beam.spot,
+    }
+
+
+def _pair(given: Spread | None) -> tuple[str, float] | None:
+    return None if given is None else (given.shape, given.width)

@@ -1,0 +1,101 @@
+"""The statistics of counts, and their picture beside what is expected."""
+
+from __future__ import annotations
+
+from math import lgamma
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from numpy.typing import NDArray
+
+    from visviva.scattering._tally import Tally
+
+__all__ = ["plot_tally", "poisson_interval"]
+
+# The normal distribution beyond one standard deviation: (1 - erf(1/√2))/2.
+_TAIL = 0.15865525393145705
+# Sums of Poisson terms up to here, the series beyond: 1e-6 of a count, and less and less.
+_SUMMED = 500
+
+_AXES = {
+    "cm_angle": ("angle in the centre-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
+    "lab_angle": ("laboratory angle [degrees]", "dσ/dΩ₁ [area per steradian]"),
+    "recoil_angle": ("recoil angle [degrees]", "dσ/dΩ₂ [area per steradian]"),
+    "energy": ("energy afterwards", "dσ/dE₁"),
+    "recoil_energy": ("recoil energy", "dσ/dE₂"),
+    "impact_parameter": ("impact parameter", "dσ/db"),
+}
+
+
+def poisson_interval(counts: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The means of which a count is neither among the least nor the greatest 15.87 %: the exact central interval."""
+    different, back = np.unique(counts, return_inverse=True)
+    low, high = np.zeros(different.shape), np.zeros(different.shape)
+    for at, count in enumerate(different.tolist()):
+        if count > _SUMMED:
+            break
+        # P(N ≥ n) of the lower end and P(N ≤ n) of the upper one are the tail.
+        low[at] = _mean(count - 1, 1.0 - _TAIL) if count else 0.0
+        high[at] = _mean(count, _TAIL)
+    large = different > _SUMMED
+    n = different[large].astype(np.float64)
+    low[large], high[large] = _quantile(n, -1.0), _quantile(n + 1.0, 1.0)
+    return low[back].reshape(counts.shape), high[back].reshape(counts.shape)
+
+
+def _quantile(shape: Any, z: float) -> Any:
+    """Of the gamma distribution at one standard deviation: Cornish and Fisher's series."""
+    root = np.sqrt(shape)
+    return shape + z * root - z / (6.0 * root) + 1.0 / (135.0 * shape) - z * 168.0 / (38880.0 * shape * root)
+
+
+def _mean(count: int, probability: float) -> float:
+    """The mean at which P(N ≤ count) is so much."""
+    k = np.arange(count + 1)
+    factorial = np.array([lgamma(each + 1.0) for each in k])
+    mean = float(_quantile(count + 1.0, 1.0 if probability < 0.5 else -1.0))
+    for _ in range(20):
+        terms = np.exp(k * np.log(mean) - mean - factorial)
+        # The derivative of the sum is less its last term.
+        step = (float(terms.sum()) - probability) / float(terms[-1])
+        mean = max(mean + step, 0.5 * mean)
+        if abs(step) < 1e-13 * mean:
+            break
+    return mean
+
+
+def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
+    """A picture of a tally; see `Tally.plot`."""
+    from visviva.plot import axes_or_new
+
+    axes = axes_or_new(ax)
+    angle = tally.name.endswith("angle")
+    edges = np.degrees(tally.edges) if angle else tally.edges
+    # Of the disc, bin by bin: what is beyond it is missing from the simulation and from what is expected alike.
+    scale = np.pi * tally.b_max**2 / (tally.n_events * tally._measure())
+    beam = tally.beam
+    known = beam.energy_spread is None and not (beam.divergence and tally.name in ("lab_angle", "recoil_angle"))
+    expected = tally.expected() * scale if known else np.full(scale.shape, np.nan)
+    # Where nothing can come the interval of no count would say that something might.
+    shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)
+    low, high = (np.append(end * shown, np.nan) for end in poisson_interval(tally.counts))
+    axes.fill_between(
+        edges, low, high, step="post", alpha=0.35, linewidth=0.0, color="C0", label="central 68 % of Poisson"
+    )
+    axes.stairs(tally.values() * scale, edges, linewidth=1.0, color="C0", label=f"{tally.n_events} events")
+    if known:
+        axes.stairs(expected, edges, linewidth=1.0, color="C1", linestyle="--", label="theory")
+    across, up = _AXES[tally.name]
+    axes.set(xlabel=across, ylabel=up)
+    drawn = np.concatenate([(tally.values() * scale)[tally.counts > 0], expected[expected > 0.0]])
+    if drawn.size and drawn.max() > 30.0 * drawn.min():
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * drawn.min(), 2.0 * drawn.max())
+    widths = np.diff(tally.edges)
+    if tally.edges[0] > 0.0 and widths[-1] > 30.0 * widths[0]:
+        axes.set_xscale("log")
+    axes.legend(frameon=False)
+    return axes

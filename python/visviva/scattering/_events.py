@@ -1,0 +1,144 @@
+"""The events of a scattering Monte Carlo one by one, as arrays or in a file."""
+
+from __future__ import annotations
+
+from os import fspath
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import whole_number
+from visviva._keywords import known_keywords
+from visviva._progress import callback
+from visviva.errors import Interrupted, InvalidInput
+from visviva.potentials import Potential
+from visviva.scattering._beam import Spectrum, Spread, described
+from visviva.scattering._monte_carlo import _beam, _which
+
+if TYPE_CHECKING:
+    from os import PathLike
+
+    from numpy.typing import NDArray
+
+    from visviva._progress import Progress, Report
+
+__all__ = ["scattering_events"]
+
+
+@known_keywords
+def scattering_events(
+    potential: Potential,
+    *,
+    beam_energy: float | Spectrum,
+    masses: tuple[float, float],
+    b_max: float,
+    n_events: int,
+    seed: int,
+    first_event: int = 0,
+    threads: int | None = None,
+    progress: Progress = False,
+    energy_spread: float | Spread | None = None,
+    divergence: float | Spread | None = None,
+    spot: float | None = None,
+    to: str | PathLike[str] | None = None,
+) -> dict[str, NDArray[Any]]:
+    """The very events that `monte_carlo` counts, one by one.
+
+    Parameters
+    ----------
+    potential, beam_energy, masses, b_max, seed, threads, progress, energy_spread, divergence, spot
+        As of `monte_carlo`.
+    n_events, first_event : int
+        Which events.
+    to : path-like, optional
+        A Parquet file to write, exactly as named, in place of arrays: one row for each event, in memory that does not
+        grow with their number. It needs pyarrow.
+
+    Returns
+    -------
+    dict of ndarray
+        Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
+        ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
+        folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
+        ``"impact_parameter"``. Empty with `to`: the columns are those of the file.
+
+    Raises
+    ------
+    InvalidInput
+        As `monte_carlo`; naming ``to`` if pyarrow is not installed, or for what is no path.
+    Interrupted
+        After Ctrl-C. The file holds the events written until then, from ``first_event`` without a gap; the message
+        says how many.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> events = vv.scattering.scattering_events(
+    ...     vv.potentials.LennardJones(1.0, 1.0), beam_energy=2.0, masses=(1.0, 1.0), b_max=3.0, n_events=3, seed=1)
+    >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
+    ([0, 1, 2], True)
+    """
+    if not isinstance(potential, Potential):
+        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
+    first, count, key = _which(first_event, n_events, seed)
+    several = None if threads is None else whole_number("threads", threads, 1, 1024)
+    request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
+    with callback(progress) as report:
+        if to is None:
+            return _columns(request, first, count, report)
+        _stream(request, first, count, report, _path(to))
+    return {}
+
+
+_QUANTITIES = (
+    *("beam_energy", "incidence", "deflection"),
+    *("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"),
+)
+# Events written at a time: 24 MB, and a table is built again for each.
+_GROUP = 1 << 18
+
+
+def _columns(request: dict[str, Any], first: int, count: int, report: Report | None) -> dict[str, NDArray[Any]]:
+    component, values = _core.scattering_events(**request, n_events=count, first_event=first, progress=report)
+    columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
+    return {"event": np.arange(first, first + count, dtype=np.uint64), "component": component, **columns}
+
+
+def _path(to: object) -> str:
+    try:
+        path = fspath(to)  # type: ignore[call-overload]
+    except TypeError:
+        path = None
+    if not isinstance(path, str):
+        raise InvalidInput("to", f"expected the path of a file, got {to!r}")
+    return path
+
+
+def _stream(request: dict[str, Any], first: int, count: int, report: Report | None, path: str) -> None:
+    """Write events to a Parquet file, a row group at a time."""
+    try:
+        import pyarrow
+        from pyarrow import parquet
+    except ImportError as error:
+        raise InvalidInput("to", "pyarrow is not installed; pip install 'visviva[parquet]'") from error
+    done = 0
+
+    def told(part: int, _: int) -> None:
+        if report is not None:
+            report(done + part, count)
+
+    # The first group is made before the file: whatever is refused leaves no file behind.
+    group = _columns(request, first, min(_GROUP, count), told)
+    table = pyarrow.table(group)
+    with parquet.ParquetWriter(path, table.schema) as writer:
+        while True:
+            writer.write_table(table)
+            done += table.num_rows
+            if done == count:
+                return
+            try:
+                table = pyarrow.table(_columns(request, first + done, min(_GROUP, count - done), told))
+            except KeyboardInterrupt as stopped:
+                raise Interrupted(f"interrupted after {done} of {count} events, which {path!r} holds") from stopped

@@ -1,0 +1,142 @@
+//! The deflections of a range of energies: a few tables, and between them a polynomial in the energy.
+//!
+//! The one idea: where nothing orbits and nothing is captured ψ is smooth in the energy, and at one impact parameter the
+//! polynomial through Chebyshev points of the range has it. Whether that is so is not assumed but tried, as it is for one
+//! table: directly, at energies and impact parameters between those that it is made of.
+
+use super::{EventTable, MOST_ERROR, Piece};
+use crate::numerics::angles::{cos, sin};
+use crate::numerics::philox::{draw_of, key};
+use crate::parallel::{Ticker, for_chunks};
+use crate::scattering::deflection::{Deflector, Status};
+use crate::words::number;
+use crate::{Error, Result};
+use core::f64::consts::PI;
+
+/// How many tables: the first that does.
+const ORDERS: [usize; 3] = [3, 5, 9];
+/// Bytes of all of them.
+const MOST_BYTES: usize = 1 << 19;
+/// Places at which the whole is tried.
+const CERTIFYING: u64 = 768;
+
+/// The deflections of a range of energies, b from 0 to b_max.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Energies {
+    /// Each with its energy and its weight in the barycentric formula.
+    tables: Vec<(f64, f64, EventTable)>,
+    error: f64,
+}
+
+impl Energies {
+    /// Of relative motion with energies from the first to the second.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `energy_spread` if ψ is not smooth enough in that range, and as [`EventTable::build`];
+    /// `Interrupted`.
+    pub fn build(
+        deflector: &Deflector,
+        [low, high]: [f64; 2],
+        b_max: f64,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Self> {
+        let refused = |why: String| {
+            let (low, high) = (number(low), number(high));
+            let message = format!(
+                "expected energies over which the deflection is smooth, but from {low} to {high} of relative motion \
+                 {why}; give a narrower one, or single energies as a Spectrum"
+            );
+            Err(Error::invalid("energy_spread", message))
+        };
+        let mut why = String::new();
+        for order in ORDERS {
+            let last = (order - 1) as f64;
+            let energies: Vec<f64> = (0..order)
+                .map(|k| 0.5 * (low + high) - 0.5 * (high - low) * cos(PI * k as f64 / last))
+                .collect();
+            let tables = for_chunks(threads, order, ticker, |k, ticker| {
+                EventTable::build(deflector, energies[k], b_max, 1, ticker)
+            })?;
+            if tables.iter().any(|table| table.pieces.contains(&Piece::Captured)) {
+                return refused("some are captured".to_owned());
+            }
+            let bytes: usize = tables.iter().map(EventTable::bytes).sum();
+            if bytes > MOST_BYTES {
+                return refused(format!("{order} tables take {bytes} bytes"));
+            }
+            // (−1)^k, and half of it at the ends.
+            let weight = |k: usize| {
+                let size = if k == 0 || k + 1 == order { 0.5 } else { 1.0 };
+                if k.is_multiple_of(2) { size } else { -size }
+            };
+            let tables = tables.into_iter().enumerate().map(|(k, table)| (energies[k], weight(k), table));
+            let mut made = Self { tables: tables.collect(), error: 0.0 };
+            let (error, energy, b) = made.tried(deflector, [low, high], b_max, threads, ticker)?;
+            if error <= MOST_ERROR {
+                made.error = error;
+                return Ok(made);
+            }
+            let (error, energy, b) = (number(error), number(energy), number(b));
+            why = format!("{order} tables are off by {error} in sin²(ψ/2) at energy {energy} and b = {b}");
+        }
+        refused(why)
+    }
+    /// ψ of an energy of the range where b is this part of b_max, signed and not folded.
+    pub fn angle(&self, energy: f64, part: f64) -> Option<f64> {
+        let (mut over, mut under) = (0.0, 0.0);
+        for (node, weight, table) in &self.tables {
+            let angle = table.angle(part)?;
+            if energy == *node {
+                return Some(angle);
+            }
+            let weight = weight / (energy - node);
+            over += weight * angle;
+            under += weight;
+        }
+        Some(over / under)
+    }
+    /// The tables, in the order of energies.
+    pub fn tables(&self) -> impl Iterator<Item = &EventTable> {
+        self.tables.iter().map(|(_, _, table)| table)
+    }
+    /// The largest difference of sin²(ψ/2) from direct quadrature, of all places that were tried.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+    /// The largest error, and where: at random places, and at random energies beside the ends of all pieces.
+    fn tried(
+        &self,
+        deflector: &Deflector,
+        [low, high]: [f64; 2],
+        b_max: f64,
+        threads: usize,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<(f64, f64, f64)> {
+        let random =
+            |i: u64, number| draw_of(key(0x656e_6572), i, number).number() as f64 / (1_u64 << 53) as f64;
+        let ends = self.tables().flat_map(|table| {
+            let wide = table.starts.windows(2).filter(|pair| pair[1] - pair[0] > 1e-6);
+            wide.map(|pair| pair[0] + 0.02 * (pair[1] - pair[0]))
+        });
+        let parts: Vec<f64> = (0..CERTIFYING).map(|i| random(i, 0).sqrt()).chain(ends).collect();
+        let energies: Vec<f64> =
+            (0..parts.len() as u64).map(|i| (low + (high - low) * random(i, 1)).clamp(low, high)).collect();
+        let b: Vec<f64> = parts.iter().map(|part| part * b_max).collect();
+        let found = deflector.deflect(&energies, &b, false, threads, ticker)?;
+        let square = |angle: f64| sin(0.5 * angle) * sin(0.5 * angle);
+        let mut worst = (0.0, low, 0.0);
+        for (at, found) in found.iter().enumerate() {
+            let off = match self.angle(energies[at], parts[at]) {
+                Some(angle) if found.status != Status::Captured => {
+                    (square(angle) - square(found.angle)).abs()
+                }
+                _ => 1.0,
+            };
+            if off.is_nan() || off > worst.0 {
+                worst = (if off.is_nan() { 1.0 } else { off }, energies[at], b[at]);
+            }
+        }
+        Ok(worst)
+    }
+}

@@ -1,0 +1,30 @@
+"""Every script of the gallery runs and makes one picture whose labels are all on it."""
+
+from pathlib import Path
+
+import matplotlib as mpl
+import pytest
+
+mpl.use("Agg")
+import matplotlib.pyplot as plt
+
+SCRIPTS = sorted((Path(__file__).parents[2] / "docs" / "gallery").glob("*.py"))
+
+
+@pytest.mark.parametrize("script", SCRIPTS, ids=[script.stem for script in SCRIPTS])
+def test_makes_one_picture(script: Path, tmp_path: Path) -> None:
+    plt.close("all")
+    exec(compile(script.read_text(encoding="utf-8"), str(script), "exec"), {})
+    (number,) = plt.get_fignums()
+    figure = plt.figure(number)
+    figure.savefig(tmp_path / "picture.png")
+    for axes in figure.axes:
+        assert axes.get_title()
+        assert axes.get_xlabel()
+        assert axes.get_ylabel()
+        box = axes.get_tightbbox()
+        assert box is not None
+        assert figure.bbox.padded(1).containsx(box.x0)
+        assert figure.bbox.padded(1).containsx(box.x1)
+        assert any(len(line.get_xdata()) > 1 for line in axes.lines)
+    plt.close("all")
