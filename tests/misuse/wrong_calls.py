@@ -99,7 +99,7 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
     (
         vv.scattering.lab_angle,
         {"cm_angle": 1.0, "mass_ratio": 0.5},
-        {"cm_angle": ("a", NAN, None), "mass_ratio": (-1.0, NAN, "m")},
+        {"cm_angle": ("a", NAN, None), "mass_ratio": (None, -1.0, NAN, "m")},
     ),
     (
         vv.scattering.monte_carlo,
@@ -181,6 +181,16 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
         PENDULUM.at,
         {"position": [1.0]},
         {"position": ([1.0, 2.0], "p", [NAN]), "parameters": ({"l0": 1.0}, {"l": "long"})},
+    ),
+    (
+        PENDULUM.at,
+        {"parameters": {"l": 2.0}},
+        {"parameters": (1, "l", {"q": 1.0}, {"l": NAN}), "position": ([1, 2], "p")},
+    ),
+    (
+        vv.ExpressionForce,
+        {"potential": lambda r, v, t, k: k * r[0], "parameters": {"k": 1.0}},
+        {"potential": (None, "x", lambda r: r, [1.0]), "parameters": (1, {"x": 1.0}, ["k"])},
     ),
     (vv.systems.pendulum, {"l": 1.0}, {"l": (NAN, "l", None), "position": ([1, 2], "p", [NAN])}),
     (vv.problems.kepler, {"e": 0.5}, {"e": (-0.1, 1.0, NAN, "e", None), "periods": (-1, 0.5, "p")}),

@@ -150,6 +150,9 @@ class GeneralizedSystem(Flow):
 
     def _with_parameters(self, changed: Mapping[Any, Any] | None) -> list[Any]:
         values: dict[str, Any] = dict(self.parameters)
+        if changed is not None and not hasattr(changed, "items"):
+            kind = type(changed).__name__
+            raise InvalidInput("parameters", f"expected values by parameter, as {{'l': 2.0}}, got {kind}")
         for key, value in (changed or {}).items():
             name = _label(key)
             if name not in values:

@@ -83,6 +83,9 @@ def kinematic(
     products: object,
 ) -> NDArray[np.float64]:
     """Evaluate one of the core's functions of an angle and a collision, over all that broadcasts."""
+    if mass_ratio is None and "recoil" not in function:
+        # Recoils of elastic collisions are the same of any masses.
+        raise InvalidInput("mass_ratio", "expected m1/m2, got None")
     given = encounter(mass_ratio, q_value, beam_energy, products)
     (angle, ratio, released, energy, third, fourth), shape = flat({name: values} | given)
     if 0 in shape:

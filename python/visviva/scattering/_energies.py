@@ -369,6 +369,8 @@ def moderation(*, mass_ratio: ArrayLike) -> Moderation:
 
 
 def _special(name: str, mass_ratio: object, q_value: object, products: object) -> NDArray[np.float64]:
+    if mass_ratio is None:
+        raise InvalidInput("mass_ratio", "expected m1/m2, got None")
     given = encounter(mass_ratio, q_value, 1.0, products)
     del given["beam_energy"]
     (ratio, released, third, fourth), shape = flat(given)
