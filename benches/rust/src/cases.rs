@@ -6,6 +6,7 @@ use visviva_core::forces::gravity::newton::Gravity;
 use visviva_core::parallel::{Control, Ticker};
 use visviva_core::potentials::parameters::Value;
 use visviva_core::registry;
+use visviva_core::scattering::bins::Bins;
 use visviva_core::scattering::monte_carlo::{Beam, Mixture, Quantity, Tally, monte_carlo};
 use visviva_core::scene::Scene;
 use visviva_core::scene::request::Request;
@@ -154,7 +155,7 @@ pub fn steps(scene: &Bodies, request: &Asked) -> u64 {
 /// Scatters `events` projectiles into 180 bins of the angle.
 pub fn scatter(events: u64) {
     let counted = Beam::coulomb(1.5, 2.0, (1.0, 4.0), 3.0).and_then(|beam| {
-        let edges = beam.uniform_edges(Quantity::CmAngle, 180)?;
+        let edges = beam.edges(Quantity::CmAngle, &Bins::Count(180))?;
         let control = Control::new(0);
         let asked = [Tally::new(vec![(Quantity::CmAngle, edges)])?];
         monte_carlo(&Mixture::of(beam), &asked, 1, 0, events, 1, &mut Ticker::quiet(&control))

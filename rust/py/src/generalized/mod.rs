@@ -354,7 +354,10 @@ impl GeneralizedModel {
         let worked = compute(py, members as u64, progress.as_ref(), |ticker| {
             for_chunks(threads, members.div_ceil(several), ticker, |chunk, ticker| {
                 let last = (chunk * several + several).min(members);
-                let of = |all: &[f64], width: usize| all[chunk * several * width..last * width].to_vec();
+                let of = |all: &[f64], width: usize| {
+                    let own = all.get(chunk * several * width..last * width);
+                    own.map(<[f64]>::to_vec).unwrap_or_default()
+                };
                 let (states, own) = (of(&states, numbers), of(&parameters, count));
                 if several > 1 {
                     return solve_together(model, &request, (&states, &own), ticker);

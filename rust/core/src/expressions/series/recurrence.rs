@@ -116,7 +116,7 @@ fn product<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
     let pairs = convolved(&numbers[a + 1..a + half], &numbers[a + n + 1 - half..a + n]);
     let pairs = numbers[a].multiply_add(numbers[a + n], pairs);
     let twice = pairs + pairs;
-    if n % 2 == 0 { numbers[a + n / 2].multiply_add(numbers[a + n / 2], twice) } else { twice }
+    if n.is_multiple_of(2) { numbers[a + n / 2].multiply_add(numbers[a + n / 2], twice) } else { twice }
 }
 
 /// As a product, without the last coefficient of its second factor.

@@ -29,7 +29,7 @@ impl Reader<'_> {
 
     fn count(&mut self) -> Result<usize> {
         let number = self.number()?;
-        let whole = number >= 0.0 && number < 1e6 && number.fract() == 0.0;
+        let whole = (0.0..1e6).contains(&number) && number.fract() == 0.0;
         if whole { Ok(number as usize) } else { Err(refused("a count or a place is no whole number")) }
     }
 
