@@ -73,6 +73,41 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(pendulum.period(), expected["period"])
 
 
+@golden("G5.4-actions")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    m, start, last, T = (given[name] for name in ("m", "x0", "x1", "T"))
+    cases = {
+        "S_free": lambda q, v, t, **of: of["m"] * v[0] ** 2 / 2,
+        "S_const_force": lambda q, v, t, **of: of["m"] * v[0] ** 2 / 2 + of["F0"] * q[0],
+        "S_oscillator": lambda q, v, t, **of: of["m"] * (v[0] ** 2 - (of["omega"] * q[0]) ** 2) / 2,
+    }
+    numbers = {"m": m, "F0": given["F0"], "omega": given["omega"]}
+    for name, function in cases.items():
+        system = vv.Lagrangian(function, ["x"], parameters=numbers, position=[start]).boundary_value(T, [last])
+        close(system.action(T), expected[name])
+
+
+@golden("G5.4-second-variation")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    T = given["T"]
+    swing = vv.systems.oscillator(k=given["m"] * given["omega"] ** 2, m=given["m"], position=[1.0])
+    close(swing.second_variation(T, lambda t: np.sin(np.pi * t / T)), expected["second_variation"])
+
+
+@golden("G6.3-legendre-quartic")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    def quartic(q: Any, v: Any, t: Any, a: Any) -> Any:
+        return a * v[0] ** 4 / 4
+
+    system = vv.Lagrangian(quartic, ["q"], parameters={"a": given["a"]}, position=[0.0], velocity=[given["qdot"]])
+    close(system.momentum[0], expected["p"])
+    close(system.energy, expected["H"])
+    close(system.evaluate(quartic)[0], expected["L"])
+    # H of p as it should be, and back: L = p q̇ − H.
+    close(0.75 * given["a"] ** (-1 / 3) * system.momentum[0] ** (4 / 3), expected["H"])
+    close(system.momentum[0] * given["qdot"] - system.energy, expected["L"])
+
+
 @golden("G5.4-rotating-hoop")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     m, R, g, Omega = (given[name] for name in ("m", "R", "g", "Omega"))
