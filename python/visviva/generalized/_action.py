@@ -1,243 +1,193 @@
-"""The action of a motion or of any path, and its variations.
+"""The action S = ∫ L dt along a path, and its variations: S[q + ε η] = S + ε δS[η] + ε²/2 δ²S[η] + O(ε³).
 
-The one idea: on panels with Gauss's nodes a smooth path is a polynomial, so its velocity and the integral over a panel
-are known to round-off; panels are halved until nothing changes.
+The one idea: an integrand of (t, q, q̇, η, η̇) is summed over the pieces of a path by Gauss and Legendre, and again over
+their halves until that changes nothing; what a coarser path would have changed is told beside it.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from visviva._arrays import float_array, number
+from visviva._arrays import float_array
 from visviva._keywords import known_keywords
+from visviva._quadrature import _DERIVATIVE, _NODES, _WEIGHTS
 from visviva.errors import ConvergenceError, InvalidInput
+from visviva.generalized._path import Path, as_path, through
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from numpy.typing import NDArray
 
-    from numpy.typing import ArrayLike, NDArray
+    from visviva.generalized._lagrangian import Lagrangian
+    from visviva.generalized._nodes import Node
 
-    from visviva.generalized._system import GeneralizedSystem
+__all__ = ["PathIntegral", "action", "derivatives", "first_variation", "hessian", "second_variation"]
 
-__all__ = ["Actions"]
-
-#: Nodes of a panel, panels at first and at most, and by how much of the integrand's size two integrals may differ.
-_NODES, _PANELS, _MOST_PANELS, _TOLERANCE = 16, 8, 4096, 1e-12
+#: Values at nodes in pieces: t (K, M); q, q̇, η, η̇ (K, M, n).
+Integrand: TypeAlias = Callable[..., Any]
+_MOST_HALVINGS = 7
+_EPS = float(np.finfo(float).eps)
 
 
 @known_keywords
-class Actions:
-    """Base of `Lagrangian`: S = ∫ L dt and how it changes with the path."""
+@dataclass(frozen=True, slots=True)
+class PathIntegral:
+    """An integral along a path; ``float`` gives its value.
 
-    __slots__ = ()
+    Attributes
+    ----------
+    value : float
+    quadrature : float
+        How far the sum may be from the integral along this path, round-off included.
+    interpolation : float
+        How much polynomials of two degrees less between the known times change the value: more than what the path
+        itself is off, where its times are close enough to tell its shape. 0 where straight lines were asked for.
 
-    def action(self: Any, t: float, *, path: Callable[..., ArrayLike] | None = None) -> float:
-        """The action S = ∫ L dt from the start to a time, of the motion from the start or of any path.
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> free = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2, ["x"])
+    >>> float(free.action(([0.0, 2.0], [0.0, 1.0])))
+    0.25
+    """
 
-        Parameters
-        ----------
-        t : float
-            The end; the integral begins at ``t0``.
-        path : callable, optional
-            Coordinates, shape (T, n), or (T,) of one coordinate, at times (T,); smooth. The motion from the start if
-            not given.
+    value: float
+    quadrature: float
+    interpolation: float
 
-        Returns
-        -------
-        float
-            To some 1e-12 of the integral of the size of L; of a motion, to the tolerance of its run, too.
+    @property
+    def error(self) -> float:
+        """Both together."""
+        return self.quadrature + self.interpolation
 
-        Raises
-        ------
-        InvalidInput
-            For a path that gives another shape.
-        ConvergenceError
-            For a path that is not smooth, or a motion that ends at a singularity.
-
-        References
-        ----------
-        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (2.1).
-
-        Examples
-        --------
-        A free particle: m (Δx)²/2T.
-
-        >>> import visviva as vv
-        >>> free = vv.Lagrangian(lambda q, v, t: 1.5 * v[0] ** 2, ["x"], position=[1.0], velocity=[2.0])
-        >>> round(free.action(2.0), 12), round(free.action(2.0, path=lambda t: 1.0 + t**2), 12)
-        (12.0, 16.0)
-        """
-        function = self._model.expressions("function")
-
-        def integrand(t: NDArray[np.float64], states: NDArray[np.float64]) -> NDArray[np.float64]:
-            values: NDArray[np.float64] = _values(self, function, t, states)[:, 0]
-            return values
-
-        return _integral(self, t, path, integrand)
-
-    def first_variation(
-        self: Any, t: float, variation: Callable[..., ArrayLike], *, path: Callable[..., ArrayLike] | None = None
-    ) -> float:
-        """How the action changes with a variation η of the path: dS(q + εη)/dε at ε = 0.
-
-        Parameters
-        ----------
-        t : float
-            The end.
-        variation : callable
-            η, as a path is given. Where it vanishes at both ends, the first variation of every motion is zero
-            (Hamilton's principle), if nothing but L is acting.
-        path : callable, optional
-            As in `action`.
-
-        Returns
-        -------
-        float
-            ∫ (∂L/∂q · η + ∂L/∂q̇ · η̇) dt.
-
-        Raises
-        ------
-        InvalidInput, ConvergenceError
-            As in `action`.
-
-        References
-        ----------
-        Goldstein et al., (2.9).
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> pendulum = vv.systems.pendulum(position=[2.5])
-        >>> bool(abs(pendulum.first_variation(2.0, lambda t: np.sin(np.pi * t / 2.0))) < 1e-11)
-        True
-        """
-        _path("variation", variation)
-        slopes, conjugates = (self._model.expressions(name) for name in ("slopes", "conjugates"))
-
-        def integrand(
-            t: NDArray[np.float64], states: NDArray[np.float64], eta: NDArray[np.float64], rate: NDArray[np.float64]
-        ) -> NDArray[np.float64]:
-            changes = _values(self, slopes, t, states) * eta + _values(self, conjugates, t, states) * rate
-            summed: NDArray[np.float64] = changes.sum(axis=1)
-            return summed
-
-        return _integral(self, t, path, integrand, variation)
-
-    def second_variation(
-        self: Any, t: float, variation: Callable[..., ArrayLike], *, path: Callable[..., ArrayLike] | None = None
-    ) -> float:
-        """The second variation of the action: d²S(q + εη)/dε² at ε = 0.
-
-        Parameters
-        ----------
-        t, variation, path
-            As in `first_variation`.
-
-        Returns
-        -------
-        float
-            Positive for every η that vanishes at both ends of a short motion, whose action is the least; of either sign
-            beyond the first point that motions from the start meet again.
-
-        Raises
-        ------
-        InvalidInput, ConvergenceError
-            As in `action`.
-
-        References
-        ----------
-        I. M. Gelfand & S. V. Fomin, *Calculus of Variations* (1963), section 25.
-
-        Examples
-        --------
-        An oscillator's changes its sign after half a period, (m/2T)(π² − ω²T²):
-
-        >>> import numpy as np, visviva as vv
-        >>> swing = vv.systems.oscillator(k=4.0, m=1.0, position=[1.0])
-        >>> [round(swing.second_variation(T, lambda t: np.sin(np.pi * t / T)), 6) for T in (1.0, 2.0)]
-        [2.934802, -1.532599]
-        """
-        _path("variation", variation)
-        curvatures = self._model.expressions("curvatures")
-        n = len(self.coordinates)
-
-        def integrand(
-            t: NDArray[np.float64], states: NDArray[np.float64], eta: NDArray[np.float64], rate: NDArray[np.float64]
-        ) -> NDArray[np.float64]:
-            both = np.concatenate([eta, rate], axis=1)
-            matrix = _values(self, curvatures, t, states).reshape(-1, 2 * n, 2 * n)
-            summed: NDArray[np.float64] = np.einsum("ti,tij,tj->t", both, matrix, both)
-            return summed
-
-        return _integral(self, t, path, integrand, variation)
+    def __float__(self) -> float:
+        return self.value
 
 
-def _values(system: GeneralizedSystem, of: Any, t: NDArray[np.float64], states: NDArray[np.float64]) -> Any:
-    nodes, roots = of
-    return system._model.evaluate(nodes, roots, t, states, system._values[None, :])
+def derivatives(system: Lagrangian, order: int) -> tuple[list[Node], list[int]]:
+    """Give L, its 2n first or its 4n² second derivatives by the numbers of a state, as nodes."""
+    if order != 1:
+        return system._model.expressions("curvatures" if order else "function")
+    (nodes, roots), (further, others) = (system._model.expressions(name) for name in ("slopes", "conjugates"))
+    first = len(nodes)
+    moved = [(operation, [first + place for place in arguments], value) for operation, arguments, value in further]
+    return [*nodes, *moved], [*roots, *(first + root for root in others)]
 
 
-def _integral(
-    system: Any, t: float, path: Any, integrand: Callable[..., NDArray[np.float64]], variation: Any = None
-) -> float:
-    """Integrate over the motion or a path, on panels that are halved until nothing changes."""
-    end = number("t", t)
-    if end == system.t0:
-        return 0.0
-    nodes, weights = np.polynomial.legendre.leggauss(_NODES)
-    derivative = _differentiation(nodes)
-    last, panels = np.nan, _PANELS
-    while panels <= _MOST_PANELS:
-        edges = np.linspace(system.t0, end, panels + 1)
-        half = np.diff(edges)[:, None] / 2.0
-        times = (edges[:-1, None] + half) + half * nodes
-        flat = times.ravel()
+def along(system: Lagrangian, order: int) -> Callable[..., NDArray[np.float64]]:
+    """Give the function that has these derivatives at times (…) and places and velocities (…, n)."""
+    nodes, roots = derivatives(system, order)
 
-        def along(name: str, given: Any, times: Any = times, half: Any = half) -> tuple[Any, Any]:
-            values = _sampled(system, name, given, times.ravel()).reshape(*times.shape, -1)
-            rates = np.einsum("ij,pjn->pin", derivative, values) / half[..., None]
-            return values.reshape(times.size, -1), rates.reshape(times.size, -1)
+    def values(t: NDArray[np.float64], q: NDArray[np.float64], v: NDArray[np.float64]) -> NDArray[np.float64]:
+        states = np.concatenate([q, v], axis=-1).reshape(-1, 2 * q.shape[-1])
+        found = system._model.evaluate(nodes, roots, np.ravel(t), states, system._values[None, :])
+        if not np.isfinite(found).all():
+            row = int(np.argmin(np.isfinite(found).all(axis=1)))
+            raise InvalidInput("path", f"L has no value at t = {np.ravel(t)[row]:g} on it: a singularity; go round it")
+        return found.reshape(*t.shape, len(roots))
 
-        states = system.run(flat)._states if path is None else np.concatenate(along("path", path), axis=1)
-        changes = () if variation is None else along("variation", variation)
-        parts = integrand(flat, states, *changes).reshape(times.shape) * weights * half
-        found, size = float(parts.sum()), float(np.abs(parts).sum())
-        if abs(found - last) <= _TOLERANCE * size:
-            return found
-        last, panels = found, 2 * panels
-    what = "the motion" if path is None else "the path"
-    raise ConvergenceError(f"the integral over {what} does not settle: expected it, and its variation, to be smooth")
-
-
-def _path(name: str, given: Any) -> Callable[..., ArrayLike]:
-    if not callable(given):
-        raise InvalidInput(name, f"expected a function of times that gives coordinates, got {type(given).__name__}")
-    path: Callable[..., ArrayLike] = given
-    return path
-
-
-def _sampled(system: GeneralizedSystem, name: str, given: Any, t: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give coordinates (T, n) of a path at times."""
-    n = len(system.coordinates)
-    values = float_array(name, _path(name, given)(t), None)
-    if n == 1 and values.shape == t.shape:
-        values = values[:, None]
-    if values.shape != (len(t), n):
-        raise InvalidInput(
-            name, f"expected coordinates of shape ({len(t)}, {n}) at {len(t)} times, got shape {values.shape}"
-        )
     return values
 
 
-def _differentiation(nodes: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the matrix that takes values at nodes to the slopes of their polynomial there."""
-    apart = nodes[:, None] - nodes
-    np.fill_diagonal(apart, 1.0)
-    weights = 1.0 / apart.prod(axis=1)
-    matrix = weights / weights[:, None] / apart
-    np.fill_diagonal(matrix, 0.0)
-    np.fill_diagonal(matrix, -matrix.sum(axis=1))
-    differentiation: NDArray[np.float64] = matrix
-    return differentiation
+def hessian(system: Lagrangian) -> Callable[..., NDArray[np.float64]]:
+    """Give the function of (t, q, q̇) that has the second derivatives of L by (q, q̇), shape (…, 2n, 2n)."""
+    values, n = along(system, 2), len(system.coordinates)
+    return lambda t, q, v: values(t, q, v).reshape(*t.shape, 2 * n, 2 * n)
+
+
+def action(system: Lagrangian, path: Any, degree: int) -> PathIntegral:
+    """Give ∫ L dt."""
+    values = along(system, 0)
+    return _integral(as_path(system, path, degree), lambda t, q, v, *_: values(t, q, v)[..., 0], None)
+
+
+def first_variation(system: Lagrangian, path: Any, variation: Any, degree: int) -> PathIntegral:
+    """Give ∫ (∂L/∂q η + ∂L/∂q̇ η̇) dt."""
+    values = along(system, 1)
+
+    def integrand(t: Any, q: Any, v: Any, eta: Any, rate: Any) -> Any:
+        return (values(t, q, v) * np.concatenate([eta, rate], axis=-1)).sum(axis=-1)
+
+    return _integral(*_varied(system, path, variation, degree, integrand))
+
+
+def second_variation(system: Lagrangian, path: Any, variation: Any, degree: int) -> PathIntegral:
+    """Give the integral of the second derivatives of L on (η, η̇)."""
+    values = hessian(system)
+
+    def integrand(t: Any, q: Any, v: Any, eta: Any, rate: Any) -> Any:
+        both = np.concatenate([eta, rate], axis=-1)
+        return np.einsum("...i,...ij,...j->...", both, values(t, q, v), both)
+
+    return _integral(*_varied(system, path, variation, degree, integrand))
+
+
+def _varied(
+    system: Lagrangian, path: Any, variation: Any, degree: int, integrand: Integrand
+) -> tuple[Path, Integrand, Any]:
+    """Give what is integrated, its variation as a path or a function."""
+    along_path, n = as_path(system, path, degree), len(system.coordinates)
+    if callable(variation):
+
+        def of(t: NDArray[np.float64]) -> NDArray[np.float64]:
+            found = np.asarray(variation(t.ravel()))
+            shape = (t.size,) if n == 1 and found.ndim == 1 else (t.size, n)
+            return float_array("variation", found, shape).reshape(*t.shape, n)
+
+        return along_path, integrand, of
+    count = len(along_path.t)
+    given = np.asarray(variation)
+    shape = (count,) if n == 1 and given.ndim == 1 else (count, n)
+    known = float_array("variation", variation, shape).reshape(count, n)
+    return along_path, integrand, through(along_path.t, known, along_path.coefficients.shape[1] - 1)
+
+
+def _integral(path: Path, integrand: Integrand, variation: Any) -> PathIntegral:
+    value, quadrature = _settled(path, integrand, variation)
+    if path.coarser is None:
+        return PathIntegral(value, quadrature, 0.0)
+    less = variation.coarser or variation if isinstance(variation, Path) else variation
+    return PathIntegral(value, quadrature, abs(value - _settled(path.coarser, integrand, less)[0]))
+
+
+def _settled(path: Path, integrand: Integrand, variation: Any) -> tuple[float, float]:
+    """Give the integral, and by how much halves of the last pieces have changed it or round-off may have."""
+    before, change, parts = np.nan, np.inf, 1
+    for _ in range(_MOST_HALVINGS + 1):
+        value, size = _sum(path, integrand, variation, parts)
+        noise = 4.0 * _EPS * size
+        last, change = change, abs(value - before) if parts > 1 else np.inf
+        # Where halving no longer helps, what is left is the round-off of L itself.
+        if change <= noise or (change <= 1e-9 * size and change > 0.25 * last):
+            return value, max(change, noise)
+        before, parts = value, 2 * parts
+    if change <= 1e-6 * size:
+        return value, change
+    raise ConvergenceError(
+        f"the integral along the path does not settle: finer pieces still change it by {change:.2g}; "
+        "is the variation smooth between the times of the path?"
+    )
+
+
+def _sum(path: Path, integrand: Integrand, variation: Any, parts: int) -> tuple[float, float]:
+    """Give the sum over all pieces in so many parts each, and that of sizes."""
+    count = len(path.t) - 1
+    pieces = np.repeat(np.arange(count), parts)
+    part = np.tile(np.arange(parts), count)[:, None]
+    u = (part + 0.5 * (_NODES + 1.0)) / parts
+    lengths = np.diff(path.t)[pieces] / parts
+    t = path.t[pieces][:, None] + u * np.diff(path.t)[pieces][:, None]
+    q, v = path.at(pieces, u)
+    if variation is None:
+        rates = integrand(t, q, v)
+    elif isinstance(variation, Path):
+        rates = integrand(t, q, v, *variation.at(pieces, u))
+    else:
+        eta = variation(t)
+        slope = np.einsum("ij,kjn->kin", _DERIVATIVE, eta) * (2.0 / lengths)[:, None, None]
+        rates = integrand(t, q, v, eta, slope)
+    shares = 0.5 * lengths[:, None] * _WEIGHTS * rates
+    return float(shares.sum()), float(np.abs(shares).sum())

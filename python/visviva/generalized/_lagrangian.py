@@ -8,12 +8,12 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._action import Actions
 from visviva.generalized._changes import legendre, routhian
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import sympy
 from visviva.generalized._system import GeneralizedSystem
+from visviva.generalized._variations import Variations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -30,7 +30,7 @@ _CONSISTENT = 1e-10
 
 
 @known_keywords
-class Lagrangian(GeneralizedSystem, SmallMotions, Actions):
+class Lagrangian(GeneralizedSystem, SmallMotions, Variations):
     """A system by its Lagrangian L(q, q̇, t).
 
     Parameters
