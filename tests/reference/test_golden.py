@@ -6,7 +6,7 @@ from pathlib import Path
 from golden_cases import CASES
 
 LATER = {
-    "the action and the Legendre transformation": ["G5.4-actions", "G5.4-second-variation", "G6.3-"],
+    "Legendre transformation by numbers": ["G6.3-"],
     "scattering by any potential": ["G8.41", "G8.39-square-well"],
 }
 

@@ -5,6 +5,8 @@ makes a graph of it, derives the equations there, and runs them; nothing is comp
 new derivation. The names here are those of `visviva` itself.
 """
 
+from visviva.generalized._accessory import AccessoryProblem
+from visviva.generalized._action import PathIntegral
 from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSection
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
 from visviva.generalized._hamiltonian import Hamiltonian
@@ -16,6 +18,7 @@ from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._trajectory import GeneralizedTrajectory
 
 __all__ = [
+    "AccessoryProblem",
     "Equilibrium",
     "Expression",
     "GeneralizedEnsemble",
@@ -26,6 +29,7 @@ __all__ = [
     "Hamiltonian",
     "Lagrangian",
     "Linearization",
+    "PathIntegral",
     "PoincareSection",
     "coordinate",
     "time",

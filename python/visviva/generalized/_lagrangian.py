@@ -13,6 +13,7 @@ from visviva.generalized._changes import legendre, routhian
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import sympy
 from visviva.generalized._system import GeneralizedSystem
+from visviva.generalized._variations import Variations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,7 +30,7 @@ _CONSISTENT = 1e-10
 
 
 @known_keywords
-class Lagrangian(GeneralizedSystem):
+class Lagrangian(Variations, GeneralizedSystem):
     """A system by its Lagrangian L(q, q̇, t).
 
     Parameters

@@ -1,0 +1,111 @@
+"""Paths q(t) between times at which they are known, as polynomials from each time to the next.
+
+The one idea: what is known of a path decides its polynomials, and everything else asks a path for q and q̇ at any time.
+A run tells places, velocities and accelerations, which determine polynomials of degree five; places alone are joined by
+those through the nearest of them.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array, whole_number
+from visviva.errors import InvalidInput
+from visviva.generalized._trajectory import GeneralizedTrajectory
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["Path", "as_path"]
+
+#: Polynomials of higher degree through many places swing between them.
+_HIGHEST_DEGREE = 9
+
+
+@dataclass(frozen=True, slots=True)
+class Path:
+    """A path in pieces: q = Σ cₖ uᵏ with u = (t − tᵢ)/(tᵢ₊₁ − tᵢ)."""
+
+    t: NDArray[np.float64]
+    #: Shape (T − 1, degree + 1, n).
+    coefficients: NDArray[np.float64]
+    #: The same path by what is known of it in polynomials of two degrees less: how well it is determined.
+    coarser: Path | None
+
+    def at(self, pieces: NDArray[np.intp], u: NDArray[np.float64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Give q and q̇, shapes (K, M, n), at fractions u, shape (K, M), of some pieces, shape (K,)."""
+        c = self.coefficients[pieces]
+        q = np.zeros((*u.shape, c.shape[2]))
+        slope = np.zeros_like(q)
+        for k in range(c.shape[1] - 1, -1, -1):
+            slope = slope * u[..., None] + q
+            q = q * u[..., None] + c[:, k, None, :]
+        return q, slope / np.diff(self.t)[pieces][:, None, None]
+
+
+def as_path(system: Lagrangian, path: Any, degree: int) -> Path:
+    """Give the path that a user means: a run of a Lagrangian, or times and places."""
+    n = len(system.coordinates)
+    if isinstance(path, GeneralizedTrajectory):
+        return _of_run(path, n)
+    if not isinstance(path, (tuple, list)) or len(path) != 2:
+        raise InvalidInput(
+            "path", f"expected a trajectory of a Lagrangian, or times and places as (t, q), got {type(path).__name__}"
+        )
+    t = _times(float_array("path[0]", path[0], (None,)))
+    given = np.asarray(path[1])
+    shape = (len(t),) if n == 1 and given.ndim == 1 else (len(t), n)
+    places = float_array("path[1]", path[1], shape).reshape(len(t), n)
+    return through(t, places, whole_number("degree", degree, low=1, high=_HIGHEST_DEGREE))
+
+
+def _times(t: NDArray[np.float64]) -> NDArray[np.float64]:
+    if len(t) < 2:
+        raise InvalidInput("path", f"expected at least two times, got {len(t)}")
+    if not (np.diff(t) > 0.0).all():
+        raise InvalidInput("path", "expected ascending times, each once")
+    return t
+
+
+def through(t: NDArray[np.float64], places: NDArray[np.float64], degree: int) -> Path:
+    """Give the path whose pieces are polynomials through the nearest degree + 1 places."""
+    count, degree = len(t), min(degree, len(t) - 1)
+    first = np.clip(np.arange(count - 1) - (degree - 1) // 2, 0, count - 1 - degree)
+    chosen = first[:, None] + np.arange(degree + 1)
+    # About the piece's first place, so that a large place costs the differences no digits.
+    u = (t[chosen] - t[:-1, None]) / np.diff(t)[:, None]
+    differences = places[chosen] - places[:-1, None, :]
+    coefficients = np.linalg.solve(u[:, :, None] ** np.arange(degree + 1), differences)
+    coefficients[:, 0] = places[:-1]
+    coarser = None if degree == 1 else through(t, places, max(1, degree - 2))
+    return Path(t, coefficients, coarser)
+
+
+def _of_run(out: GeneralizedTrajectory, n: int) -> Path:
+    system = out.system
+    if system._source.kind != "lagrangian":
+        raise InvalidInput("path", "expected a run of a Lagrangian; hamiltonian.lagrangian() makes one to run")
+    if len(system.coordinates) != n:
+        raise InvalidInput("path", f"expected a path of {n} coordinates, got one of {len(system.coordinates)}")
+    order = slice(None) if len(out.t) < 2 or out.t[0] < out.t[-1] else slice(None, None, -1)
+    t, states = _times(out.t[order]), out._states[order]
+    q, v = states[:, :n], states[:, n:]
+    a = system._model.rates(np.ascontiguousarray(t), np.ascontiguousarray(states), system._values[None, :])
+    h = np.diff(t)[:, None]
+    dq, v0, v1 = np.diff(q, axis=0), h * v[:-1], h * v[1:]
+    a0, a1 = h**2 * a[:-1] / 2, h**2 * a[1:] / 2
+    cubic = [q[:-1], v0, 3 * dq - 2 * v0 - v1, v0 + v1 - 2 * dq]
+    quintic = [
+        q[:-1],
+        v0,
+        a0,
+        10 * dq - 6 * v0 - 4 * v1 - 3 * a0 + a1,
+        -15 * dq + 8 * v0 + 7 * v1 + 3 * a0 - 2 * a1,
+        6 * dq - 3 * (v0 + v1) - a0 + a1,
+    ]
+    return Path(t, np.stack(quintic, axis=1), Path(t, np.stack(cubic, axis=1), None))
