@@ -6,7 +6,6 @@ from pathlib import Path
 from golden_cases import CASES
 
 LATER = {
-    "Legendre transformation by numbers": ["G6.3-"],
     "scattering by any potential": ["G8.41", "G8.39-square-well"],
 }
 

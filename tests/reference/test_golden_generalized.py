@@ -99,6 +99,46 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(pendulum.period(), expected["period"])
 
 
+@golden("G5.4-actions")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    m, F0, omega = given["m"], given["F0"], given["omega"]
+    for name, extra in (
+        ("S_free", lambda x: 0.0),
+        ("S_const_force", lambda x: F0 * x),
+        ("S_oscillator", lambda x: -m * omega**2 * x**2 / 2),
+    ):
+        system = vv.Lagrangian(
+            lambda q, v, _, extra=extra: m * v[0] ** 2 / 2 + extra(q[0]), ["x"], position=[given["x0"]]
+        )
+        thrown = system.boundary_value(given["T"], [given["x1"]])
+        found = thrown.action(thrown.run(t=np.linspace(0.0, given["T"], 45)))
+        close(found.value, expected[name])
+        assert thrown.accessory_problem(thrown.run(t=given["T"])).minimum
+
+
+@golden("G5.4-second-variation")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    oscillator = vv.systems.oscillator(k=given["m"] * given["omega"] ** 2, m=given["m"])
+    rest = np.linspace(0.0, given["T"], 9), np.zeros(9)
+    found = oscillator.second_variation(rest, lambda t: np.sin(np.pi * t / given["T"]))
+    close(found.value, expected["second_variation"])
+    assert not oscillator.accessory_problem(rest).minimum
+
+
+@golden("G6.3-legendre-quartic")
+def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
+    def quartic(q: Any, v: Any, t: Any, a: Any) -> Any:
+        return a * v[0] ** 4 / 4
+
+    system = vv.Lagrangian(quartic, ["q"], parameters={"a": given["a"]}, position=[0.0], velocity=[given["qdot"]])
+    close(system.momentum[0], expected["p"])
+    close(system.energy, expected["H"])
+    close(system.evaluate(quartic)[0], expected["L"])
+    # H of p as it should be, and back: L = p q̇ − H.
+    close(0.75 * given["a"] ** (-1 / 3) * system.momentum[0] ** (4 / 3), expected["H"])
+    close(system.momentum[0] * given["qdot"] - system.energy, expected["L"])
+
+
 @golden("G5.4-rotating-hoop")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     m, R, g, Omega = (given[name] for name in ("m", "R", "g", "Omega"))

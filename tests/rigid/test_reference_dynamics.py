@@ -2,6 +2,7 @@
 
 import json
 from pathlib import Path
+from typing import Any
 
 import mpmath
 import numpy as np
@@ -26,8 +27,19 @@ def alone(moments, spin, time) -> dict[str, np.ndarray]:
     return {column: np.array(values)[0, 0] for column, values in found.items()}
 
 
+def same(kept: Any, made: Any) -> bool:
+    """Whether two cases are one, but for the last bits of a turned inertia: a product of matrices is the machine's."""
+    if isinstance(kept, dict) and isinstance(made, dict):
+        return kept.keys() == made.keys() and all(same(kept[key], made[key]) for key in kept)
+    if isinstance(kept, list) and isinstance(made, list):
+        return len(kept) == len(made) and all(map(same, kept, made))
+    if isinstance(kept, float) and isinstance(made, float):
+        return abs(kept - made) <= 2.0**-50 * max(abs(kept), abs(made), 0.25)
+    return bool(kept == made)
+
+
 def test_the_file_is_of_these_cases() -> None:
-    assert {name: kept["case"] for name, kept in KEPT.items()} == CASES
+    assert same({name: kept["case"] for name, kept in KEPT.items()}, CASES)
 
 
 # Figures of the cases of Hairer and Vilmart's driver, of Gazebo and of MuJoCo, found elsewhere in 34 to 40 digits from

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+from numpy.typing import NDArray
 
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
@@ -21,13 +22,11 @@ from visviva.generalized._path import Path, as_path
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from numpy.typing import NDArray
-
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["AccessoryProblem", "accessory_problem"]
 
-_Array: TypeAlias = "NDArray[np.float64]"
+_Array: TypeAlias = NDArray[np.float64]
 
 #: Gauss's collocation of order 12.
 _STAGES = 6

@@ -69,13 +69,12 @@ class PathIntegral:
 
 def derivatives(system: Lagrangian, order: int) -> tuple[list[Node], list[int]]:
     """Give L, its 2n first or its 4n² second derivatives by the numbers of a state, as nodes."""
-    n = len(system.coordinates)
-    nodes, roots = system._model.expressions("function")
-    for _ in range(order):
-        # The last one of each row is that with respect to the time.
-        nodes, found = system._model.derivatives(nodes, roots)
-        roots = [root for place, root in enumerate(found) if place % (2 * n + 1) != 2 * n]
-    return nodes, roots
+    if order != 1:
+        return system._model.expressions("curvatures" if order else "function")
+    (nodes, roots), (further, others) = (system._model.expressions(name) for name in ("slopes", "conjugates"))
+    first = len(nodes)
+    moved = [(operation, [first + place for place in arguments], value) for operation, arguments, value in further]
+    return [*nodes, *moved], [*roots, *(first + root for root in others)]
 
 
 def along(system: Lagrangian, order: int) -> Callable[..., NDArray[np.float64]]:

@@ -11,6 +11,7 @@ from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, FrozenAttribute, Interrupted, InvalidInput
 from visviva.generalized._flow import Flow
+from visviva.generalized._methods import method_name
 from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, trees
 
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
     from visviva.typing import Progress
 
 __all__ = ["GeneralizedSystem"]
-
-GAUSS = ("gauss4", "gauss8", "gauss16")
 
 
 @known_keywords
@@ -214,7 +213,7 @@ class GeneralizedSystem(Flow):
             if value is not None and number(name, value) <= 0.0:
                 raise InvalidInput(name, f"expected a positive number, got {value!r}; the direction is that of t")
         asked = {
-            "method": _method(method, self._structure["separable"], dt, constrained=bool(self._constraints())),
+            "method": method_name(method, self._structure["separable"], dt, constrained=bool(self._constraints())),
             "span": (self.t0, float(outputs[-1])),
             "rtol": rtol,
             "dt": None if dt is None else number("dt", dt),
@@ -366,41 +365,6 @@ class GeneralizedSystem(Flow):
         from visviva.generalized._ensemble import GeneralizedEnsemble
 
         return GeneralizedEnsemble(self, position, second, parameters)
-
-
-def _method(method: object, separable: bool, dt: float | None, *, constrained: bool) -> str:
-    if isinstance(method, str) and method in GAUSS:
-        return method
-    from visviva.integrators import Method, methods
-
-    known: dict[str, Method] = {each.name: each for each in methods()}
-    if isinstance(method, Method):
-        method = method.name
-    if not isinstance(method, str) or method not in known:
-        if isinstance(method, str):
-            from visviva._keywords import did_you_mean
-
-            hint = did_you_mean(method, [*GAUSS, *known])
-        else:
-            hint = ""
-        raise InvalidInput(
-            "method", f"expected gauss16, gauss8, gauss4 or a method of vv.methods(), got {method!r}{hint}"
-        )
-    kind = known[method]
-    if kind.adaptive and dt is not None:
-        raise InvalidInput("dt", f"{method} chooses its own steps; leave dt out")
-    if not kind.adaptive and dt is None:
-        raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")
-    splits = not kind.adaptive and "a" not in kind.coefficients
-    if splits and not separable:
-        raise InvalidInput(
-            "method",
-            f"{method} needs accelerations that do not depend on velocities (H = p²/2 + V(q)); here they do. gauss16 "
-            "is symplectic all the same; dop853 works too",
-        )
-    if splits and constrained:
-        raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
-    return method
 
 
 def _restored(cls: type[GeneralizedSystem], source: Source, values: list[float], state: Any) -> GeneralizedSystem:

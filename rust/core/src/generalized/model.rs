@@ -196,6 +196,14 @@ impl Source {
 }
 
 impl Source {
+    /// The second derivatives of the function with respect to all numbers of a state, row by row.
+    pub fn curvatures(&mut self) -> Vec<Id> {
+        let (first, second) = self.halves();
+        let all: Vec<Id> = first.into_iter().chain(second).collect();
+        let slopes = self.graph.gradient(self.function, &all);
+        slopes.into_iter().flat_map(|slope| self.graph.gradient(slope, &all)).collect()
+    }
+
     /// The Poisson bracket Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q of two functions of (q, p).
     pub fn poisson(&mut self, f: Id, g: Id) -> Id {
         let (q, p) = self.halves();

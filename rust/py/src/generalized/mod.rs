@@ -113,8 +113,14 @@ impl GeneralizedModel {
         Ok(result)
     }
 
-    /// Expressions by name, as nodes and their places: `accelerations` with a linear system has `mass_matrix` and `right`.
+    /// Expressions by name, as nodes and their places; `curvatures` are the second derivatives of the function of a
+    /// Lagrangian with respect to all numbers of the state, row by row.
     fn expressions(&self, py: Python<'_>, name: &str) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
+        if name == "curvatures" {
+            let mut source = self.model.source.clone();
+            let roots = source.curvatures();
+            return Ok(shown(&source.graph, &roots));
+        }
         let model = &*self.model;
         let roots: Vec<Id> = match name {
             "function" => vec![model.source.function],

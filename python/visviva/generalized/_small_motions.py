@@ -1,0 +1,141 @@
+"""What a Lagrangian's motions are near an equilibrium, and over a period of one degree of freedom."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.generalized._analysis import Equilibrium, Linearization, equilibria, linearization
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
+__all__ = ["SmallMotions"]
+
+
+@known_keywords
+class SmallMotions:
+    """Base of `Lagrangian`: equilibria, normal modes, periods."""
+
+    __slots__ = ()
+
+    def linearize(self: Any, at: ArrayLike | None = None) -> Linearization:
+        """Small motions about an equilibrium.
+
+        Parameters
+        ----------
+        at : array_like, shape (n,), optional
+            The equilibrium; the start if not given.
+
+        Raises
+        ------
+        InvalidInput
+            For a place that is none.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.double_pendulum().linearize(at=[0.0, 0.0]).frequencies.round(6)
+        array([2.397199, 5.787351])
+        """
+        return linearization(self, at)
+
+    def equilibria(self: Any, near: ArrayLike | None = None) -> list[Equilibrium]:
+        """Places where the system stays, their stability and their frequencies.
+
+        Parameters
+        ----------
+        near : array_like, shape (S, n), optional
+            Where Newton's method starts; a grid over −π … π if not given, which may miss some.
+
+        Raises
+        ------
+        InvalidInput
+            For constraints: eliminate them.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> [e.stable for e in vv.systems.pendulum().equilibria()]
+        [False, True, False]
+        """
+        return equilibria(self, near)
+
+    def normal_modes(self: Any, near: ArrayLike | None = None) -> Linearization:
+        """Normal modes about the equilibrium nearest to a place.
+
+        Parameters
+        ----------
+        near : array_like, shape (n,), optional
+            Where Newton's method starts; the start if not given, or rest at zero.
+
+        Raises
+        ------
+        InvalidInput
+            If it finds no equilibrium.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.coupled_oscillators().normal_modes().frequencies.shape
+        (2,)
+        """
+        place = (
+            (self.position if self.position is not None else np.zeros(len(self.coordinates))) if near is None else near
+        )
+        found = equilibria(self, place)
+        if not found:
+            raise InvalidInput("near", "Newton's method finds no equilibrium from there; start it elsewhere")
+        return linearization(self, found[0].position)
+
+    def period(self: Any, *, turn: float | None = None) -> float:
+        """The period of a motion of one degree of freedom, by quadrature.
+
+        Parameters
+        ----------
+        turn : float, optional
+            Of a motion that does not turn back: how far the coordinate goes in a period, as 2π.
+
+        Raises
+        ------
+        InvalidInput
+            For several coordinates, an equilibrium, or a motion that does not turn back (with ``turn``: that does).
+
+        Examples
+        --------
+        >>> import math, visviva as vv
+        >>> abs(vv.systems.oscillator(k=4.0, m=1.0, position=[1.0]).period() - math.pi) < 1e-14
+        True
+        """
+        self._conserves()
+        return float(self._model.oscillation(self.t0, self._start(), self._values, turn)[2])
+
+    def action_variable(self: Any, *, turn: float | None = None) -> float:
+        """The action variable ∮ p dq / 2π of a motion of one degree of freedom.
+
+        Parameters
+        ----------
+        turn : float, optional
+            As in `period`.
+
+        Raises
+        ------
+        InvalidInput
+            As `period`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> oscillator = vv.systems.oscillator(k=4.0, m=1.0, position=[1.0])
+        >>> abs(oscillator.action_variable() - oscillator.energy / 2.0) < 1e-14
+        True
+        """
+        self._conserves()
+        return float(self._model.oscillation(self.t0, self._start(), self._values, turn)[3])
+
+    def _conserves(self: Any) -> None:
+        if not self._structure["conserves_energy"]:
+            raise InvalidInput("L", "a period needs energy to be conserved: no time, no dissipation, no further forces")
