@@ -57,32 +57,6 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(run(given["F0"], given["alpha"], 9 * given["m"], 3 * expected["t"]), point)
 
 
-@golden("G5.4-actions")
-def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    m, F0, omega = given["m"], given["F0"], given["omega"]
-    for name, extra in (
-        ("S_free", lambda x: 0.0),
-        ("S_const_force", lambda x: F0 * x),
-        ("S_oscillator", lambda x: -m * omega**2 * x**2 / 2),
-    ):
-        system = vv.Lagrangian(
-            lambda q, v, _, extra=extra: m * v[0] ** 2 / 2 + extra(q[0]), ["x"], position=[given["x0"]]
-        )
-        thrown = system.boundary_value(given["T"], [given["x1"]])
-        found = thrown.action(thrown.run(t=np.linspace(0.0, given["T"], 45)))
-        close(found.value, expected[name])
-        assert thrown.accessory_problem(thrown.run(t=given["T"])).minimum
-
-
-@golden("G5.4-second-variation")
-def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
-    oscillator = vv.systems.oscillator(k=given["m"] * given["omega"] ** 2, m=given["m"])
-    rest = np.linspace(0.0, given["T"], 9), np.zeros(9)
-    found = oscillator.second_variation(rest, lambda t: np.sin(np.pi * t / given["T"]))
-    close(found.value, expected["second_variation"])
-    assert not oscillator.accessory_problem(rest).minimum
-
-
 @golden("G5.10-pendulum")
 def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     pendulum = vv.systems.pendulum(g=given["g"], l=given["l"], position=[given["theta0"]])
