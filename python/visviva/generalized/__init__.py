@@ -11,6 +11,7 @@ from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSe
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian
+from visviva.generalized._legendre import LegendreTransform
 from visviva.generalized._nodes import Expression
 from visviva.generalized._plan import GeneralizedPlan
 from visviva.generalized._symbolic import coordinate, time
@@ -28,6 +29,7 @@ __all__ = [
     "GeneralizedTrajectory",
     "Hamiltonian",
     "Lagrangian",
+    "LegendreTransform",
     "Linearization",
     "PathIntegral",
     "PoincareSection",

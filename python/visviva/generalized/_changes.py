@@ -32,7 +32,12 @@ def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
 
     source = system._source
     to_hamiltonian = source.kind == "lagrangian"
-    nodes, roots = system._model.legendre()
+    try:
+        nodes, roots = system._model.legendre()
+    except InvalidInput as error:
+        if "quadratic" not in error.message:
+            raise
+        raise InvalidInput(error.argument, f"{error.message}; legendre_transform() evaluates it by numbers") from None
     symbols = source.symbols
     if symbols is not None:
         sp = sympy()

@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._analysis import PoincareSection
+    from visviva.generalized._legendre import LegendreTransform
     from visviva.generalized._nodes import Node
 
 __all__ = ["Flow"]
@@ -239,3 +240,24 @@ class Flow:
         found: Any = boundary_value(system, number("t", t), position, rtol=rtol)
         same: Self = found
         return same
+
+    def legendre_transform(self: Any) -> LegendreTransform:
+        """The Hamiltonian of any Lagrangian that is convex in the velocities, or the reverse, evaluated by numbers.
+
+        Where the function is quadratic, `Lagrangian.hamiltonian` and `Hamiltonian.lagrangian` give it as an expression.
+
+        Returns
+        -------
+        LegendreTransform
+            To be called with places and momenta (or velocities).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> quartic = vv.Lagrangian(lambda q, v, t: v[0] ** 4 / 4, ["x"])
+        >>> quartic.legendre_transform()([0.0], [8.0]).round(12)
+        np.float64(12.0)
+        """
+        from visviva.generalized._legendre import LegendreTransform
+
+        return LegendreTransform(self)
