@@ -51,7 +51,9 @@ proptest! {
             let found = branches.iter().flatten().find(|found| (found.0 - half.cm_angle()).abs() < 1e-6);
             if jacobian < 1e5 && jacobian > 1e-5 {
                 let found = found.expect("a branch");
-                prop_assert!((found.1 / jacobian - 1.0).abs() < 1e-9, "{} {jacobian}", found.1);
+                // Near the greatest angle it goes as the inverse root of the distance from there, which ε of the angle changes.
+                let known = 1e-9 + 4.0 * f64::EPSILON * jacobian * jacobian;
+                prop_assert!((found.1 / jacobian - 1.0).abs() < known, "{} {jacobian}", found.1);
                 let energies = product.energies(angle.min(circle.greatest_angle())).unwrap();
                 let energy = product.energy(half);
                 let nearest = energies.iter().flatten().map(|e| (e - energy).abs()).fold(9e99, f64::min);
