@@ -126,6 +126,7 @@ DRIVES = {
     "t^9": (lambda t: t**9, lambda t: t**11 / 110),
     "1 + t^9": (lambda t: 1 + t**9, lambda t: t**2 / 2 + t**11 / 110),
     "sin t": (np.sin, lambda t: t - np.sin(t)),
+    "t^30": (lambda t: (t / 2) ** 30, lambda t: 2**2 * (t / 2) ** 32 / 992),
     "late": (lambda t: np.exp(-50 * (t - 1.5) ** 2), lambda t: (t - 1.5) * math.sqrt(math.pi / 50)),
 }
 
@@ -140,6 +141,19 @@ def test_what_drives_from_rest_is_seen(name: str, method: str) -> None:
     assert abs(out.position[-1, 0] - exact(3.0)) <= 1e-10 * (1 + exact(3.0))
     many = body.ensemble(position=[[0.0], [1.0]]).run(3.0, method=method)
     assert np.array_equal(many.position[0], out.position)
+
+
+@pytest.mark.parametrize("span", [20.0, 2000.0])
+def test_a_wall_that_is_flat_to_all_orders_is_met(span: float) -> None:
+    """Of V = x²⁰/20 all that a series of order 20 looks at vanishes in the middle."""
+    billiard = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - q[0] ** 20 / 20, ["x"], position=[0.0], velocity=[1.0])
+    out = billiard.run(np.linspace(0.0, span, 201), method="taylor")
+    assert np.abs(out["x"]).max() < 10.0**0.05 + 1e-9
+    assert np.abs(out.energy - 0.5).max() < 1e-9
+    many = billiard.ensemble(velocity=[[1.0], [0.0], [-2.0]]).run(np.linspace(0.0, span, 201), method="taylor")
+    assert np.array_equal(many.position[0], out.position)
+    assert not many.position[1].any()
+    assert many.evaluations[0] == out.evaluations
 
 
 def test_a_longest_step_is_kept() -> None:

@@ -34,6 +34,10 @@ const FIRST_ORDER: usize = 6;
 const MARGIN: f64 = 0.01;
 /// Looser tolerances leave the series without its convergence.
 const LOOSEST: f64 = 1e-3;
+/// Of a step that nothing limited and that led astray, so much is tried next.
+const SHORTER: f64 = 1.0 / 8.0;
+/// Rates that are the same but for rounding differ by less, relative to how far they move a number.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// The first unit of numbers that are measured by themselves, as a part of the whole time.
 const FIRST_UNIT: f64 = 1.0 / 1024.0;
 /// How far numbers go in a step is found from the step, and that from how far they go: each time with a seventh of the error.
@@ -47,6 +51,8 @@ pub struct TaylorStep<S: Element> {
     unit: S,
     /// The shortest unit that was too long for this step.
     too_long: S,
+    /// The longest step after one that nothing limited, and that led astray.
+    bound: S,
     /// The step tried last.
     h: S,
     rule: Rule<S>,
@@ -63,8 +69,9 @@ impl<S: Controlled> TaylorStep<S> {
         // The step is chosen before it is taken; what settles it leaves it alone.
         rule.limits = (SHRINK, 1.0);
         let jet = Jet::new(len, orders.highest);
-        let too_long = S::splat(f64::INFINITY);
-        Self { orders, jet, unit: S::one(), too_long, h: S::zero(), rule, margin: 1.0, next: state.clone() }
+        let none = S::splat(f64::INFINITY);
+        let (unit, h, next) = (S::one(), S::zero(), state.clone());
+        Self { orders, jet, unit, too_long: none, bound: none, h, rule, margin: 1.0, next }
     }
 
     /// The order for a tolerance.
@@ -119,6 +126,46 @@ impl<S: Controlled> TaylorStep<S> {
             highest -= 2;
         }
         inverse
+    }
+
+    /// Whether the rates at the end of a step are not those of the polynomial that led there. Where all the last coefficients
+    /// vanish nothing limits a step, and a force may still begin on the way, as of a wall that is flat to all their orders.
+    fn leads_astray(
+        &self,
+        elapsed: &S,
+        norm: &Norm<S>,
+        system: &mut dyn System<S>,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<S::Mask> {
+        let Jet { q, v, len, order, unit, .. } = &self.jet;
+        let (next, t, x) = (&self.next, *elapsed + self.h, self.h / *unit);
+        let mut rates = vec![S::zero(); *len];
+        // What a rate moves a number by, in the unit of time.
+        let (of_rates, moves) = match next.form() {
+            Form::FirstOrder(_) => {
+                system.rate(&t, next.all().0, &mut rates, ticker)?;
+                (q, *unit)
+            }
+            Form::SecondOrder(_) => {
+                system.acceleration(&t, next.q(), next.v(), &mut rates, ticker)?;
+                (v, *unit * *unit)
+            }
+        };
+        // Rounding leads nobody astray.
+        let tolerance = norm.rtol.max(S::splat(ROUNDING));
+        let mut astray = S::Mask::splat(false);
+        for (number, &rate) in rates.iter().enumerate() {
+            let (mut slope, mut goes, mut power) = (S::zero(), S::zero(), S::one());
+            for order in 1..=*order {
+                let coefficient = of_rates[order * len + number];
+                slope = (S::splat(order as f64) * coefficient).multiply_add(power, slope);
+                power = power * x;
+                goes = (q[order * len + number] * power).abs().max(goes);
+            }
+            let missed = (rate * moves - slope).abs() * (x * x).max(S::one());
+            astray = astray.or(missed.less_equal(tolerance * goes).not());
+        }
+        Ok(astray)
     }
 
     /// The state at the time `x` after the expansion.
@@ -176,6 +223,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         self.margin = share.rough_power(1.0 / self.jet.order as f64);
         let span = (clock.end - clock.elapsed).abs().min(self.rule.max_step);
         self.too_long = S::select(fresh, S::splat(f64::INFINITY), self.too_long);
+        self.bound = S::select(fresh, S::splat(f64::INFINITY), self.bound);
         if norm.blocks.is_empty() {
             let unit = (span * S::splat(FIRST_UNIT)).power_below();
             self.unit = S::select(fresh, unit, self.unit);
@@ -209,7 +257,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
             inverse: &inverse,
             units: [&self.unit, &least],
             margin: self.margin,
-            longest: &self.rule.max_step,
+            longest: &self.rule.max_step.min(self.bound),
             times: [&clock.elapsed, &clock.end],
             h: &clock.h,
             running,
@@ -222,8 +270,17 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let again = far.less(longest.min(self.too_long)).and(sound);
         let size2 = S::select(again, S::splat(HUGE), size2);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
+        let unlimited = inverse.less_equal(S::zero()).and(size2.less(S::one())).and(running);
+        let astray = if norm.blocks.is_empty() && unlimited.any() {
+            unlimited.and(self.leads_astray(&clock.elapsed, norm, system, ticker)?)
+        } else {
+            S::Mask::splat(false)
+        };
+        self.bound = S::select(astray, self.h.abs() * S::splat(SHORTER), self.bound);
+        let size2 = S::select(astray, S::splat(HUGE), size2);
         let outcome = S::settle(clock, running, size2, &self.rule);
         self.too_long = S::select(outcome.accepted, S::splat(f64::INFINITY), self.too_long);
+        self.bound = S::select(outcome.accepted, S::splat(f64::INFINITY), self.bound);
         let next = S::select(again, far, S::select(sound, longest, clock.h));
         self.unit = S::select(running, next.power_below(), self.unit);
         Ok(outcome)
