@@ -8,6 +8,7 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
@@ -204,6 +205,38 @@ class Hamiltonian(GeneralizedSystem):
         found, places = self._model.poisson(nodes, (roots[0], roots[1]))
         first, second, parameters = self._source.symbols
         return trees(found, places, [*first, *second], list(parameters))[0]
+
+    def is_canonical(self, transformation: Any) -> CanonicalTest:
+        """Whether a transformation (q, p) → (Q, P) is canonical: MᵀJM = J for its derivatives M.
+
+        Parameters
+        ----------
+        transformation : sequence or callable
+            Q, then P: 2n expressions of coordinates, momenta, time and parameters, or a function
+            ``(q, p, t, **parameters)`` that gives all of them.
+
+        Returns
+        -------
+        CanonicalTest
+            True or false, with the largest residual.
+
+        Raises
+        ------
+        InvalidInput
+            For another number of expressions, or what the core does not know.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (9.55).
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> H = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"])
+        >>> bool(H.is_canonical(lambda q, p, t: [np.arctan2(q[0], p[0]), (p[0] ** 2 + q[0] ** 2) / 2]))
+        True
+        """
+        return canonical_test(self, transformation)
 
     def _check_start(self) -> None:
         rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]

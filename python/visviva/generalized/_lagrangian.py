@@ -9,6 +9,7 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._changes import legendre, routhian
+from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import sympy
@@ -30,7 +31,7 @@ _CONSISTENT = 1e-10
 
 
 @known_keywords
-class Lagrangian(GeneralizedSystem, SmallMotions, Variations):
+class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     """A system by its Lagrangian L(q, q̇, t).
 
     Parameters

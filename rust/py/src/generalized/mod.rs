@@ -157,6 +157,30 @@ impl GeneralizedModel {
         Ok(shown(&source.graph, &[bracket]))
     }
 
+    /// Each of these nodes, and its derivatives with respect to the numbers of the state and the time, as nodes.
+    fn derivatives(
+        &self,
+        py: Python<'_>,
+        nodes: Vec<NodeParts>,
+        roots: Vec<u32>,
+    ) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
+        let mut source = self.model.source.clone();
+        let (first, second) = source.halves();
+        let mut derive = || {
+            let ids = added(&mut source.graph, &nodes)?;
+            let time = source.graph.time();
+            let of: Vec<Id> = first.iter().chain(&second).copied().chain([time]).collect();
+            let mut found = Vec::with_capacity((of.len() + 1) * roots.len());
+            for root in all_chosen(&ids, &roots)? {
+                found.push(root);
+                found.extend(source.graph.gradient(root, &of));
+            }
+            Ok(found)
+        };
+        let found = derive().map_err(|error: Error| raised(py, error))?;
+        Ok(shown(&source.graph, &found))
+    }
+
     /// Expressions at states (N, 2n) and times (N).
     fn evaluate<'py>(
         &self,
