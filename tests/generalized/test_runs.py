@@ -119,8 +119,31 @@ def test_every_method_of_the_registry(name: str) -> None:
             rotating.run(times, method=name, **how)
 
 
+# Polynomials and what begins late: the first coefficients of all of these vanish.
+DRIVES = {
+    "t": (lambda t: t, lambda t: t**3 / 6),
+    "t^4": (lambda t: t**4, lambda t: t**6 / 30),
+    "t^9": (lambda t: t**9, lambda t: t**11 / 110),
+    "1 + t^9": (lambda t: 1 + t**9, lambda t: t**2 / 2 + t**11 / 110),
+    "sin t": (np.sin, lambda t: t - np.sin(t)),
+    "late": (lambda t: np.exp(-50 * (t - 1.5) ** 2), lambda t: (t - 1.5) * math.sqrt(math.pi / 50)),
+}
+
+
+@pytest.mark.parametrize("method", ["taylor", "gauss16", "dop853"])
+@pytest.mark.parametrize("name", DRIVES)
+def test_what_drives_from_rest_is_seen(name: str, method: str) -> None:
+    drive, exact = DRIVES[name]
+    body = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 + drive(t) * q[0], ["x"], position=[0.0])
+    out = body.run(3.0, method=method)
+    # What is left of a Gaussian 1.5 from its middle is e^−112.
+    assert abs(out.position[-1, 0] - exact(3.0)) <= 1e-10 * (1 + exact(3.0))
+    many = body.ensemble(position=[[0.0], [1.0]]).run(3.0, method=method)
+    assert np.array_equal(many.position[0], out.position)
+
+
 def test_a_longest_step_is_kept() -> None:
-    for method in ("gauss16", "dop853"):
+    for method in ("gauss16", "dop853", "taylor"):
         out = vv.systems.pendulum().run(10.0, method=method, max_step=0.05)
         assert out.longest_step <= 0.05 * (1 + 1e-13)
         assert out.steps >= 200

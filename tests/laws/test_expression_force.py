@@ -66,8 +66,8 @@ def abs_of(r: Any) -> Any:
 def test_what_there_is_moves_as_the_same_expression(name: str, method: dict[str, Any]) -> None:
     own, *expressions = TWINS[name]
     how = {"rtol": 1e-12, **method} if "dt" not in method else method
-    if (name, how["method"]) == ("central", "taylor"):
-        # On a line through the center a square root turns sharply, and a series does not tell.
+    if name in ("central", "drive") and how["method"] == "taylor":
+        # On a line through the center a square root turns sharply, and a drive may not have begun: no series tells.
         with pytest.raises(
             vv.InvalidInput, match="needs the Taylor series of every force, and ExpressedForce has none"
         ):

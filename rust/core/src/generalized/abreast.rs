@@ -117,7 +117,7 @@ impl<'a> Abreast<'a> {
             Form::FirstOrder(_) => State::first_order(y0),
             Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
         };
-        let max_step = Lanes::splat(request.max_step.unwrap_or(f64::INFINITY));
+        let max_step = Lanes::splat(request.longest_step(model));
         let Integrator::Table(method) = request.integrator else {
             return Err(Error::Internal("stages and trajectories cannot both be the lanes".to_owned()));
         };

@@ -123,7 +123,18 @@ pub(super) fn too_many_steps(most: u64) -> String {
     format!("{most} steps do not reach the end; pass a larger max_steps")
 }
 
+/// Of equations that time enters, chosen steps are no longer than this part of the run: where nothing has begun yet, no method
+/// can tell how long nothing will.
+const LONGEST_WITH_TIME: f64 = 1.0 / 128.0;
+
 impl Request {
+    /// The longest step of a method that chooses its own.
+    pub(super) fn longest_step(&self, model: &Model) -> f64 {
+        let asked = self.max_step.unwrap_or(f64::INFINITY);
+        let longest = (self.span.1 - self.span.0).abs() * LONGEST_WITH_TIME;
+        if model.needs().time && longest < asked { longest } else { asked }
+    }
+
     /// The step of a method that has a fixed one, with the sign of time.
     pub(super) fn fixed_step(&self, method: &Method) -> Result<f64> {
         let missing = || Error::invalid("dt", format!("{} needs a step dt", method.name));
@@ -165,7 +176,7 @@ pub fn solve(
         Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
     };
     let norm = norm(request, y0.len());
-    let max_step = request.max_step.unwrap_or(f64::INFINITY);
+    let max_step = request.longest_step(model);
     let mut crossings = request
         .section
         .as_ref()

@@ -110,8 +110,10 @@ impl<S: Controlled> TaylorStep<S> {
     fn inverse_step(&self, running: S::Mask, state: &State<S>, elapsed: &S, norm: &Norm<S>) -> S {
         let mut inverse = S::zero();
         let mut highest = self.jet.order;
-        // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact.
-        while highest > 3 && inverse.less_equal(S::zero()).and(running).any() {
+        // Where two coefficients vanish, those before them tell; a motion that ends with its square is exact, and where
+        // numbers are measured by how far they go, one that ends with half of all coefficients.
+        let last = if norm.blocks.is_empty() { self.jet.order / 2 } else { 3 };
+        while highest > last && inverse.less_equal(S::zero()).and(running).any() {
             let found = self.inverse_step_of([highest, highest - 1], state, elapsed, norm);
             inverse = S::select(inverse.less_equal(S::zero()), found, inverse);
             highest -= 2;

@@ -95,9 +95,10 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
     let compiled = |ids: &[Id]| compile(&graph, inputs, &[], &outputs(ids)).map(Arc::new);
     Ok(Expressions {
         force: compiled(&force)?,
+        // A drive that begins more gently than any power that a series has would not be seen.
         series: match Series::sharp(&graph, &force) {
-            None => Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?)),
-            Some(_) => None,
+            None if !needs.time => Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?)),
+            _ => None,
         },
         potential: if potential { Some(compiled(&roots)?) } else { None },
         parameters: parameters.to_vec(),

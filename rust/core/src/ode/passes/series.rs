@@ -47,7 +47,8 @@ pub(in crate::ode) struct OwnSizes<'a, S> {
     pub(in crate::ode) tolerance: &'a S,
 }
 
-/// Orders that tell how far a number goes: a place, a velocity and an acceleration may vanish, but seldom all of them.
+/// Orders that tell how far a number goes. They may all vanish, as of a body that a drive moves from rest: then the largest
+/// of those up to the ones that are measured tells, lest what is measured be infinite.
 const TELLING: usize = 3;
 
 impl<S: Element> Pass<S> for OwnSizes<'_, S> {
@@ -59,7 +60,7 @@ impl<S: Element> Pass<S> for OwnSizes<'_, S> {
         let mut largest = [V::zero(); 2];
         for number in 0..self.len {
             let (mut size, mut later, mut power) = (V::zero(), V::zero(), V::one());
-            for order in 1..=self.orders[0] / 2 {
+            for order in 1..=self.orders[1] {
                 power = power * step;
                 let goes = (blocks[order * self.len + number] * power).abs();
                 if order <= TELLING {
