@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["Hamiltonian"]
@@ -96,68 +95,6 @@ class Hamiltonian(GeneralizedSystem):
     def equations(self) -> tuple[list[Any], list[Any]]:
         """q̇ and ṗ as expressions of SymPy."""
         return self._shown("conjugates"), self._shown("slopes")
-
-    def at(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, float] | None = None,
-        t0: float | None = None,
-    ) -> Self:
-        """The same system from another start, or with other parameters; nothing is derived again.
-
-        Parameters
-        ----------
-        position, momentum : array_like, shape (n,), optional
-            The new start.
-        parameters : dict, optional
-            New values of some parameters.
-        t0 : float, optional
-            The time of the start.
-
-        Raises
-        ------
-        InvalidInput
-            For another shape, or a parameter that is not there.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.henon_heiles().at(momentum=[0.1, 0.2]).momentum
-        array([0.1, 0.2])
-        """
-        return self._at(position, momentum, parameters, t0)
-
-    def ensemble(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
-    ) -> GeneralizedEnsemble:
-        """Many copies, from starts or with parameters of their own.
-
-        Parameters
-        ----------
-        position, momentum : array_like, shape (B, n), optional
-            The starts.
-        parameters : dict, optional
-            Values (B,) of some parameters.
-
-        Raises
-        ------
-        InvalidInput
-            For shapes that do not go together, or parameters that are not there.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> many = vv.systems.henon_heiles().ensemble(momentum=np.linspace(0.1, 0.5, 10)[:, None] * [0.6, 0.8])
-        >>> many.run(t=10.0).position.shape
-        (10, 2, 2)
-        """
-        return self._ensemble(position, momentum, parameters)
 
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian of the system, at the same state.
