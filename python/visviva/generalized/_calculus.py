@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 __all__ = ["VANISHES", "Calculus", "listed", "random_states"]
 
 #: A sum that is less than this of what it is made of, at all states that are looked at, vanishes.
-VANISHES = 1e-11
+VANISHES = 1e-12
 _STATES = 64
 
 
