@@ -131,3 +131,20 @@ def test_it_is_frozen_and_pickles() -> None:
     assert pickle.loads(pickle.dumps(H))([0.0], [1.2393]) == H([0.0], [1.2393])
     with pytest.raises(vv.errors.FrozenAttribute, match="frozen"):
         H.system = quartic(2.0)
+
+
+def test_starts_by_momenta_and_by_velocities() -> None:
+    """A Lagrangian takes momenta, a Hamiltonian velocities, at the place, time and parameters of the new start."""
+    system = vv.Lagrangian(
+        lambda q, v, t, m: m * np.exp(t) * (v[0] ** 2 / 2 + v[0] ** 4 / 4) * (1 + q[0] ** 2), ONE, parameters={"m": 1.0}
+    )
+    moved = system.at(position=[2.0], momentum=[3.0], parameters={"m": 0.1}, t0=1.0)
+    assert moved.momentum == pytest.approx([3.0], rel=1e-14)
+    assert (moved.t0, moved.parameters["m"], moved.position[0]) == (1.0, 0.1, 2.0)
+    many = system.ensemble(position=[[0.0], [1.0]], momentum=[[1.0], [3.0]])
+    assert [many[k].momentum[0] for k in range(2)] == pytest.approx([1.0, 3.0], rel=1e-14)
+    same = system.at(position=[0.5]).ensemble(momentum=[[1.0], [3.0]])
+    assert [(same[k].position[0], round(same[k].momentum[0], 12)) for k in range(2)] == [(0.5, 1.0), (0.5, 3.0)]
+    double = vv.systems.double_pendulum(position=[0.3, 0.9])
+    hamiltonian = double.hamiltonian().at(velocity=[0.5, -0.2])
+    assert hamiltonian.momentum == pytest.approx(double.at(velocity=[0.5, -0.2]).momentum, rel=1e-14)

@@ -15,7 +15,7 @@ import visviva as vv
 t = sp.Symbol("t")
 theta, phi = vv.coordinate("theta"), vv.coordinate("phi")
 rate, turning = theta.diff(t), phi.diff(t)
-x, y = vv.coordinate("x y")
+x, y, z = vv.coordinate("x y z")
 vx, vy = x.diff(t), y.diff(t)
 g, m = sp.symbols("g m")
 L = rate**2 / 2 + g * sp.cos(theta)
@@ -29,6 +29,11 @@ def lagrangian(function: Any, coordinates: Any = (theta,), **further: Any) -> Ca
 
 def plane(function: Any = FREE, **further: Any) -> Callable[[], Any]:
     return lambda: vv.Lagrangian(function, [x, y], **{"position": [0.0, 0.0], **further}).run(1.0)
+
+
+def space(**further: Any) -> Callable[[], Any]:
+    start = {"position": [0.0, 0.0, 0.0], **further}
+    return lambda: vv.Lagrangian(FREE + z.diff(t) ** 2, [x, y, z], **start).run(1.0)
 
 
 def one(function: Callable[..., Any], **further: Any) -> Callable[[], Any]:
@@ -127,6 +132,19 @@ REFUSED = [
     (plane(constraints=[x, y, x + y]), "constraints", "3 constraints leave nothing of 2 coordinates"),
     (plane(constraints=[x + y, 2 * x + 2 * y]), "constraints", "constraints 0 and 1 are dependent at the start"),
     (plane(constraints=[x + y], nonholonomic=[vx + vy]), "constraints", "constraints 0 and 1 are dependent"),
+    (plane(constraints=[x + y, 2 * x + 2 * y - 1]), "constraints", "constraints 0 and 1 do not agree"),
+    (plane(constraints=[x - t, x - 2 * t], position=[0.0, 0.0]), "constraints", "0 and 1 do not agree"),
+    (plane(constraints=[x + y], nonholonomic=[vx + vy - 1]), "constraints", "0 and 1 do not agree"),
+    (
+        plane(constraints=[x + y - 1, x**2 + 2 * x * y + y**2 - 1], position=[1.0, 0.0]),
+        "constraints",
+        "0 and 1 are dep",
+    ),
+    (space(constraints=[z, x + z, 3 * x]), "constraints", "constraint 2 follows from constraints 0, 1 at"),
+    (space(constraints=[z - 1, x + z, 3 * x - 3]), "constraints", "constraints 0, 1 and 2 do not agree"),
+    (space(constraints=[x + z, x - z, z + y, 3 * z]), "constraints", "4 constraints leave nothing of 3"),
+    (space(constraints=[x, x + z], nonholonomic=[2 * vx]), "constraints", "constraints 0 and 2 are dependent"),
+    (space(constraints=[x, x + z], nonholonomic=[2 * vx - 1]), "constraints", "0 and 2 do not agree"),
     (plane(constraints=[x * y]), "constraints", "constraint 0 has no gradient at the start"),
     (plane(constraints=[x + 0.5]), "position", r"constraint 0 is 0\.5 at the start .* consistent='project'"),
     (plane(constraints=[y, x], velocity=[2.0, 0.0]), "velocity", "the rate of constraint 1 is 2 at the start"),
@@ -165,7 +183,12 @@ REFUSED = [
         "parameters",
         r"there is no parameter 'q'; there are \['g', 'l', 'm'\]",
     ),
-    (lambda: PENDULUM.at(momentum=[1.0]), "momentum", "expected a keyword of at"),
+    (lambda: PENDULUM.at(speed=[1.0]), "speed", "expected a keyword of at"),
+    (lambda: PENDULUM.at(velocity=[1.0], momentum=[1.0]), "momentum", "expected velocity or momentum, got both"),
+    (lambda: PENDULUM.at(momentum=[1.0, 2.0]), "momentum", r"expected shape \(1,\)"),
+    (lambda: PENDULUM.hamiltonian().at(velocity=[1.0], momentum=[1.0]), "velocity", "got both"),
+    (lambda: PENDULUM.ensemble(momentum=[[1.0], [2.0]], parameters={"l": [1.0, 2.0]}), "momentum", "does not follow"),
+    (lambda: PENDULUM.ensemble(position=[[1.0]], momentum=[[1.0], [2.0]]), "momentum", r"\(B, 1\) with B = 1"),
     (PENDULUM.ensemble, "position", "velocity or parameters of the copies, got none"),
     (lambda: PENDULUM.ensemble(position=[[1.0], [2.0]], velocity=[[1.0]]), "velocity", r"\(B, 1\) with B = 2"),
     (lambda: PENDULUM.ensemble(position=np.zeros((0, 1))), "position", "expected at least one copy, got none"),

@@ -8,11 +8,13 @@ new derivation. The names here are those of `visviva` itself.
 from visviva.generalized._accessory import AccessoryProblem
 from visviva.generalized._action import PathIntegral
 from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSection
+from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian
 from visviva.generalized._legendre import LegendreTransform
 from visviva.generalized._nodes import Expression
+from visviva.generalized._noether import NoetherSymmetry
 from visviva.generalized._plan import GeneralizedPlan
 from visviva.generalized._symbolic import coordinate, time
 from visviva.generalized._system import GeneralizedSystem
@@ -20,6 +22,7 @@ from visviva.generalized._trajectory import GeneralizedTrajectory
 
 __all__ = [
     "AccessoryProblem",
+    "CanonicalTest",
     "Equilibrium",
     "Expression",
     "GeneralizedEnsemble",
@@ -31,6 +34,7 @@ __all__ = [
     "Lagrangian",
     "LegendreTransform",
     "Linearization",
+    "NoetherSymmetry",
     "PathIntegral",
     "PoincareSection",
     "coordinate",

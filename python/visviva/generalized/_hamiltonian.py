@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
@@ -18,7 +19,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["Hamiltonian"]
@@ -96,68 +96,6 @@ class Hamiltonian(GeneralizedSystem):
         """q̇ and ṗ as expressions of SymPy."""
         return self._shown("conjugates"), self._shown("slopes")
 
-    def at(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, float] | None = None,
-        t0: float | None = None,
-    ) -> Self:
-        """The same system from another start, or with other parameters; nothing is derived again.
-
-        Parameters
-        ----------
-        position, momentum : array_like, shape (n,), optional
-            The new start.
-        parameters : dict, optional
-            New values of some parameters.
-        t0 : float, optional
-            The time of the start.
-
-        Raises
-        ------
-        InvalidInput
-            For another shape, or a parameter that is not there.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.henon_heiles().at(momentum=[0.1, 0.2]).momentum
-        array([0.1, 0.2])
-        """
-        return self._at(position, momentum, parameters, t0)
-
-    def ensemble(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
-    ) -> GeneralizedEnsemble:
-        """Many copies, from starts or with parameters of their own.
-
-        Parameters
-        ----------
-        position, momentum : array_like, shape (B, n), optional
-            The starts.
-        parameters : dict, optional
-            Values (B,) of some parameters.
-
-        Raises
-        ------
-        InvalidInput
-            For shapes that do not go together, or parameters that are not there.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> many = vv.systems.henon_heiles().ensemble(momentum=np.linspace(0.1, 0.5, 10)[:, None] * [0.6, 0.8])
-        >>> many.run(t=10.0).position.shape
-        (10, 2, 2)
-        """
-        return self._ensemble(position, momentum, parameters)
-
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian of the system, at the same state.
 
@@ -204,6 +142,38 @@ class Hamiltonian(GeneralizedSystem):
         found, places = self._model.poisson(nodes, (roots[0], roots[1]))
         first, second, parameters = self._source.symbols
         return trees(found, places, [*first, *second], list(parameters))[0]
+
+    def is_canonical(self, transformation: Any) -> CanonicalTest:
+        """Whether a transformation (q, p) → (Q, P) is canonical: MᵀJM = J for its derivatives M.
+
+        Parameters
+        ----------
+        transformation : sequence or callable
+            Q, then P: 2n expressions of coordinates, momenta, time and parameters, or a function
+            ``(q, p, t, **parameters)`` that gives all of them.
+
+        Returns
+        -------
+        CanonicalTest
+            True or false, with the largest residual.
+
+        Raises
+        ------
+        InvalidInput
+            For another number of expressions, or what the core does not know.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (9.55).
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> H = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"])
+        >>> bool(H.is_canonical(lambda q, p, t: [np.arctan2(q[0], p[0]), (p[0] ** 2 + q[0] ** 2) / 2]))
+        True
+        """
+        return canonical_test(self, transformation)
 
     def _check_start(self) -> None:
         rates = self._model.rates(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0]

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._changes import legendre, routhian
+from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import sympy
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._hamiltonian import Hamiltonian
 
 __all__ = ["Lagrangian"]
@@ -30,7 +30,7 @@ _CONSISTENT = 1e-10
 
 
 @known_keywords
-class Lagrangian(GeneralizedSystem, SmallMotions, Variations):
+class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     """A system by its Lagrangian L(q, q̇, t).
 
     Parameters
@@ -207,68 +207,6 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations):
     def degrees_of_freedom(self) -> int:
         """Coordinates less constraints, which are independent of each other."""
         return len(self.coordinates) - self._constraints()
-
-    def at(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        velocity: ArrayLike | None = None,
-        parameters: Mapping[Any, float] | None = None,
-        t0: float | None = None,
-    ) -> Self:
-        """The same system from another start, or with other parameters; nothing is derived again.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (n,), optional
-            The new start.
-        parameters : dict, optional
-            New values of some parameters.
-        t0 : float, optional
-            The time of the start.
-
-        Raises
-        ------
-        InvalidInput
-            For another shape, or a parameter that is not there.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.pendulum().at(position=[2.0]).position
-        array([2.])
-        """
-        return self._at(position, velocity, parameters, t0)
-
-    def ensemble(
-        self,
-        *,
-        position: ArrayLike | None = None,
-        velocity: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
-    ) -> GeneralizedEnsemble:
-        """Many copies, from starts or with parameters of their own.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (B, n), optional
-            The starts.
-        parameters : dict, optional
-            Values (B,) of some parameters.
-
-        Raises
-        ------
-        InvalidInput
-            For shapes that do not go together, or parameters that are not there.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> many = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 3.0, 30)[:, None])
-        >>> many.run(t=10.0).position.shape
-        (30, 2, 1)
-        """
-        return self._ensemble(position, velocity, parameters)
 
     def _check_start(self) -> None:
         state = self._start()

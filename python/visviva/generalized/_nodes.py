@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from inspect import signature
 from math import isfinite
-from typing import TYPE_CHECKING, Any, NoReturn, TypeAlias
+from typing import TYPE_CHECKING, Any, NoReturn, SupportsFloat, SupportsIndex, TypeAlias
 
 import numpy as np
 
@@ -77,19 +77,10 @@ class Expression:
             if isinstance(other, Expression):
                 places.append(other._place)
             else:
-                try:
-                    number = float(other)  # type: ignore[arg-type]
-                except (TypeError, ValueError):
-                    raise InvalidInput(
-                        "L", f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it"
-                    ) from None
-                places.append(self._nodes.constant(_finite("L", number)))
+                places.append(self._nodes.constant(_number(other)))
         if swapped:
             places.reverse()
         return Expression(self._nodes, self._nodes.add(operation, tuple(places)))
-
-    def _negative(self, other: object) -> object:
-        return other._with("product", -1.0) if isinstance(other, Expression) else -other  # type: ignore[operator]
 
     def __add__(self, other: object) -> Expression:
         return self._with("sum", other)
@@ -97,7 +88,7 @@ class Expression:
     __radd__ = __add__
 
     def __sub__(self, other: object) -> Expression:
-        return self._with("sum", self._negative(other))
+        return self._with("sum", other._with("product", -1.0) if isinstance(other, Expression) else -_number(other))
 
     def __rsub__(self, other: object) -> Expression:
         return self._with("product", -1.0)._with("sum", other)
@@ -184,6 +175,16 @@ def check_call(argument: str, function: Callable[..., Any], places: Iterable[str
         raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
     except ValueError:  # one that does not tell what it takes
         pass
+
+
+def _number(other: object) -> float:
+    """Give what is no expression as a number."""
+    if isinstance(other, (SupportsFloat, SupportsIndex)):
+        try:
+            return _finite("L", float(other))
+        except TypeError:  # an array of several
+            pass
+    raise InvalidInput("L", f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it")
 
 
 def _finite(argument: str, number: float) -> float:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -12,7 +12,8 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-    from visviva.generalized._system import GeneralizedSystem
+    from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["phase_portrait"]
 
@@ -21,13 +22,14 @@ _LINES = 24
 
 
 def phase_portrait(
-    system: GeneralizedSystem,
+    system: Lagrangian | Hamiltonian,
     position: tuple[float, float],
     momentum: tuple[float, float],
     points: int,
     ax: Axes | None,
 ) -> Axes:
     """Draw the portrait of a system of one degree of freedom."""
+    from visviva.generalized._hamiltonian import Hamiltonian
     from visviva.plot import axes_or_new
 
     if len(system.coordinates) != 1:
@@ -43,7 +45,7 @@ def phase_portrait(
     for name, value in zip(("position", "momentum"), ranges, strict=True):
         if not value[0] < value[1]:
             raise InvalidInput(name, f"expected the smaller end first, got {tuple(value.tolist())}")
-    other: Any = system if system._source.kind == "hamiltonian" else system.hamiltonian()  # type: ignore[attr-defined]
+    other = system if isinstance(system, Hamiltonian) else system.hamiltonian()
     q, p = (np.linspace(value[0], value[1], points) for value in ranges)
     states = np.stack(np.meshgrid(q, p), axis=-1).reshape(-1, 2)
     model, values = other._model, other._values[None, :]
@@ -53,7 +55,7 @@ def phase_portrait(
     if finite.size:
         # As many points between two lines: they are dense where motion is slow.
         ax.contour(q, p, energy, levels=np.unique(np.quantile(finite, np.linspace(0.0, 1.0, _LINES))), linewidths=0.7)
-    lagrangian: Any = system if system._source.kind == "lagrangian" else system.lagrangian()  # type: ignore[attr-defined]
+    lagrangian = system.lagrangian() if isinstance(system, Hamiltonian) else system
     for rest in lagrangian.equilibria(np.linspace(ranges[0][0], ranges[0][1], 64)[:, None]):
         at_rest = lagrangian.at(position=rest.position, velocity=[0.0])
         place = (float(rest.position[0]), float(at_rest.momentum[0]))

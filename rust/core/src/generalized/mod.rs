@@ -6,6 +6,7 @@
 
 pub mod abreast;
 mod constraints;
+pub mod dependence;
 mod elimination;
 pub mod evaluate;
 mod fixed;

@@ -4,6 +4,7 @@
 //! first, by Newton's method; then velocities, of which constraints are linear.
 
 use super::constraints::border;
+use super::dependence::{Dependence, dependence};
 use super::model::Model;
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
@@ -22,9 +23,6 @@ use std::sync::Arc;
 const AFTER_A_STEP: u32 = 4;
 /// Newton's steps at the start, from anywhere.
 const AT_THE_START: u32 = 60;
-
-/// Below this part of its length, what is left of a row is round-off.
-const DEPENDENT: f64 = 1e-12;
 
 /// The codes of corrections and residuals.
 #[derive(Clone, Debug)]
@@ -100,36 +98,12 @@ pub struct Projector {
 }
 
 impl Projector {
-    /// Which constraint follows from others at a state, and from which; `None` where all are independent.
-    pub fn dependent(&mut self, t: f64, y: &[f64]) -> Option<(usize, Vec<usize>)> {
-        let (n, constraints) = (self.of.coordinates, self.of.constraints);
-        let mut all = vec![0.0; n * constraints];
-        self.rows.evaluate(t, y, &mut all);
-        let dot = |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(a, b)| a * b).sum() };
-        let mut directions: Vec<Vec<f64>> = Vec::new();
-        for (k, row) in all.chunks(n).enumerate() {
-            let length = dot(row, row).sqrt();
-            let mut rest = row.to_vec();
-            // Twice is enough.
-            for _ in 0..2 {
-                for direction in &directions {
-                    let along = dot(&rest, direction);
-                    rest.iter_mut().zip(direction).for_each(|(rest, direction)| *rest -= along * direction);
-                }
-            }
-            let left = dot(&rest, &rest).sqrt();
-            if left > DEPENDENT * length {
-                directions.push(rest.iter().map(|rest| rest / left).collect());
-                continue;
-            }
-            let shares = |row_before: &[f64]| {
-                let size = (dot(row_before, row_before) * length * length).sqrt();
-                dot(row, row_before).abs() > DEPENDENT * size
-            };
-            let others = all.chunks(n).take(k).enumerate();
-            return Some((k, others.filter(|(_, before)| shares(before)).map(|(index, _)| index).collect()));
-        }
-        None
+    /// Which constraint follows from others at a state, and whether it agrees with them; `None` where all are independent.
+    pub fn dependence(&mut self, t: f64, y: &[f64]) -> Option<Dependence> {
+        let mut rows = vec![0.0; self.of.coordinates * self.of.constraints];
+        self.rows.evaluate(t, y, &mut rows);
+        let (places, rates) = self.residuals(t, y);
+        dependence(&rows, y, &places, &rates)
     }
 
     /// The residuals at a state: of the holonomic constraints, and of the rates of all.

@@ -17,6 +17,7 @@ use std::sync::Arc;
 use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
 use visviva_core::generalized::abreast::{solve_together, together};
+use visviva_core::generalized::dependence::Dependence;
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::{Linear, modes};
@@ -157,6 +158,30 @@ impl GeneralizedModel {
         Ok(shown(&source.graph, &[bracket]))
     }
 
+    /// Each of these nodes, and its derivatives with respect to the numbers of the state and the time, as nodes.
+    fn derivatives(
+        &self,
+        py: Python<'_>,
+        nodes: Vec<NodeParts>,
+        roots: Vec<u32>,
+    ) -> PyResult<(Vec<NodeParts>, Vec<u32>)> {
+        let mut source = self.model.source.clone();
+        let (first, second) = source.halves();
+        let mut derive = || {
+            let ids = added(&mut source.graph, &nodes)?;
+            let time = source.graph.time();
+            let of: Vec<Id> = first.iter().chain(&second).copied().chain([time]).collect();
+            let mut found = Vec::with_capacity((of.len() + 1) * roots.len());
+            for root in all_chosen(&ids, &roots)? {
+                found.push(root);
+                found.extend(source.graph.gradient(root, &of));
+            }
+            Ok(found)
+        };
+        let found = derive().map_err(|error: Error| raised(py, error))?;
+        Ok(shown(&source.graph, &found))
+    }
+
     /// Expressions at states (N, 2n) and times (N).
     fn evaluate<'py>(
         &self,
@@ -215,8 +240,8 @@ impl GeneralizedModel {
             None => (vec![], vec![]),
             Some(projection) => {
                 let mut projector = projection.at_work(&parameters);
-                if let Some((one, others)) = projector.dependent(t, &state) {
-                    return Err(raised(py, dependent(one, &others)));
+                if let Some(found) = projector.dependence(t, &state) {
+                    return Err(raised(py, dependent(&found)));
                 }
                 let residuals = projector.residuals(t, &state);
                 let mut rest = vec![0.0; state.len()];
@@ -390,17 +415,20 @@ fn abreast(members: usize, threads: usize) -> usize {
 }
 
 /// Constraints that do not leave the multipliers determined.
-fn dependent(one: usize, others: &[usize]) -> Error {
-    let words = match others {
-        [] => format!("constraint {one} has no gradient at the start; start elsewhere"),
-        [other] => format!("constraints {other} and {one} are dependent at the start; leave one out"),
-        _ => {
-            let names: Vec<String> = others.iter().map(usize::to_string).collect();
-            format!(
-                "constraint {one} follows from constraints {} at the start; leave one out",
-                names.join(", ")
-            )
+fn dependent(found: &Dependence) -> Error {
+    let one = found.one;
+    let names: Vec<String> = found.others.iter().map(usize::to_string).collect();
+    let names = names.join(", ");
+    let words = match (found.others.len(), found.disagree) {
+        (0, _) => format!("constraint {one} has no gradient at the start; start elsewhere"),
+        (1, false) => format!("constraints {names} and {one} are dependent at the start; leave one out"),
+        (_, false) => {
+            format!("constraint {one} follows from constraints {names} at the start; leave one out")
         }
+        (_, true) => format!(
+            "constraints {names} and {one} do not agree: their gradients are dependent at the start, and no small change \
+             there makes all of them hold; change one, leave it out, or start elsewhere"
+        ),
     };
     Error::invalid("constraints", words)
 }

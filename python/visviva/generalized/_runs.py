@@ -1,0 +1,179 @@
+"""Runs of a system in generalized coordinates: `Runs`, what `run` and `plan` are asked and what they do."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import float_array, number, whole_number
+from visviva._keywords import known_keywords
+from visviva.errors import ConvergenceError, Interrupted, InvalidInput
+from visviva.generalized._methods import method_name
+from visviva.generalized._states import States, whole
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._plan import GeneralizedPlan
+    from visviva.generalized._trajectory import GeneralizedTrajectory
+    from visviva.typing import Progress
+
+__all__ = ["Runs"]
+
+
+@known_keywords
+class Runs(States):
+    """Base of `GeneralizedSystem`: runs from the start."""
+
+    __slots__ = ()
+
+    def _asked(
+        self, t: ArrayLike, method: str, rtol: float, dt: float | None, max_step: float | None
+    ) -> tuple[dict[str, Any], NDArray[np.float64]]:
+        outputs = self._outputs(t)
+        rtol = number("rtol", rtol)
+        if not 1e-15 <= rtol <= 1e-2:
+            raise InvalidInput("rtol", f"expected a tolerance between 1e-15 and 1e-2, got {rtol:g}")
+        for name, value in (("dt", dt), ("max_step", max_step)):
+            if value is not None and number(name, value) <= 0.0:
+                raise InvalidInput(name, f"expected a positive number, got {value!r}; the direction is that of t")
+        asked = {
+            "method": method_name(method, self._structure["separable"], dt, constrained=bool(self._constraints())),
+            "span": (self.t0, float(outputs[-1])),
+            "rtol": rtol,
+            "dt": None if dt is None else number("dt", dt),
+            "max_step": None if max_step is None else number("max_step", max_step),
+            "max_steps": 100_000_000,
+            "outputs": outputs,
+            "section": None,
+        }
+        return asked, outputs
+
+    def _outputs(self, t: ArrayLike) -> NDArray[np.float64]:
+        """Give the times that are read: all that are asked for, or of an end the start and it."""
+        if np.ndim(t) == 0:
+            end = number("t", t)
+            return np.array([self.t0] if end == self.t0 else [self.t0, end])
+        outputs = float_array("t", t, None)
+        if outputs.ndim > 1 or not outputs.size:
+            raise InvalidInput(
+                "t", f"expected the end, or output times in one row, got an array of shape {outputs.shape}"
+            )
+        steps = np.diff(outputs, prepend=self.t0) * (1.0 if outputs[-1] >= self.t0 else -1.0)
+        if (steps < 0.0).any() or (steps[1:] <= 0.0).any():
+            raise InvalidInput("t", f"expected times in order from t0 = {self.t0:g} on, each once")
+        return outputs
+
+    def run(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "gauss16",
+        rtol: float = 1e-12,
+        dt: float | None = None,
+        max_step: float | None = None,
+        progress: Progress = False,
+    ) -> GeneralizedTrajectory:
+        """Run from the start.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end, or output times in order; they change no step.
+        method : str
+            ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
+            energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`:
+            adaptive ones (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not
+            depend on velocities.
+        rtol : float
+            Relative tolerance of a step.
+        dt : float, optional
+            The step of every step.
+        max_step : float, optional
+            The longest step.
+        progress : bool or callable
+            As in `Scene.run`.
+
+        Returns
+        -------
+        GeneralizedTrajectory
+
+        Raises
+        ------
+        InvalidInput
+            For what cannot be run, before anything runs.
+        ConvergenceError
+            At a singularity; ``.trajectory`` holds what was computed.
+        Interrupted
+            By Ctrl-C; ``.trajectory`` holds what was computed.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> out = vv.systems.pendulum(position=[3.0]).run(t=np.linspace(0.0, 10.0, 101))
+        >>> out["theta"].shape, bool(abs(out.energy - out.energy[0]).max() < 1e-13)
+        ((101,), True)
+        """
+        from visviva.generalized._trajectory import GeneralizedTrajectory
+
+        start = self._start()
+        asked, outputs = self._asked(t, method, rtol, dt, max_step)
+        self._check_start()
+        result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
+        out = GeneralizedTrajectory(whole(self), result, asked)
+        if result["interrupted"]:
+            raise Interrupted("the run was interrupted", out)
+        failure = result["failures"][0]
+        if failure is not None:
+            raise ConvergenceError(failure, result["reached"][0], out)
+        assert len(out.t) == len(outputs)
+        return out
+
+    def _run(
+        self,
+        asked: dict[str, Any],
+        states: NDArray[np.float64],
+        parameters: NDArray[np.float64],
+        threads: int | None,
+        progress: Progress,
+    ) -> dict[str, Any]:
+        threads = None if threads is None else whole_number("threads", threads)
+        if progress is False:
+            return self._model.run(asked, states, parameters, threads, None)
+        from visviva._progress import callback
+
+        with callback(progress) as report:
+            return self._model.run(asked, states, parameters, threads, report)
+
+    def plan(
+        self,
+        t: ArrayLike,
+        *,
+        method: str = "gauss16",
+        rtol: float = 1e-12,
+        dt: float | None = None,
+        max_step: float | None = None,
+    ) -> GeneralizedPlan:
+        """What `run` would do, and why.
+
+        Parameters
+        ----------
+        t, method, rtol, dt, max_step
+            As in `run`.
+
+        Raises
+        ------
+        InvalidInput
+            For what `run` refuses.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> print(vv.systems.spherical_pendulum().plan(t=10.0).conserved)
+        ('energy', 'momentum of phi')
+        """
+        from visviva.generalized._plan import GeneralizedPlan
+
+        asked, _ = self._asked(t, method, rtol, dt, max_step)
+        return GeneralizedPlan._of(whole(self), asked)
