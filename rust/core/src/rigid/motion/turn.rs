@@ -86,14 +86,20 @@ pub fn rotation<S: Real>(half: [S; 3]) -> [S; 4] {
     let sine = polynomial(z, &SINE);
     let [x, y, w] = [axis[0] * sine, axis[1] * sine, z * polynomial(z, &COSINE)];
     let mut turn = [x, y, axis[2] * sine, w];
+    let two = S::splat(2.0);
     let mut left = S::zero().less(doublings);
     while left.any() {
-        let twice = S::splat(2.0) * (one + turn[3]);
+        let twice = two * (one + turn[3]);
+        let sine_squared = dot([turn[0], turn[1], turn[2]], [turn[0], turn[1], turn[2]]);
+        // cos 2a − 1 from the smaller of sine and cosine: either alone makes an error of the length four times as large
+        // where it is the larger, both together never more than twice.
+        let by_sine = S::zero() - two * sine_squared;
+        let by_cosine = two * turn[3] * (two + turn[3]);
         let doubled = [
             turn[0] * twice,
             turn[1] * twice,
             turn[2] * twice,
-            S::splat(2.0) * turn[3] * (S::splat(2.0) + turn[3]),
+            S::select(sine_squared.less(S::splat(0.5)), by_sine, by_cosine),
         ];
         for c in 0..4 {
             turn[c] = S::select(left, doubled[c], turn[c]);

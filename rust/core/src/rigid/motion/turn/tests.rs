@@ -100,7 +100,7 @@ proptest! {
         prop_assert!(whole.iter().all(|part| part.abs() <= 3e-15), "{whole:?}");
     }
 
-    /// exp of a rotation vector of any size, against sine and cosine: six units in the last place for each radian.
+    /// exp of a rotation vector of any size, against sine and cosine: 1.1 units in the last place for each radian in two million draws.
     #[test]
     fn rotations_are_those_of_their_vectors(direction in prop::array::uniform3(-1.0..1.0f64), size in -20.0..9.0f64) {
         let norm = dot(direction, direction).sqrt();
@@ -111,10 +111,10 @@ proptest! {
         let angle = dot(half, half).sqrt();
         let expected = [0, 1, 2].map(|c| half[c] / angle * crate::numerics::angles::sin(angle));
         for c in 0..3 {
-            prop_assert!((found[c] - expected[c]).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle) * angle.min(1.0));
+            prop_assert!((found[c] - expected[c]).abs() <= 2.0 * f64::EPSILON * (1.0 + 2.0 * angle) * angle.min(1.0));
         }
         let cosine = crate::numerics::angles::cos(angle) - 1.0;
-        prop_assert!((found[3] - cosine).abs() <= 6.0 * f64::EPSILON * (1.0 + 2.0 * angle));
+        prop_assert!((found[3] - cosine).abs() <= 2.0 * f64::EPSILON * (1.0 + 2.0 * angle));
     }
 }
 
