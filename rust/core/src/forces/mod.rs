@@ -203,6 +203,10 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
         self.expand_series(jet, ticker)
     }
 
+    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+        self.series_smooth_until(jet, h)
+    }
+
     /// Rotations about several axes do not commute: half of each in turn, then in the reverse order, which keeps the
     /// symmetry of the step.
     fn rotate(&mut self, h: f64, (v, rest): PairMut<'_, S>) {

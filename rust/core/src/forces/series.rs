@@ -24,6 +24,12 @@ pub trait Series<S: Element>: Send {
         ticker: &mut Ticker<'_>,
     ) -> Result<()>;
 
+    /// As [`System::smooth_until`](crate::ode::system::System::smooth_until), of this force.
+    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+        let _ = (jet, h);
+        None
+    }
+
     /// Expands the motion under this force alone.
     ///
     /// # Errors
@@ -68,6 +74,20 @@ impl<S: Element> Dynamics<S> {
         }
         Ok(())
     }
+
+    pub(super) fn series_smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+        let forces = self.series.iter().flat_map(|series| &series.forces);
+        shortest(forces.map(AsRef::as_ref), jet, h)
+    }
+}
+
+/// The shortest of the steps that forces allow.
+pub fn shortest<'a, S: Element>(
+    forces: impl Iterator<Item = &'a (dyn Series<S> + 'a)>,
+    jet: &Jet<S>,
+    h: S,
+) -> Option<S> {
+    forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
 }
 
 /// A force that is linear in coordinates and velocities but for a constant.

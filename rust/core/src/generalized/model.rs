@@ -129,7 +129,7 @@ impl Model {
     /// Its equations as recurrences of Taylor coefficients.
     ///
     /// # Errors
-    /// Functions in it that [turn sharply](Series::sharp).
+    /// Functions in it that [leap](Series::leaps).
     pub fn series(&self) -> Result<Arc<Series>> {
         let of_systems =
             self.systems.iter().flat_map(|system| system.matrix.iter().flatten().chain(&system.right));
@@ -138,12 +138,12 @@ impl Model {
             Output::Unknown(_) => None,
         });
         let roots: Vec<Id> = of_systems.chain(of_rates).copied().collect();
-        if let Some(function) = Series::sharp(&self.source.graph, &roots) {
+        if let Some(function) = Series::leaps(&self.source.graph, &roots) {
             return Err(Error::invalid(
                 "method",
                 format!(
-                    "taylor takes equations that are smooth wherever they go; {function} in these may turn sharply, which \
-                     no series tells; gauss16 and dop853 do"
+                    "taylor takes equations that are smooth wherever they go; {function} in these leaps by 2π at negative x, \
+                     which no series tells; gauss16 and dop853 take them"
                 ),
             ));
         }

@@ -120,4 +120,9 @@ impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
         series.motion(&equations, Coefficients { order, len, q, v });
         Ok(())
     }
+
+    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+        let series = self.series.as_ref().filter(|series| series.may_turn_sharply())?;
+        Some(series.smooth_until(jet.order, h / jet.unit) * jet.unit)
+    }
 }

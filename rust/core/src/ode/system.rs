@@ -124,6 +124,13 @@ pub trait System<S: Element>: Send {
         Err(Error::Internal("the system has no series".to_owned()))
     }
 
+    /// The longest step up to `h` over which what it was [expanded](Self::expand) in last is as smooth as that tells, if
+    /// anything in it may turn sharply.
+    fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
+        let _ = (jet, h);
+        None
+    }
+
     /// Turns velocities exactly as what rotates them does in the time `h`.
     fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
         let _ = (h, v);

@@ -253,15 +253,26 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         system.expand(&mut self.jet, ticker)?;
         let inverse = self.inverse_step(running, state, &clock.elapsed, norm);
         let least = S::zero().power_below();
-        let [longest, h, size2] = S::pass(Choice {
-            inverse: &inverse,
-            units: [&self.unit, &least],
-            margin: self.margin,
-            longest: &self.rule.max_step.min(self.bound),
-            times: [&clock.elapsed, &clock.end],
-            h: &clock.h,
-            running,
-        });
+        let choice = |longest: S| {
+            S::pass(Choice {
+                inverse: &inverse,
+                units: [&self.unit, &least],
+                margin: self.margin,
+                longest: &longest,
+                times: [&clock.elapsed, &clock.end],
+                h: &clock.h,
+                running,
+            })
+        };
+        let longest = self.rule.max_step.min(self.bound);
+        let mut chosen = choice(longest);
+        if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
+            let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
+            if smooth.less(chosen[0]).and(running).any() {
+                chosen = choice(longest.min(smooth));
+            }
+        }
+        let [longest, h, size2] = chosen;
         clock.h = h;
         self.h = S::next_step(clock, running);
         let sound = size2.less(S::one());

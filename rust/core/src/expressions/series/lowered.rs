@@ -16,6 +16,7 @@ pub(super) fn lowered(program: &Program) -> Series {
         constants: 0,
         series: constants,
         slopes: HashMap::new(),
+        radicands: vec![],
         made: vec![],
         scratch: 0,
     };
@@ -36,6 +37,7 @@ pub(super) fn lowered(program: &Program) -> Series {
         body,
         inputs: (0..=variables as Value).map(place).collect(),
         outputs: program.outputs.iter().copied().map(place).collect(),
+        radicands: lowering.radicands,
         numbers: lowering.series,
         scratch: lowering.scratch,
     }
@@ -48,6 +50,8 @@ struct Lowering {
     series: usize,
     /// The slopes of the series that have them.
     slopes: HashMap<Place, Place>,
+    /// What stands below roots and broken powers.
+    radicands: Vec<Place>,
     made: Vec<Recurrence>,
     scratch: usize,
 }
@@ -116,8 +120,19 @@ impl Lowering {
 
     fn root(&mut self, a: Place) -> Place {
         let to = self.room();
-        self.push(Recurrence::Root { to, a });
+        self.root_into(to, a);
         to
+    }
+
+    fn root_into(&mut self, to: Place, a: Place) {
+        self.below_root(a);
+        self.push(Recurrence::Root { to, a });
+    }
+
+    fn below_root(&mut self, a: Place) {
+        if !self.radicands.contains(&a) {
+            self.radicands.push(a);
+        }
     }
 
     fn reciprocal(&mut self, value: f64, b: Place) -> Place {
@@ -134,7 +149,7 @@ impl Lowering {
     /// A function of a series.
     fn function(&mut self, function: Function, to: Place, of: Place) {
         match function {
-            Function::Sqrt => self.push(Recurrence::Root { to, a: of }),
+            Function::Sqrt => self.root_into(to, of),
             Function::Exp => self.integral(function, of, to, to),
             // Their rates hang on themselves, and come after them.
             Function::Tan | Function::Tanh => {
@@ -259,6 +274,7 @@ impl Lowering {
             Operation::Power(to, a, exponent) => {
                 let (to, a, exponent) = (at(to).place, at(a), *exponent);
                 if a.varies {
+                    self.below_root(a.place);
                     let slopes = [self.slopes_of(a.place), self.room()];
                     Recurrence::Power { to, a: a.place, exponent, slopes }
                 } else {

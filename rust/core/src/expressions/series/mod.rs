@@ -8,9 +8,9 @@
 mod lowered;
 mod motion;
 mod recurrence;
+mod smooth;
 
 use super::execute::Scalar;
-use super::function::Function;
 use super::graph::{Dependence, Graph, Id, Node};
 use super::program::{self, LinearSystem, Output};
 use crate::error::Result;
@@ -37,22 +37,19 @@ pub struct Series {
     /// Where the state and the time are, and the results.
     inputs: Vec<usize>,
     outputs: Vec<usize>,
+    /// What stands below roots and broken powers.
+    radicands: Vec<usize>,
     /// Numbers in all, and room for factored matrices.
     numbers: usize,
     scratch: usize,
 }
 
 impl Series {
-    /// A function among these expressions that turns sharply where it is as smooth from either side as if it went on: of a
-    /// series, which tells of the one side, a step would go over that without a word.
-    pub fn sharp(graph: &Graph, roots: &[Id]) -> Option<&'static str> {
+    /// A function among these expressions that leaps where it is as smooth from either side as if it went on: of a series,
+    /// which tells of the one side, a step would go over that without a word.
+    pub fn leaps(graph: &Graph, roots: &[Id]) -> Option<&'static str> {
         let varies = |id: Id| graph.dependence(id) > Dependence::Parameters;
         graph.reachable(roots).into_iter().filter(|&id| varies(id)).find_map(|id| match graph.node(id) {
-            Node::Call(
-                function @ (Function::Sqrt | Function::Asin | Function::Acos | Function::Acosh),
-                _,
-            ) => Some(function.name()),
-            Node::Power(..) => Some("a broken power"),
             Node::Angle(..) => Some("atan2"),
             _ => None,
         })

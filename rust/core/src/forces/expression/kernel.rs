@@ -216,4 +216,12 @@ impl Series<Lanes> for Expanded {
         }
         Ok(())
     }
+
+    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
+        let may = self.rows.first().is_some_and(Expansion::may_turn_sharply);
+        may.then(|| {
+            let h = h / jet.unit;
+            self.rows.iter().fold(h, |h, row| row.smooth_until(jet.order, h)) * jet.unit
+        })
+    }
 }

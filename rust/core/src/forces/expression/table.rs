@@ -96,7 +96,7 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
     Ok(Expressions {
         force: compiled(&force)?,
         // A drive that begins more gently than any power that a series has would not be seen.
-        series: match Series::sharp(&graph, &force) {
+        series: match Series::leaps(&graph, &force) {
             None if !needs.time => Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?)),
             _ => None,
         },
