@@ -25,6 +25,7 @@ use crate::parallel::Ticker;
 /// Whether a run goes side by side: outputs are read at given times, and no state is put elsewhere on the way.
 pub fn together(model: &Model, request: &Request) -> bool {
     matches!(request.integrator, Integrator::Table(_))
+        && request.linear.is_none()
         && request.outputs.is_some()
         && request.section.is_none()
         && model.projection.is_none()
@@ -236,7 +237,7 @@ impl<'a> Abreast<'a> {
         let (t0, end) = self.request.span;
         // Nothing times a number is no number where that is none, or infinite.
         let next = self.trial.next().all().0.iter();
-        let nothing = next.fold(Lanes::zero(), |sum, &y| y.multiply_add(Lanes::zero(), sum));
+        let nothing = next.fold(Lanes::zero(), |sum, &y| sum + y * Lanes::zero());
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let finite = nothing.0[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);

@@ -15,6 +15,7 @@ mod hamiltonian;
 mod lagrangian;
 pub mod legendre;
 pub mod linear;
+pub mod linear_motion;
 pub mod model;
 pub mod motion;
 pub mod one_freedom;

@@ -5,6 +5,7 @@
 
 use super::fixed::FixedSteps;
 use super::gauss::{self, GaussStep, Steps};
+use super::linear_motion::LinearMotion;
 use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
@@ -57,6 +58,8 @@ pub struct Request {
     pub section: Option<Section>,
     /// The equations as recurrences, if the method is made of them.
     pub series: Option<Arc<Series>>,
+    /// The equations as linear ones, if they are to be solved as such.
+    pub linear: Option<Arc<LinearMotion>>,
 }
 
 /// Zeros of an expression on the way.
@@ -169,6 +172,9 @@ pub fn solve(
     (y0, parameters): (&[f64], &[f64]),
     ticker: &mut Ticker<'_>,
 ) -> Result<Solution> {
+    if let Some(linear) = &request.linear {
+        return linear.solve(request, (y0, parameters), ticker);
+    }
     let (t0, end) = request.span;
     let mut system = Motion::<f64>::of(model, request, parameters, t0);
     let mut state = match system.form() {

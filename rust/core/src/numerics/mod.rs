@@ -15,6 +15,7 @@ pub(crate) mod integrals;
 pub mod inverse_cube;
 pub mod lanes;
 pub mod logarithm;
+pub mod matrix_exponential;
 pub mod philox;
 pub mod points;
 pub mod power;

@@ -21,6 +21,7 @@ use visviva_core::generalized::dependence::Dependence;
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::{Linear, modes};
+use visviva_core::generalized::linear_motion::LinearMotion;
 use visviva_core::generalized::one_freedom::OneFreedom;
 use visviva_core::generalized::run::solve;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
@@ -38,6 +39,8 @@ type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 pub(crate) struct GeneralizedModel {
     model: Arc<Model>,
     structure: Structure,
+    /// The equations, if they are linear.
+    linear: Option<Arc<LinearMotion>>,
 }
 
 /// What a system is made of.
@@ -75,8 +78,9 @@ impl Described {
 }
 
 impl GeneralizedModel {
-    fn of(model: Model) -> Self {
-        Self { structure: Structure::of(&model), model: Arc::new(model) }
+    fn of(model: Model) -> Result<Self> {
+        let linear = LinearMotion::of(&model)?.map(Arc::new);
+        Ok(Self { structure: Structure::of(&model), linear, model: Arc::new(model) })
     }
 
     /// One that further expressions may join.
@@ -90,8 +94,7 @@ impl GeneralizedModel {
     /// Derives the equations of motion.
     #[new]
     fn new(py: Python<'_>, described: Described) -> PyResult<Self> {
-        let model = compute(py, 0, None, |_| Model::new(described.source()?))?.whole(py)?;
-        Ok(Self::of(model))
+        compute(py, 0, None, |_| Self::of(Model::new(described.source()?)?))?.whole(py)
     }
 
     /// What is found without running it.
@@ -109,6 +112,7 @@ impl GeneralizedModel {
             MassMatrix::None => "none",
         };
         result.set_item("mass_matrix", mass)?;
+        result.set_item("linear", self.linear.is_some())?;
         result.set_item("separable", found.separable)?;
         result.set_item("operations", found.operations)?;
         Ok(result)
@@ -359,8 +363,7 @@ impl GeneralizedModel {
     /// The same system with the flow's derivatives in its state.
     fn variational(&self, py: Python<'_>) -> PyResult<Self> {
         let model = self.copy();
-        let model = compute(py, 0, None, |_| variational(&model))?.whole(py)?;
-        Ok(Self::of(model))
+        compute(py, 0, None, |_| Self::of(variational(&model)?))?.whole(py)
     }
 
     /// Runs states (B, 2n) with parameters (B, p) from a time to another.

@@ -30,10 +30,16 @@ pub(super) struct Asked<'py> {
 
 impl Asked<'_> {
     pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
+        let linear = (self.method == "matrix_exponential").then(|| {
+            of.linear.clone().ok_or_else(|| Error::invalid("method", "the equations are not linear"))
+        });
+        let linear = linear.transpose().map_err(|error| raised(py, error))?;
+        // What is solved at once takes no steps.
+        let stepping = if linear.is_some() { "gauss16" } else { &self.method };
         let integrator =
-            match gauss::method(&self.method) {
+            match gauss::method(stepping) {
                 Some(method) => Integrator::Gauss(method),
-                None => Integrator::Table(registry::method(&self.method).ok_or_else(|| {
+                None => Integrator::Table(registry::method(stepping).ok_or_else(|| {
                     raised(py, Error::invalid("method", format!("no method {}", self.method)))
                 })?),
             };
@@ -50,6 +56,7 @@ impl Asked<'_> {
         Ok(Request {
             section,
             series,
+            linear,
             integrator,
             span: self.span,
             rtol: self.rtol,

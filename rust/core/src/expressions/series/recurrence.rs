@@ -81,21 +81,32 @@ pub struct Entry {
 /// Σ x[i] y[last − i], in four chains.
 #[inline(always)]
 fn convolved<S: Real>(x: &[S], y: &[S]) -> S {
-    let length = x.len();
-    let y = &y[..length];
-    let mut chains = [S::zero(); 4];
-    let mut i = 0;
-    while i + 4 <= length {
-        for (chain, sum) in chains.iter_mut().enumerate() {
-            *sum = x[i + chain].multiply_add(y[length - 1 - i - chain], *sum);
+    let y = &y[..x.len()];
+    let (mut first, mut second, mut third, mut fourth) = (S::zero(), S::zero(), S::zero(), S::zero());
+    let (forward, backward) = (x.chunks_exact(4), y.rchunks_exact(4));
+    let rest = (forward.remainder(), backward.remainder());
+    for four in forward.zip(backward) {
+        if let ([x0, x1, x2, x3], [y0, y1, y2, y3]) = four {
+            first = x0.multiply_add(*y3, first);
+            second = x1.multiply_add(*y2, second);
+            third = x2.multiply_add(*y1, third);
+            fourth = x3.multiply_add(*y0, fourth);
         }
-        i += 4;
     }
-    while i < length {
-        chains[i % 4] = x[i].multiply_add(y[length - 1 - i], chains[i % 4]);
-        i += 1;
+    match rest {
+        ([x0], [y0]) => first = x0.multiply_add(*y0, first),
+        ([x0, x1], [y0, y1]) => {
+            first = x0.multiply_add(*y1, first);
+            second = x1.multiply_add(*y0, second);
+        }
+        ([x0, x1, x2], [y0, y1, y2]) => {
+            first = x0.multiply_add(*y2, first);
+            second = x1.multiply_add(*y1, second);
+            third = x2.multiply_add(*y0, third);
+        }
+        _ => {}
     }
-    (chains[0] + chains[1]) + (chains[2] + chains[3])
+    (first + second) + (third + fourth)
 }
 
 /// Σ a_j b_{n−j} of 0 < j < n.

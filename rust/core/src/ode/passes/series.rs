@@ -6,7 +6,7 @@
 use super::errors::HUGE;
 use crate::numerics::double_double::two_sum;
 use crate::numerics::element::{Element, Pair, PairMut, Pass, View};
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 
 /// The larger of `square^(1/2n)` of two squares, each with its n; infinite where one is as good as that.
 #[derive(Debug)]
@@ -59,17 +59,21 @@ impl<S: Element> Pass<S> for OwnSizes<'_, S> {
         let tolerance = V::load(*self.tolerance);
         let mut largest = [V::zero(); 2];
         for number in 0..self.len {
-            let (mut size, mut later, mut power) = (V::zero(), V::zero(), V::one());
-            for order in 1..=self.orders[1] {
+            let (mut size, mut power) = (V::zero(), V::one());
+            for order in 1..=TELLING {
                 power = power * step;
-                let goes = (blocks[order * self.len + number] * power).abs();
-                if order <= TELLING {
-                    size = goes.max(size);
-                } else {
-                    later = goes.max(later);
-                }
+                size = (blocks[order * self.len + number] * power).abs().max(size);
             }
-            let size = V::select(V::zero().less(size), size, later) * tolerance;
+            let told = V::zero().less(size);
+            if !told.all() {
+                let mut later = V::zero();
+                for order in TELLING + 1..=self.orders[1] {
+                    power = power * step;
+                    later = (blocks[order * self.len + number] * power).abs().max(later);
+                }
+                size = V::select(told, size, later);
+            }
+            let size = size * tolerance;
             for which in 0..2 {
                 let of = blocks[self.orders[which] * self.len + number].abs();
                 let ratio = V::select(of.less_equal(V::zero()), V::zero(), of / size);

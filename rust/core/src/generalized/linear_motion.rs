@@ -1,0 +1,187 @@
+//! Equations of motion that are linear, with constant coefficients: solved once, exact at any time.
+//!
+//! The one idea: their derivatives hang on parameters alone, so y′ = A y + b, and the state with a 1 after it is a vector
+//! that [`MatrixExponential`] moves. Masses are divided by in double-double: a quotient's rounding would turn the phase.
+
+use super::model::{Kind, Model};
+use super::run::{Request, Solution};
+use crate::error::{Error, Result};
+use crate::expressions::graph::Dependence;
+use crate::expressions::program::Output;
+use crate::expressions::{Code, Graph, Id, Machine};
+use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::matrix_exponential::{MatrixExponential, elapsed};
+use crate::numerics::real::Real;
+use crate::ode::run::Ending;
+use crate::parallel::Ticker;
+use std::collections::HashMap;
+use std::sync::Arc;
+
+/// Linear equations of 2·coordinates numbers.
+#[derive(Clone, Debug)]
+pub struct LinearMotion {
+    /// Coordinates.
+    n: usize,
+    /// Whether masses divide what follows the velocities.
+    masses: bool,
+    /// Right-hand sides at zero, their derivatives row by row, and the mass matrix if there is one.
+    code: Arc<Code>,
+}
+
+impl LinearMotion {
+    /// That of a model, if its equations are linear with constant coefficients.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub fn of(model: &Model) -> Result<Option<Self>> {
+        let constrained = !model.source.holonomic.is_empty() || !model.source.nonholonomic.is_empty();
+        // The state of variational equations has more than these numbers.
+        let alone = model.numbers() == 2 * model.source.coordinates;
+        if constrained || !alone || model.needs().time {
+            return Ok(None);
+        }
+        let masses = model.source.kind == Kind::Lagrangian;
+        let rates = model.rates.iter().map(|rate| match rate {
+            Output::Node(id) => Some(*id),
+            Output::Unknown(_) => None,
+        });
+        let Some(right) =
+            (if masses { Some(model.right.clone()) } else { rates.collect::<Option<Vec<Id>>>() })
+        else {
+            return Ok(None);
+        };
+        let mut graph = model.source.graph.clone();
+        let varies =
+            |graph: &Graph, ids: &[Id]| ids.iter().any(|&id| graph.dependence(id) > Dependence::Parameters);
+        let mass: Vec<Id> = model.mass.iter().flatten().copied().collect();
+        if varies(&graph, &mass) {
+            return Ok(None);
+        }
+        let one = graph.constant(1.0);
+        let mut columns = Vec::new();
+        for index in 0..model.numbers() as u32 {
+            let number = graph.variable(index);
+            let column = graph.tangent(&right, &HashMap::from([(number, one)]));
+            if varies(&graph, &column) {
+                return Ok(None);
+            }
+            columns.push(column);
+        }
+        let slopes = (0..right.len()).flat_map(|row| columns.iter().map(move |column| column[row]));
+        let outputs = right.iter().copied().chain(slopes).chain(mass).map(Output::Node).collect::<Vec<_>>();
+        let inputs = (model.numbers(), model.source.parameters);
+        let code = crate::expressions::assembler::compile(&graph, inputs, &[], &outputs)?;
+        Ok(Some(Self { n: model.source.coordinates, masses, code: Arc::new(code) }))
+    }
+
+    /// The flow with these parameters of the state and a 1 after it, forwards or backwards in time.
+    fn flow(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
+        let (n, numbers) = (self.n, 2 * self.n);
+        let mut found = vec![0.0; self.code.outputs()];
+        Machine::new(self.code.clone(), parameters).evaluate(t0, &vec![0.0; numbers], &mut found);
+        let rows = if self.masses { n } else { numbers };
+        let (constants, rest) = found.split_at(rows);
+        let (slopes, mass) = rest.split_at(rows * numbers);
+        let mut right: Vec<Vec<DoubleDouble>> = slopes
+            .chunks_exact(numbers)
+            .zip(constants)
+            .map(|(slopes, constant)| {
+                slopes.iter().chain([constant]).map(|&x| DoubleDouble::from(x)).collect()
+            })
+            .collect();
+        let mut matrix = vec![DoubleDouble::zero(); (numbers + 1) * (numbers + 1)];
+        if self.masses {
+            let mass = mass.chunks_exact(n).map(|row| row.iter().map(|&x| DoubleDouble::from(x)).collect());
+            divide(&mut mass.collect::<Vec<_>>(), &mut right)?;
+            for i in 0..n {
+                matrix[i * (numbers + 1) + n + i] = DoubleDouble::one();
+            }
+        }
+        let start = numbers - rows;
+        for (i, row) in right.iter().enumerate() {
+            matrix[(start + i) * (numbers + 1)..][..=numbers].copy_from_slice(row);
+        }
+        if end < t0 {
+            matrix.iter_mut().for_each(|entry| *entry = -*entry);
+        }
+        Ok(MatrixExponential::new(matrix, numbers + 1, (end - t0).abs()))
+    }
+
+    /// The states at the output times of a run, or at its end.
+    ///
+    /// # Errors
+    /// A singular mass matrix.
+    pub fn solve(
+        &self,
+        request: &Request,
+        (y0, parameters): (&[f64], &[f64]),
+        ticker: &mut Ticker<'_>,
+    ) -> Result<Solution> {
+        let (t0, end) = request.span;
+        let mut flow = self.flow(parameters, request.span)?;
+        let mut start = y0.to_vec();
+        start.push(1.0);
+        let mut solution = Solution::at(t0);
+        let only_end = [end];
+        for &t in request.outputs.as_deref().unwrap_or(&only_end) {
+            if ticker.tick().is_err() {
+                return Ok(Solution { ending: Ending::Interrupted, ..solution });
+            }
+            let (high, low) = elapsed(t, t0);
+            let state = if t == t0 {
+                start.clone()
+            } else if t < t0 {
+                flow.apply((-high, -low), &start)
+            } else {
+                flow.apply((high, low), &start)
+            };
+            if !state.iter().all(|number| number.is_finite()) {
+                let ending = Ending::NotFinite;
+                return Ok(Solution { ending, failure: ending.reason(), ..solution });
+            }
+            solution.t.push(t);
+            solution.y.extend(&state[..y0.len()]);
+            solution.reached = t;
+        }
+        Ok(solution)
+    }
+}
+
+/// Solves `matrix · x = right` for several right-hand sides, in their place.
+fn divide(matrix: &mut [Vec<DoubleDouble>], right: &mut [Vec<DoubleDouble>]) -> Result<()> {
+    let n = matrix.len();
+    let size = |x: DoubleDouble| x.to_f64().abs();
+    for column in 0..n {
+        let best = (column..n).fold(column, |best, row| {
+            if size(matrix[row][column]) > size(matrix[best][column]) { row } else { best }
+        });
+        let pivot = size(matrix[best][column]);
+        if pivot == 0.0 || pivot.is_nan() {
+            return Err(Error::invalid("parameters", "the mass matrix is singular for these"));
+        }
+        matrix.swap(column, best);
+        right.swap(column, best);
+        let (pivots, below) = matrix.split_at_mut(column + 1);
+        let (solved, others) = right.split_at_mut(column + 1);
+        for (row, sides) in below.iter_mut().zip(others) {
+            let factor = row[column] / pivots[column][column];
+            for (entry, &pivot) in row.iter_mut().zip(&pivots[column]) {
+                *entry -= factor * pivot;
+            }
+            for (side, &pivot) in sides.iter_mut().zip(&solved[column]) {
+                *side -= factor * pivot;
+            }
+        }
+    }
+    for column in (0..n).rev() {
+        let (above, solved) = right.split_at_mut(column);
+        let pivot = matrix[column][column];
+        solved[0].iter_mut().for_each(|side| *side = *side / pivot);
+        for (row, sides) in matrix.iter().zip(above) {
+            for (side, &value) in sides.iter_mut().zip(&solved[0]) {
+                *side -= row[column] * value;
+            }
+        }
+    }
+    Ok(())
+}
