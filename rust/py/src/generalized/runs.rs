@@ -7,11 +7,11 @@ use crate::errors::raised;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use visviva_core::generalized::gauss;
 use visviva_core::generalized::run::{Integrator, Request, Section, Solution};
+use visviva_core::generalized::{discrete, gauss};
 use visviva_core::ode::run::Ending;
 use visviva_core::ode::{Method, Scheme};
-use visviva_core::{Error, registry};
+use visviva_core::{Error, Result, registry};
 
 /// What is asked of a run.
 #[derive(FromPyObject)]
@@ -29,14 +29,21 @@ pub(super) struct Asked<'py> {
 }
 
 impl Asked<'_> {
+    /// What takes the steps, by its name.
+    fn integrator(&self, of: &GeneralizedModel) -> Result<Integrator> {
+        let name = &self.method;
+        if let Some(method) = gauss::method(name) {
+            return Ok(Integrator::Gauss(method));
+        }
+        if let Some(method) = discrete::method(name) {
+            return Ok(Integrator::Discrete(Arc::new(discrete::Equations::new(&of.model, method)?)));
+        }
+        let method = registry::method(name);
+        method.map(Integrator::Table).ok_or_else(|| Error::invalid("method", format!("no method {name}")))
+    }
+
     pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
-        let integrator =
-            match gauss::method(&self.method) {
-                Some(method) => Integrator::Gauss(method),
-                None => Integrator::Table(registry::method(&self.method).ok_or_else(|| {
-                    raised(py, Error::invalid("method", format!("no method {}", self.method)))
-                })?),
-            };
+        let integrator = self.integrator(of).map_err(|error| raised(py, error))?;
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
         let section = self.section.as_ref().map(|(nodes, root, direction)| {
             let mut model = of.copy();
