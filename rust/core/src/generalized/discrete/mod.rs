@@ -13,11 +13,12 @@
 
 mod equations;
 mod newton;
+pub mod path;
 mod step;
 mod table;
 mod trial;
 
-use crate::ode::{self, Scheme, methods};
+use crate::ode::{self, Scheme};
 pub use equations::Equations;
 use table::Rule;
 pub(super) use trial::DiscreteStep;

@@ -57,13 +57,21 @@ impl Corrections {
 #[derive(Clone, Debug)]
 pub(super) struct Linear {
     matrix: DMatrix<f64>,
+    /// The first rows and the last columns that are left out.
+    without: usize,
     factors: Option<LU<f64, Dyn, Dyn>>,
     right: DVector<f64>,
 }
 
 impl Linear {
-    pub(super) fn new(unknowns: usize) -> Self {
-        Self { matrix: DMatrix::zeros(unknowns, unknowns), factors: None, right: DVector::zeros(unknowns) }
+    pub(super) fn new(all: usize, without: usize) -> Self {
+        let (matrix, right) = (DMatrix::zeros(all, all), DVector::zeros(all - without));
+        Self { matrix, without, factors: None, right }
+    }
+
+    /// How many unknowns there are.
+    pub(super) fn len(&self) -> usize {
+        self.right.len()
     }
 
     /// The matrix, all zeros, to be filled in.
@@ -75,8 +83,10 @@ impl Linear {
 
     /// The unknowns, if the matrix has an inverse.
     pub(super) fn solved(&mut self, right: &[f64]) -> Option<&[f64]> {
-        let factors = self.factors.get_or_insert_with(|| self.matrix.clone().lu());
-        self.right.copy_from_slice(right);
+        let (without, count) = (self.without, self.right.len());
+        let kept = || self.matrix.view((without, 0), (count, count)).clone_owned();
+        let factors = self.factors.get_or_insert_with(|| kept().lu());
+        self.right.copy_from_slice(&right[without..]);
         factors.solve_mut(&mut self.right).then(|| self.right.as_slice())
     }
 }

@@ -37,6 +37,18 @@ pub(super) struct Node {
     sizes: Vec<f64>,
 }
 
+/// What a segment between two places has.
+pub(super) struct Segment {
+    /// Momenta at its ends, −∂L_d/∂q₀ and ∂L_d/∂q₁, less the impulses of further forces.
+    pub(super) before: Vec<f64>,
+    pub(super) after: Vec<f64>,
+    /// What those are made of.
+    pub(super) sizes: Vec<f64>,
+    /// The states and times of the quadrature.
+    pub(super) states: Vec<Lanes>,
+    pub(super) t: Lanes,
+}
+
 /// A method at work on one trajectory.
 pub(super) struct Solver {
     equations: Arc<Equations>,
@@ -54,6 +66,11 @@ pub(super) struct Solver {
     linear: Linear,
     legendre: Linear,
     pub(super) evaluations: u64,
+}
+
+/// The larger of two sizes; what is no number is.
+fn larger(a: f64, b: f64) -> f64 {
+    if a <= b || b.is_nan() { b } else { a }
 }
 
 /// The sum and what it leaves out, of a number and what that left out, moved by a rate and a time.
@@ -80,7 +97,8 @@ impl Node {
 }
 
 impl Solver {
-    pub(super) fn new(equations: &Arc<Equations>, parameters: &[f64]) -> Self {
+    /// For steps, or, if the ends are given, for segments.
+    pub(super) fn new(equations: &Arc<Equations>, parameters: &[f64], ends: bool) -> Self {
         let table = Table::new(equations.method.rule);
         let wide: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
         let (n, c) = (equations.coordinates, equations.constraints);
@@ -95,8 +113,8 @@ impl Solver {
             residuals: vec![0.0; unknowns],
             gradients: vec![0.0; c * n],
             scales: vec![0.0; n],
-            linear: Linear::new(unknowns),
-            legendre: Linear::new(n + c),
+            linear: Linear::new(unknowns, if ends { n } else { 0 }),
+            legendre: Linear::new(n + c, 0),
             evaluations: 0,
             equations: equations.clone(),
         }
@@ -153,6 +171,42 @@ impl Solver {
         Ok(())
     }
 
+    /// Finds the inner points of the segment between two places, of a solver whose ends are given.
+    ///
+    /// # Errors
+    /// As [`step`](Self::step).
+    pub(super) fn segment(&mut self, (from, to): (&[f64], &[f64]), (t, h): (f64, f64)) -> Result<Segment> {
+        let (n, s) = (self.equations.coordinates, self.table.degree);
+        let zeros = vec![0.0; n];
+        let node = Node::new(from, &zeros, &zeros);
+        for j in 1..=s {
+            for a in 0..n {
+                self.unknowns[(j - 1) * n + a] = self.table.control[j] * ((to[a] - from[a]) / h);
+            }
+        }
+        self.displace(&node, t, h)?;
+        self.balance(&node, t, h);
+        let before: Vec<f64> = self.residuals[..n].iter().map(|rest| -rest).collect();
+        let mut after = before.clone();
+        let mut sizes = zeros.clone();
+        self.evaluate_momenta(from, &zeros, t);
+        for a in 0..n {
+            let (force, momentum) = (self.rates.output(a).0, self.rates.output(n + a).0);
+            for i in 0..self.table.count {
+                let (weight, change) = (self.table.weights[i], h * force[i]);
+                after[a] += weight * change;
+                sizes[a] += weight * ((self.table.slopes[0][i] * momentum[i]).abs() + change.abs());
+            }
+            for b in 0..n {
+                let inertia = self.momenta.output(n + a * n + b);
+                sizes[a] += (inertia * ((from[b].abs() + to[b].abs()) / h)).abs();
+            }
+        }
+        let mut states = vec![Lanes([0.0; WIDTH]); 2 * n];
+        place(&self.table, &self.unknowns, &node, h, &mut states);
+        Ok(Segment { before, after, sizes, states, t: times(&self.table, t, h) })
+    }
+
     /// Adds what the multipliers at the beginning do to a momentum.
     fn push(&self, a: usize, into: &mut Node) {
         let (n, s) = (self.equations.coordinates, self.table.degree);
@@ -165,6 +219,9 @@ impl Solver {
     /// Finds the displacements.
     fn displace(&mut self, from: &Node, t: f64, h: f64) -> Result<()> {
         let (mut corrections, mut verdict) = (Corrections::new(), Verdict::Anew);
+        if self.linear.len() == 0 {
+            verdict = Verdict::Found;
+        }
         for _ in 0..MOST_CORRECTIONS {
             self.evaluate_rates(from, t, h);
             if verdict == Verdict::Found {
@@ -181,8 +238,7 @@ impl Solver {
                 *unknown -= correction;
                 if index < self.table.degree * self.scales.len() {
                     let size = correction.abs() * self.scales[index % self.scales.len()];
-                    // A NaN is kept.
-                    most = if size <= most { most } else { size };
+                    most = larger(size, most);
                 }
             }
             verdict = corrections.judge(most);
@@ -321,7 +377,7 @@ impl Solver {
             for a in 0..n {
                 node.v[a] += found[a];
                 let size = found[a].abs() * self.scales[a];
-                most = if size <= most { most } else { size };
+                most = larger(size, most);
             }
             for k in 0..c {
                 multipliers[k] += found[n + k];

@@ -34,7 +34,7 @@ impl DiscreteStep {
         state: &State<f64>,
         (t0, h): (f64, f64),
     ) -> Self {
-        let mut solver = Solver::new(equations, parameters);
+        let mut solver = Solver::new(equations, parameters, false);
         let now = solver.node(state.position(), state.v(), t0);
         let parts = equations.method.parts();
         let copies = [(); 3].map(|()| now.clone());
