@@ -10,7 +10,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.generalized._states import States
 
-__all__ = ["DISCRETE", "GAUSS", "discrete_name", "method_name"]
+__all__ = ["CONSTRAINED", "DISCRETE", "GAUSS", "discrete_name", "method_name"]
 
 #: Collocation methods, which take any Lagrangian and any Hamiltonian.
 GAUSS = ("gauss16", "gauss8", "gauss4")
@@ -23,6 +23,9 @@ DISCRETE = (
     "variational_lobatto6",
     "variational_lobatto8",
 )
+
+#: RATTLE and its compositions: of Lagrangians with holonomic constraints.
+CONSTRAINED = ("rattle", "rattle4", "rattle6", "rattle8")
 
 
 def discrete_name(method: object) -> str:
@@ -37,7 +40,7 @@ def method_name(method: object, system: States, dt: float | None) -> str:
     """Check a method, by its name or itself, and give its name."""
     if isinstance(method, str) and method in GAUSS:
         return method
-    if isinstance(method, str) and method in DISCRETE:
+    if isinstance(method, str) and method in (*DISCRETE, *CONSTRAINED):
         _check_discrete(method, system, dt)
         return method
     from visviva.integrators import Method, methods
@@ -46,7 +49,7 @@ def method_name(method: object, system: States, dt: float | None) -> str:
     if isinstance(method, Method):
         method = method.name
     if not isinstance(method, str) or method not in known:
-        own = (*GAUSS, *DISCRETE)
+        own = (*GAUSS, *DISCRETE, *CONSTRAINED)
         hint = did_you_mean(method, [*own, *known]) if isinstance(method, str) else ""
         raise InvalidInput(
             "method", f"expected one of {', '.join(own)} or a method of vv.methods(), got {method!r}{hint}"
@@ -76,7 +79,11 @@ def _check_discrete(method: str, system: States, dt: float | None) -> None:
             f"{method} is of Lagrangians; gauss16 is symplectic for any Hamiltonian, and lagrangian() makes a "
             "Lagrangian of one that has it",
         )
-    if system._constraints():
-        raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
+    if system._source.description["nonholonomic"]:
+        raise InvalidInput("method", f"{method} keeps no nonholonomic constraints; gauss16 and dop853 do")
+    if method in DISCRETE and system._constraints():
+        raise InvalidInput("method", f"{method} keeps no constraints; rattle, gauss16 and dop853 do")
+    if method in CONSTRAINED and not system._constraints():
+        raise InvalidInput("method", f"{method} is for constraints; without any take variational_trapezoidal")
     if dt is None:
         raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")

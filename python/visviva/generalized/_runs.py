@@ -88,7 +88,9 @@ class Runs(States):
             depend on velocities. Or, of a Lagrangian, a variational integrator with a fixed step
             (``variational_midpoint``, ``variational_trapezoidal``, and ``variational_lobatto4``, ``6`` and ``8`` of
             those orders): it makes the action of a discrete path stationary, so it is symplectic and keeps the
-            momenta of cyclic coordinates to round-off, with forces and dissipation by d'Alembert's principle.
+            momenta of cyclic coordinates to round-off, with forces and dissipation by d'Alembert's principle. With
+            holonomic constraints ``rattle`` does the same, and ``rattle4``, ``6`` and ``8`` are its compositions of
+            those orders.
         rtol : float
             Relative tolerance of a step.
         dt : float, optional
@@ -115,7 +117,7 @@ class Runs(States):
         ----------
         Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3
         and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, (1.5.4), (2.2.17) and
-        (3.2.3).
+        (3.2.3); with constraints section 3.5 there, and section VII.1 of the former.
 
         Examples
         --------

@@ -37,20 +37,11 @@ impl Equations {
     /// Another system; expressions that are too large.
     pub fn new(model: &Model, method: &'static Method) -> Result<Self> {
         let source = &model.source;
-        let refused = |why: &str| Err(Error::invalid("method", format!("{} {why}", method.name)));
-        if source.kind == Kind::Hamiltonian {
-            return refused(
-                "is of Lagrangians; a Hamiltonian has gauss16, and lagrangian() makes a Lagrangian of it",
-            );
-        }
-        if !source.nonholonomic.is_empty() {
-            return refused("keeps no nonholonomic constraints; gauss16 and dop853 do");
-        }
-        if method.constrained && source.holonomic.is_empty() {
-            return refused("is for constraints; without any variational_trapezoidal is the same");
-        }
-        if !method.constrained && !source.holonomic.is_empty() {
-            return refused("keeps no constraints; rattle, gauss16 and dop853 do");
+        let fits = source.kind == Kind::Lagrangian
+            && source.nonholonomic.is_empty()
+            && method.constrained != source.holonomic.is_empty();
+        if !fits {
+            return Err(Error::invalid("method", format!("{} does not take such a system", method.name)));
         }
         let mut model = model.clone();
         let n = model.source.coordinates;

@@ -18,6 +18,7 @@ mod step;
 mod table;
 mod trial;
 
+use crate::ode::methods::{kahan_li6, kahan_li8, yoshida4};
 use crate::ode::{self, Scheme};
 pub use equations::Equations;
 use table::Rule;
@@ -42,13 +43,22 @@ const fn variational(name: &'static str, order: u32, rule: &'static Rule) -> Met
     Method { name, order, constrained: false, rule, composition: None }
 }
 
+/// RATTLE, or a composition of it.
+const fn rattle(name: &'static str, order: u32, composition: Option<&'static ode::Method>) -> Method {
+    Method { name, order, constrained: true, rule: &table::TRAPEZOIDAL, composition }
+}
+
 /// The methods of this family.
-pub static METHODS: [Method; 5] = [
+pub static METHODS: [Method; 9] = [
     variational("variational_midpoint", 2, &table::MIDPOINT),
     variational("variational_trapezoidal", 2, &table::TRAPEZOIDAL),
     variational("variational_lobatto4", 4, &table::LOBATTO4),
     variational("variational_lobatto6", 6, &table::LOBATTO6),
     variational("variational_lobatto8", 8, &table::LOBATTO8),
+    rattle("rattle", 2, None),
+    rattle("rattle4", 4, Some(&yoshida4::METHOD)),
+    rattle("rattle6", 6, Some(&kahan_li6::METHOD)),
+    rattle("rattle8", 8, Some(&kahan_li8::METHOD)),
 ];
 
 /// The method of that name.

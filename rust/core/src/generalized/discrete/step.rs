@@ -189,7 +189,8 @@ impl Solver {
         let before: Vec<f64> = self.residuals[..n].iter().map(|rest| -rest).collect();
         let mut after = before.clone();
         let mut sizes = zeros.clone();
-        self.evaluate_momenta(from, &zeros, t);
+        let straight: Vec<f64> = from.iter().zip(to).map(|(from, to)| (to - from) / h).collect();
+        self.evaluate_momenta(from, &straight, t);
         for a in 0..n {
             let (force, momentum) = (self.rates.output(a).0, self.rates.output(n + a).0);
             for i in 0..self.table.count {
@@ -198,8 +199,10 @@ impl Solver {
                 sizes[a] += weight * ((self.table.slopes[0][i] * momentum[i]).abs() + change.abs());
             }
             for b in 0..n {
+                // A velocity is the difference of two places, over that of two times.
                 let inertia = self.momenta.output(n + a * n + b);
-                sizes[a] += (inertia * ((from[b].abs() + to[b].abs()) / h)).abs();
+                let times = straight[b].abs() * (t.abs() + (t + h).abs());
+                sizes[a] += (inertia * ((from[b].abs() + to[b].abs() + times) / h)).abs();
             }
         }
         let mut states = vec![Lanes([0.0; WIDTH]); 2 * n];
