@@ -97,7 +97,7 @@ def test_the_spherical_pendulum_is_that_of_its_chart(method: str) -> None:
 @pytest.mark.parametrize("outputs", ["nodes", "between"])
 @pytest.mark.parametrize("method", ORDERS)
 def test_a_chain_of_three_keeps_lengths(method: str, outputs: str) -> None:
-    """2000 steps of 0.05 with |g| ≤ 4 ε; energies stay near, and come back to 5e-14 with steps of 0.005 of rattle8."""
+    """2000 steps of 0.05 with |g| ≤ 4 ε; energies stay near, with rattle8 and steps of 0.005 to round-off."""
     chain = links(3, np.array([0.5, 0.625, 0.75]))
     steps = 0.05 * np.arange(1, 2001)
     out = chain.run(steps if outputs == "nodes" else steps - 0.03, method=method, dt=0.05)
@@ -106,11 +106,11 @@ def test_a_chain_of_three_keeps_lengths(method: str, outputs: str) -> None:
     assert speed <= 8 * EPSILON * np.abs(out.velocity).max()
     error = np.abs(out.energy / chain.energy - 1.0)
     assert error[1000:].max() <= 2.0 * error[:1000].max()
-    assert error.max() <= {2: 3e-2, 4: 3e-2, 6: 1e-3, 8: 1e-6}[ORDERS[method]]
+    assert error.max() <= {2: 1e-3, 4: 1e-5, 6: 3e-9, 8: 1e-12}[ORDERS[method]]
     if ORDERS[method] == 8:
         fine = chain.run(0.005 * np.arange(2001), method=method, dt=0.005)
         assert gaps(fine.position).max() <= 4
-        assert np.ptp(fine.energy) <= 5e-14 * abs(chain.energy)
+        assert np.ptp(fine.energy) <= 5e-15 * abs(chain.energy)
 
 
 @pytest.mark.parametrize("method", ORDERS)
@@ -196,8 +196,9 @@ def test_a_constraint_that_moves_is_kept() -> None:
     out = swinging().run(np.linspace(0.0, 20.0, 201), method="rattle4", dt=0.1)
     pivot = np.stack([0.2 * np.cos(2 * out.t), 0.1 * np.sin(3 * out.t)], axis=1)
     rates = np.stack([-0.4 * np.sin(2 * out.t), 0.3 * np.cos(3 * out.t)], axis=1)
-    assert np.abs(((out.position - pivot) ** 2).sum(axis=1) - 1.0).max() <= 8 * EPSILON
-    assert np.abs(((out.position - pivot) * (out.velocity - rates)).sum(axis=1)).max() <= 8 * EPSILON * 3
+    # The last digit of a time of 20 is 16 ε, and the pivot moves by half of that.
+    assert np.abs(((out.position - pivot) ** 2).sum(axis=1) - 1.0).max() <= (8 + 16) * EPSILON
+    assert np.abs(((out.position - pivot) * (out.velocity - rates)).sum(axis=1)).max() <= (8 + 32) * EPSILON
 
 
 @pytest.mark.parametrize("method", ORDERS)
@@ -241,4 +242,4 @@ def test_a_step_that_is_too_long_ends_with_what_there_is() -> None:
     with pytest.raises(vv.ConvergenceError, match="take a smaller dt") as caught:
         ball(velocity=[0.0, 30.0, 0.0]).run([0.0, 0.5, 1.0], method="rattle", dt=0.5)
     assert caught.value.trajectory is not None
-    assert len(caught.value.trajectory) == 1
+    assert caught.value.trajectory.status is vv.Status.STEP_FAILURE
