@@ -269,10 +269,14 @@ impl Solver {
         for a in 0..n {
             let (force, momentum) = (self.rates.output(a).0, self.rates.output(n + a).0);
             for j in 0..s {
-                let mut sum = if j == 0 { from.p_rest[a] } else { 0.0 };
+                // Weighted slopes of p₀ add to what is known, and what coefficients have lost of it is added again: a defect
+                // would pull at every step to the same side.
+                let mut sum = table.defects[j] * from.p[a] + if j == 0 { from.p_rest[a] } else { 0.0 };
                 for i in 0..table.count {
-                    let change = table.slopes[j][i] * (momentum[i] - from.p[a]);
-                    sum += table.weights[i] * (h * table.values[j][i] * force[i] + change);
+                    let change = momentum[i] - from.p[a];
+                    let lost = if j == 0 { table.first_rest[i] * change } else { 0.0 };
+                    let moved = h * table.values[j][i] * force[i] + (table.slopes[j][i] * change + lost);
+                    sum += table.weights[i] * moved;
                 }
                 self.residuals[j * n + a] = sum;
             }

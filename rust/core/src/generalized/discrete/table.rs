@@ -1,5 +1,6 @@
 //! What a segment of a discrete path is made of: polynomials between its ends, and a quadrature along them.
 
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::WIDTH;
 
 /// Control points, of which the first is 0 and the last 1, and the points and weights of a quadrature on 0 … 1.
@@ -53,6 +54,10 @@ pub(super) struct Table {
     pub(super) values: Vec<[f64; WIDTH]>,
     /// Their slopes.
     pub(super) slopes: Vec<[f64; WIDTH]>,
+    /// What the slopes of the first one leave out.
+    pub(super) first_rest: [f64; WIDTH],
+    /// What the weighted slopes of each but the last add to, less what they would without rounding: −1 of the first, 0.
+    pub(super) defects: Vec<f64>,
     /// Their slopes at the end.
     pub(super) last_slopes: Vec<f64>,
 }
@@ -61,17 +66,27 @@ impl Table {
     pub(super) fn new(rule: &Rule) -> Self {
         let (count, degree) = (rule.points.len(), rule.control.len() - 1);
         let points = core::array::from_fn(|lane| rule.points[lane.min(count - 1)]);
-        let weights = core::array::from_fn(|lane| if lane < count { rule.weights[lane] } else { 0.0 });
+        let weights: [f64; WIDTH] =
+            core::array::from_fn(|lane| if lane < count { rule.weights[lane] } else { 0.0 });
         let basis = 0..=degree;
         let values = basis.clone().map(|j| points.map(|x| polynomial(rule.control, j, x, None))).collect();
         let mut slopes: Vec<[f64; WIDTH]> =
             basis.clone().map(|j| points.map(|x| slope(rule.control, j, x))).collect();
-        // The slopes of all add to nothing: a place that all control points share moves nothing.
-        for lane in 0..WIDTH {
-            slopes[0][lane] = -slopes[1..].iter().map(|slope| slope[lane]).sum::<f64>();
-        }
+        // The slopes of all add to nothing, to twice the digits: a place that all control points share moves nothing.
+        let exact = DoubleDouble::from;
+        let sum = |lane: usize| slopes[1..].iter().fold(exact(0.0), |sum, row| sum - exact(row[lane]));
+        let first: [DoubleDouble; WIDTH] = core::array::from_fn(sum);
+        slopes[0] = first.map(DoubleDouble::to_f64);
+        let first_rest = core::array::from_fn(|lane| (first[lane] - exact(slopes[0][lane])).to_f64());
+        let defect = |j: usize| {
+            let of = |lane: usize| if j == 0 { first[lane] } else { exact(slopes[j][lane]) };
+            let start = if j == 0 { 1.0 } else { 0.0 };
+            (0..count).fold(exact(start), |sum, lane| sum + exact(weights[lane]) * of(lane)).to_f64()
+        };
+        let defects = (0..degree).map(defect).collect();
         let last_slopes = basis.map(|j| slope(rule.control, j, 1.0)).collect();
-        Self { degree, control: rule.control.to_vec(), count, points, weights, values, slopes, last_slopes }
+        let control = rule.control.to_vec();
+        Self { degree, control, count, points, weights, values, slopes, first_rest, defects, last_slopes }
     }
 }
 
