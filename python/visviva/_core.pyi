@@ -447,6 +447,13 @@ class GeneralizedModel:
     def by_degree(self) -> tuple[list[_Node], list[int]]: ...
     def routhian(self, cyclic: list[int]) -> tuple[list[_Node], list[int]]: ...
     def variational(self) -> GeneralizedModel: ...
+    def segments(
+        self,
+        method: str,
+        t: NDArray[np.float64],
+        places: NDArray[np.float64],
+        parameters: NDArray[np.float64],
+    ) -> tuple[NDArray[np.float64], list[NDArray[np.float64]]]: ...
     def run(
         self,
         asked: dict[str, Any],

@@ -77,7 +77,7 @@ def test_coupled_damped_and_turning_ones_are_those_of_the_exponential() -> None:
 
 def test_hamiltonians_and_free_particles() -> None:
     p = sp.symbols("p")
-    system = vv.Hamiltonian(p**2 / 2 + 3 * x, [x], momenta=[p], position=[1.0], momentum=[2.0])
+    system = vv.Hamiltonian(p**2 / 2 + 3 * x, [x], p=[p], position=[1.0], momentum=[2.0])
     out = system.run(1e5)
     # x = 1 + 2t - 3t²/2, exact in doubles.
     assert out.method == "matrix_exponential"

@@ -9,6 +9,7 @@ from visviva.generalized._accessory import AccessoryProblem
 from visviva.generalized._action import PathIntegral
 from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSection
 from visviva.generalized._canonical import CanonicalTest
+from visviva.generalized._discrete import DiscreteAction
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian
@@ -23,6 +24,7 @@ from visviva.generalized._trajectory import GeneralizedTrajectory
 __all__ = [
     "AccessoryProblem",
     "CanonicalTest",
+    "DiscreteAction",
     "Equilibrium",
     "Expression",
     "GeneralizedEnsemble",

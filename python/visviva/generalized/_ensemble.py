@@ -90,7 +90,7 @@ class GeneralizedEnsemble:
         self,
         t: ArrayLike,
         *,
-        method: str = "gauss16",
+        method: str = "auto",
         rtol: float = 1e-12,
         dt: float | None = None,
         max_step: float | None = None,

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Self
 from visviva._arrays import number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
+from visviva.generalized._methods import LINEAR
 
 if TYPE_CHECKING:
     import numpy as np
@@ -84,6 +85,8 @@ class Flow:
             nodes, roots = self._source.nodes("section", [section])
             root = roots[0]
         asked, _ = self._asked(number("t", t), method, rtol, dt, None)
+        if asked["method"] == LINEAR:
+            raise InvalidInput("method", f"{LINEAR} takes no steps on which a section could be met; gauss16 does")
         asked["section"] = (nodes, root, float(direction))
         self._check_start()
         result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)

@@ -2,17 +2,54 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import did_you_mean
 from visviva.errors import InvalidInput
 
-__all__ = ["GAUSS", "method_name"]
+if TYPE_CHECKING:
+    from visviva.generalized._states import States
+
+__all__ = ["CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "discrete_name", "method_name"]
+
+#: What solves linear equations with constant coefficients, without steps.
+LINEAR = "matrix_exponential"
 
 #: Collocation methods, which take any Lagrangian and any Hamiltonian.
 GAUSS = ("gauss16", "gauss8", "gauss4")
 
+#: Methods that make the action of a discrete path stationary: of Lagrangians.
+DISCRETE = (
+    "variational_midpoint",
+    "variational_trapezoidal",
+    "variational_lobatto4",
+    "variational_lobatto6",
+    "variational_lobatto8",
+)
 
-def method_name(method: object, separable: bool, dt: float | None, *, constrained: bool) -> str:
+#: RATTLE and its compositions: of Lagrangians with holonomic constraints.
+CONSTRAINED = ("rattle", "rattle4", "rattle6", "rattle8")
+
+
+def discrete_name(method: object) -> str:
+    """Check a variational integrator's name, and give it."""
+    if isinstance(method, str) and method in DISCRETE:
+        return method
+    hint = did_you_mean(method, list(DISCRETE)) if isinstance(method, str) else ""
+    raise InvalidInput("method", f"expected one of {', '.join(DISCRETE)}, got {method!r}{hint}")
+
+
+def method_name(method: object, system: States, dt: float | None, max_step: float | None = None) -> str:
     """Check a method, by its name or itself, and give its name."""
+    if isinstance(method, str) and method == "auto":
+        return LINEAR if system._structure["linear"] and dt is None and max_step is None else "gauss16"
     if isinstance(method, str) and method in GAUSS:
+        return method
+    if isinstance(method, str) and method == LINEAR:
+        _check_linear(system, dt)
+        return method
+    if isinstance(method, str) and method in (*DISCRETE, *CONSTRAINED):
+        _check_discrete(method, system, dt)
         return method
     from visviva.integrators import Method, methods
 
@@ -20,14 +57,10 @@ def method_name(method: object, separable: bool, dt: float | None, *, constraine
     if isinstance(method, Method):
         method = method.name
     if not isinstance(method, str) or method not in known:
-        if isinstance(method, str):
-            from visviva._keywords import did_you_mean
-
-            hint = did_you_mean(method, [*GAUSS, *known])
-        else:
-            hint = ""
+        own = ("auto", *GAUSS, LINEAR, *DISCRETE, *CONSTRAINED)
+        hint = did_you_mean(method, [*own, *known]) if isinstance(method, str) else ""
         raise InvalidInput(
-            "method", f"expected gauss16, gauss8, gauss4 or a method of vv.methods(), got {method!r}{hint}"
+            "method", f"expected one of {', '.join(own)} or a method of vv.methods(), got {method!r}{hint}"
         )
     kind = known[method]
     if kind.adaptive and dt is not None:
@@ -35,12 +68,40 @@ def method_name(method: object, separable: bool, dt: float | None, *, constraine
     if not kind.adaptive and dt is None:
         raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")
     splits = not kind.adaptive and "a" not in kind.coefficients
-    if splits and not separable:
+    if splits and not system._structure["separable"]:
         raise InvalidInput(
             "method",
             f"{method} needs accelerations that do not depend on velocities (H = p²/2 + V(q)); here they do. gauss16 "
             "is symplectic all the same; dop853 works too",
         )
-    if splits and constrained:
+    if splits and system._constraints():
         raise InvalidInput("method", f"{method} keeps no constraints; gauss16 and dop853 do")
     return method
+
+
+def _check_linear(system: States, dt: float | None) -> None:
+    if not system._structure["linear"]:
+        raise InvalidInput(
+            "method",
+            f"{LINEAR} needs linear equations with constant coefficients, and these are not; gauss16 takes any",
+        )
+    if dt is not None:
+        raise InvalidInput("dt", f"{LINEAR} takes no steps; leave dt out")
+
+
+def _check_discrete(method: str, system: States, dt: float | None) -> None:
+    """Refuse a discrete action of what has none."""
+    if system._source.kind != "lagrangian":
+        raise InvalidInput(
+            "method",
+            f"{method} is of Lagrangians; gauss16 is symplectic for any Hamiltonian, and lagrangian() makes a "
+            "Lagrangian of one that has it",
+        )
+    if system._source.description["nonholonomic"]:
+        raise InvalidInput("method", f"{method} keeps no nonholonomic constraints; gauss16 and dop853 do")
+    if method in DISCRETE and system._constraints():
+        raise InvalidInput("method", f"{method} keeps no constraints; rattle, gauss16 and dop853 do")
+    if method in CONSTRAINED and not system._constraints():
+        raise InvalidInput("method", f"{method} is for constraints; without any take variational_trapezoidal")
+    if dt is None:
+        raise InvalidInput("dt", f"expected a step, as {method} has a fixed one; pass dt")

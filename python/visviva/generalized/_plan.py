@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import known_keywords
+from visviva.generalized._methods import LINEAR
 
 if TYPE_CHECKING:
     from visviva.generalized._system import GeneralizedSystem
@@ -52,7 +53,8 @@ class GeneralizedPlan:
         n, constraints = len(system.coordinates), system._constraints()
         held = found["conserves_energy"] and asked["method"].startswith("gauss") and asked["dt"] is None
         steps = (
-            f"{asked['dt']:g}, all alike" if asked["dt"] is not None
+            "none: exact at every output time" if asked["method"] == LINEAR
+            else f"{asked['dt']:g}, all alike" if asked["dt"] is not None
             else "chosen at the start, then held: energy is conserved" if held
             else "chosen as it goes"
         )  # fmt: skip
@@ -64,6 +66,7 @@ class GeneralizedPlan:
             ("mass matrix", _MASS[found["mass_matrix"]]),
             ("accelerations", "of places alone" if found["separable"] else "of velocities, too"),
             ("operations", f"{found['operations']} per evaluation, for eight states at once"),
+            ("equations", "linear, with constant coefficients" if found["linear"] else "not linear"),
             ("method", asked["method"]),
             ("steps", steps),
         )

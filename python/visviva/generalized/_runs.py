@@ -39,7 +39,7 @@ class Runs(States):
             if value is not None and number(name, value) <= 0.0:
                 raise InvalidInput(name, f"expected a positive number, got {value!r}; the direction is that of t")
         asked = {
-            "method": method_name(method, self._structure["separable"], dt, constrained=bool(self._constraints())),
+            "method": method_name(method, self, dt, max_step),
             "span": (self.t0, float(outputs[-1])),
             "rtol": rtol,
             "dt": None if dt is None else number("dt", dt),
@@ -69,7 +69,7 @@ class Runs(States):
         self,
         t: ArrayLike,
         *,
-        method: str = "gauss16",
+        method: str = "auto",
         rtol: float = 1e-12,
         dt: float | None = None,
         max_step: float | None = None,
@@ -82,10 +82,17 @@ class Runs(States):
         t : float or array_like, shape (T,)
             The end, or output times in order; they change no step.
         method : str
+            ``auto``: where the equations are linear with constant coefficients, ``matrix_exponential``, which is exact
+            at any time and takes no steps; else ``gauss16``, as also where a step is given.
             ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
             energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`:
             adaptive ones (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not
-            depend on velocities.
+            depend on velocities. Or, of a Lagrangian, a variational integrator with a fixed step
+            (``variational_midpoint``, ``variational_trapezoidal``, and ``variational_lobatto4``, ``6`` and ``8`` of
+            those orders): it makes the action of a discrete path stationary, so it is symplectic and keeps the
+            momenta of cyclic coordinates to round-off, with forces and dissipation by d'Alembert's principle. With
+            holonomic constraints ``rattle`` does the same, and ``rattle4``, ``6`` and ``8`` are its compositions of
+            those orders.
         rtol : float
             Relative tolerance of a step.
         dt : float, optional
@@ -107,6 +114,13 @@ class Runs(States):
             At a singularity; ``.trajectory`` holds what was computed.
         Interrupted
             By Ctrl-C; ``.trajectory`` holds what was computed.
+
+        References
+        ----------
+        Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3
+        and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, (1.5.4), (2.2.17) and
+        (3.2.3); with constraints section 3.5 there, and section VII.1 of the former. The matrix exponential: C. Moler &
+        C. Van Loan, SIAM Review 45 (2003) 3.
 
         Examples
         --------
@@ -150,7 +164,7 @@ class Runs(States):
         self,
         t: ArrayLike,
         *,
-        method: str = "gauss16",
+        method: str = "auto",
         rtol: float = 1e-12,
         dt: float | None = None,
         max_step: float | None = None,

@@ -25,7 +25,6 @@ use crate::parallel::Ticker;
 /// Whether a run goes side by side: outputs are read at given times, and no state is put elsewhere on the way.
 pub fn together(model: &Model, request: &Request) -> bool {
     matches!(request.integrator, Integrator::Table(_))
-        && request.linear.is_none()
         && request.outputs.is_some()
         && request.section.is_none()
         && model.projection.is_none()
@@ -120,7 +119,9 @@ impl<'a> Abreast<'a> {
         };
         let max_step = Lanes::splat(request.longest_step(model));
         let Integrator::Table(method) = request.integrator else {
-            return Err(Error::Internal("stages and trajectories cannot both be the lanes".to_owned()));
+            return Err(Error::Internal(
+                "points of a step and trajectories cannot both be the lanes".to_owned(),
+            ));
         };
         let trial = trial(method, request, &mut system, &state, max_step)?;
         Ok(Self {
@@ -361,6 +362,6 @@ fn trial(
             Box::new(EmbeddedStep::with_rule(tableau, system, state, rule))
         }
         Scheme::Taylor(orders) => Box::new(TaylorStep::new(*orders, system, state, max_step)),
-        _ => Box::new(FixedSteps::new(method, request.fixed_step(method)?, system, state)?),
+        _ => Box::new(FixedSteps::new(method, request.fixed_step(method.name)?, system, state)?),
     })
 }

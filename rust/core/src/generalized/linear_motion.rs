@@ -22,7 +22,9 @@ use std::sync::Arc;
 pub struct LinearMotion {
     /// Coordinates.
     n: usize,
-    /// Whether masses divide what follows the velocities.
+    /// Right-hand sides: n of equations of the second order, whose other rates are the velocities.
+    rows: usize,
+    /// Whether masses divide them.
     masses: bool,
     /// Right-hand sides at zero, their derivatives row by row, and the mass matrix if there is one.
     code: Arc<Code>,
@@ -71,15 +73,14 @@ impl LinearMotion {
         let outputs = right.iter().copied().chain(slopes).chain(mass).map(Output::Node).collect::<Vec<_>>();
         let inputs = (model.numbers(), model.source.parameters);
         let code = crate::expressions::assembler::compile(&graph, inputs, &[], &outputs)?;
-        Ok(Some(Self { n: model.source.coordinates, masses, code: Arc::new(code) }))
+        Ok(Some(Self { n: model.source.coordinates, rows: right.len(), masses, code: Arc::new(code) }))
     }
 
     /// The flow with these parameters of the state and a 1 after it, forwards or backwards in time.
     fn flow(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
-        let (n, numbers) = (self.n, 2 * self.n);
+        let (n, rows, numbers) = (self.n, self.rows, 2 * self.n);
         let mut found = vec![0.0; self.code.outputs()];
         Machine::new(self.code.clone(), parameters).evaluate(t0, &vec![0.0; numbers], &mut found);
-        let rows = if self.masses { n } else { numbers };
         let (constants, rest) = found.split_at(rows);
         let (slopes, mass) = rest.split_at(rows * numbers);
         let mut right: Vec<Vec<DoubleDouble>> = slopes
@@ -93,11 +94,11 @@ impl LinearMotion {
         if self.masses {
             let mass = mass.chunks_exact(n).map(|row| row.iter().map(|&x| DoubleDouble::from(x)).collect());
             divide(&mut mass.collect::<Vec<_>>(), &mut right)?;
-            for i in 0..n {
-                matrix[i * (numbers + 1) + n + i] = DoubleDouble::one();
-            }
         }
         let start = numbers - rows;
+        for i in 0..start {
+            matrix[i * (numbers + 1) + n + i] = DoubleDouble::one();
+        }
         for (i, row) in right.iter().enumerate() {
             matrix[(start + i) * (numbers + 1)..][..=numbers].copy_from_slice(row);
         }

@@ -7,6 +7,7 @@
 pub mod abreast;
 mod constraints;
 pub mod dependence;
+pub mod discrete;
 mod elimination;
 pub mod evaluate;
 mod fixed;

@@ -3,6 +3,7 @@
 //! The one idea: a run is that of [`ode::run`](crate::ode::run), with whatever takes its steps; outputs are read off steps and
 //! never steer them. With constraints every kept step is put back on them ([`projection`]).
 
+use super::discrete::{self, DiscreteStep};
 use super::fixed::FixedSteps;
 use super::gauss::{self, GaussStep, Steps};
 use super::linear_motion::LinearMotion;
@@ -27,12 +28,16 @@ use crate::parallel::Ticker;
 use std::sync::Arc;
 
 /// What takes the steps.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub enum Integrator {
     /// Collocation.
     Gauss(&'static gauss::Method),
+    /// A discrete action.
+    Discrete(Arc<discrete::Equations>),
     /// A method of the registry.
     Table(&'static Method),
+    /// None: linear equations are solved at once.
+    Linear(Arc<LinearMotion>),
 }
 
 /// What is asked of a run.
@@ -58,8 +63,6 @@ pub struct Request {
     pub section: Option<Section>,
     /// The equations as recurrences, if the method is made of them.
     pub series: Option<Arc<Series>>,
-    /// The equations as linear ones, if they are to be solved as such.
-    pub linear: Option<Arc<LinearMotion>>,
 }
 
 /// Zeros of an expression on the way.
@@ -139,8 +142,8 @@ impl Request {
     }
 
     /// The step of a method that has a fixed one, with the sign of time.
-    pub(super) fn fixed_step(&self, method: &Method) -> Result<f64> {
-        let missing = || Error::invalid("dt", format!("{} needs a step dt", method.name));
+    pub(super) fn fixed_step(&self, method: &str) -> Result<f64> {
+        let missing = || Error::invalid("dt", format!("{method} needs a step dt"));
         Ok(self.dt.ok_or_else(missing)?.copysign(self.span.1 - self.span.0))
     }
 }
@@ -172,9 +175,6 @@ pub fn solve(
     (y0, parameters): (&[f64], &[f64]),
     ticker: &mut Ticker<'_>,
 ) -> Result<Solution> {
-    if let Some(linear) = &request.linear {
-        return linear.solve(request, (y0, parameters), ticker);
-    }
     let (t0, end) = request.span;
     let mut system = Motion::<f64>::of(model, request, parameters, t0);
     let mut state = match system.form() {
@@ -200,7 +200,7 @@ pub fn solve(
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
     let mut recorder = Counted { table, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
-    let mut collocation = 0;
+    let mut own = 0;
     let outcome = match request.integrator {
         Integrator::Gauss(method) => {
             let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
@@ -210,7 +210,14 @@ pub fn solve(
                 None => Steps::Chosen { delta: delta(request.rtol), held: request.held },
             };
             let trial = GaussStep::new(method, (machine, model.form), drive.state, (steps, max_step), t0);
-            drive.with(trial, projector.take(), &mut recorder, |trial| collocation = trial.evaluations())
+            drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
+        }
+        Integrator::Linear(ref linear) => return linear.solve(request, (y0, parameters), drive.ticker),
+        Integrator::Discrete(ref equations) => {
+            let h = request.fixed_step(equations.name())?;
+            let trial = DiscreteStep::new(equations, parameters, drive.state, (t0, h));
+            // It keeps its constraints itself.
+            drive.with(trial, None, &mut recorder, |trial| own = trial.evaluations())
         }
         Integrator::Table(method) => match &method.scheme {
             Scheme::Embedded(tableau) => {
@@ -229,7 +236,7 @@ pub fn solve(
                 drive.with(trial, projector.take(), &mut recorder, |_| {})
             }
             _ => {
-                let h = request.fixed_step(method)?;
+                let h = request.fixed_step(method.name)?;
                 let trial = FixedSteps::new(method, h, drive.system, drive.state)?;
                 drive.with(trial, projector.take(), &mut recorder, |_| {})
             }
@@ -242,7 +249,7 @@ pub fn solve(
     };
     let Counted { mut table, steps, last, reached, .. } = recorder;
     let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
-    let evaluations = system.evaluations() + collocation;
+    let evaluations = system.evaluations() + own;
     Ok(Solution {
         ending,
         failure,

@@ -66,7 +66,6 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         held: true,
         section: None,
         series: None,
-        linear: None,
     };
     let control = Control::default();
     solve(model, &request, (y0, parameters), &mut Ticker::quiet(&control)).unwrap()

@@ -18,6 +18,8 @@ use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
 use visviva_core::generalized::abreast::{solve_together, together};
 use visviva_core::generalized::dependence::Dependence;
+use visviva_core::generalized::discrete::path::segments;
+use visviva_core::generalized::discrete::{self, Equations};
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
 use visviva_core::generalized::linear::{Linear, modes};
@@ -364,6 +366,36 @@ impl GeneralizedModel {
     fn variational(&self, py: Python<'_>) -> PyResult<Self> {
         let model = self.copy();
         compute(py, 0, None, |_| Self::of(variational(&model)?))?.whole(py)
+    }
+
+    /// The segments of a path through places (T, n) at times (T): their actions (T − 1), and the momenta at their
+    /// beginnings and ends and the sizes of what those are made of, (T − 1, n).
+    fn segments<'py>(
+        &self,
+        py: Python<'py>,
+        method: &str,
+        t: Array<'py>,
+        places: Array<'py>,
+        parameters: Array<'py>,
+    ) -> PyResult<(Column<'py>, [Column<'py>; 3])> {
+        let model = &*self.model;
+        let n = model.source.coordinates;
+        let (t, [count]) = copied("t", &t, [None])?;
+        let (places, _) = copied("places", &places, [Some(count), Some(n)])?;
+        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
+        let found = compute(py, 0, None, |ticker| {
+            let method =
+                discrete::method(method).ok_or_else(|| Error::Internal(format!("no method {method}")))?;
+            let equations = Arc::new(Equations::new(model, method)?);
+            let function = model.function(&[model.source.function])?;
+            segments(&equations, function, &parameters, (&t, &places), ticker)
+        })?
+        .whole(py)?;
+        let segments = count.saturating_sub(1);
+        let shape = [segments, n];
+        let columns = [found.before, found.after, found.sizes].map(|column| moved(py, column, &shape));
+        let [before, after, sizes] = columns;
+        Ok((moved(py, found.actions, &[segments])?, [before?, after?, sizes?]))
     }
 
     /// Runs states (B, 2n) with parameters (B, p) from a time to another.

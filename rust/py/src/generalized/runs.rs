@@ -7,11 +7,14 @@ use crate::errors::raised;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use visviva_core::generalized::gauss;
 use visviva_core::generalized::run::{Integrator, Request, Section, Solution};
+use visviva_core::generalized::{discrete, gauss};
 use visviva_core::ode::run::Ending;
 use visviva_core::ode::{Method, Scheme};
-use visviva_core::{Error, registry};
+use visviva_core::{Error, Result, registry};
+
+/// The method that takes no steps.
+const LINEAR: &str = "matrix_exponential";
 
 /// What is asked of a run.
 #[derive(FromPyObject)]
@@ -29,20 +32,25 @@ pub(super) struct Asked<'py> {
 }
 
 impl Asked<'_> {
+    /// What takes the steps, by its name.
+    fn integrator(&self, of: &GeneralizedModel) -> Result<Integrator> {
+        let name = &self.method;
+        if let Some(method) = gauss::method(name) {
+            return Ok(Integrator::Gauss(method));
+        }
+        if let Some(method) = discrete::method(name) {
+            return Ok(Integrator::Discrete(Arc::new(discrete::Equations::new(&of.model, method)?)));
+        }
+        if name == LINEAR {
+            let linear = of.linear.clone().map(Integrator::Linear);
+            return linear.ok_or_else(|| Error::invalid("method", "the equations are not linear"));
+        }
+        let method = registry::method(name);
+        method.map(Integrator::Table).ok_or_else(|| Error::invalid("method", format!("no method {name}")))
+    }
+
     pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
-        let linear = (self.method == "matrix_exponential").then(|| {
-            of.linear.clone().ok_or_else(|| Error::invalid("method", "the equations are not linear"))
-        });
-        let linear = linear.transpose().map_err(|error| raised(py, error))?;
-        // What is solved at once takes no steps.
-        let stepping = if linear.is_some() { "gauss16" } else { &self.method };
-        let integrator =
-            match gauss::method(stepping) {
-                Some(method) => Integrator::Gauss(method),
-                None => Integrator::Table(registry::method(stepping).ok_or_else(|| {
-                    raised(py, Error::invalid("method", format!("no method {}", self.method)))
-                })?),
-            };
+        let integrator = self.integrator(of).map_err(|error| raised(py, error))?;
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
         let section = self.section.as_ref().map(|(nodes, root, direction)| {
             let mut model = of.copy();
@@ -56,7 +64,6 @@ impl Asked<'_> {
         Ok(Request {
             section,
             series,
-            linear,
             integrator,
             span: self.span,
             rtol: self.rtol,
