@@ -12,7 +12,7 @@ import numpy as np
 
 from visviva._keywords import did_you_mean
 from visviva.errors import InvalidInput
-from visviva.forces import Force
+from visviva.forces import ExpressedForce, Force
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -35,24 +35,53 @@ def forces_of_copies(
         if not hasattr(named, "items") or not named:
             raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
         known = scene.forces[place]._values()
-        for name, given in named.items():
+        for name, given in _own_values(scene.forces[place], named).items():
             if name not in known:
                 hint = did_you_mean(str(name), tuple(known))
                 raise InvalidInput(
                     "parameters", f"expected parameters of {type(scene.forces[place]).__name__}, got {name!r}{hint}"
                 )
             values.setdefault(place, {})[name] = _of_each(name, given)
-    counts = {name: len(given) for named in values.values() for name, given in named.items()}
-    first, count = next(iter(counts.items()))
-    for name, other in counts.items():
-        if other != count:
-            raise InvalidInput(
-                "parameters", f"expected values of {name!r} for {count} copies like {first}, got {other}"
-            )
+    count = _count({name: given for named in values.values() for name, given in named.items()})
     return tuple(
         tuple(_with_values(force, values.get(place), copy) for place, force in enumerate(scene.forces))
         for copy in range(count)
     )
+
+
+def _count(values: Mapping[str, Sequence[Any]]) -> int:
+    """How many copies there are values for: as many of each."""
+    first, given = next(iter(values.items()))
+    for name, other in values.items():
+        if len(other) != len(given):
+            raise InvalidInput(
+                "parameters", f"expected values of {name!r} for {len(given)} copies like {first}, got {len(other)}"
+            )
+    return len(given)
+
+
+def _own_values(force: Force, named: Mapping[Any, Any]) -> Mapping[Any, Any]:
+    """The given values, those of the parameters of expressions as rows of the parameter that holds them."""
+    if not isinstance(force, ExpressedForce):
+        return named
+    from visviva.expression_force import parameter_names
+
+    names = parameter_names(force)
+    own = {str(name): _of_each(str(name), given) for name, given in named.items() if str(name) in names}
+    if not own:
+        unknown = next(iter(set(map(str, named)) - set(force._values())), None)
+        if unknown is not None:
+            hint = did_you_mean(unknown, names)
+            raise InvalidInput(
+                "parameters", f"expected parameters of the expressions {list(names)}, got {unknown!r}{hint}"
+            )
+        return named
+    rows = np.tile(np.asarray(force.values, dtype=float), (_count(own), 1))
+    for name, given in own.items():
+        if np.ndim(given) != 1:
+            raise InvalidInput("parameters", f"expected one number {name!r} for each copy, got {given!r}")
+        rows[:, names.index(name)] = given
+    return {**{name: given for name, given in named.items() if str(name) not in names}, "values": rows}
 
 
 def _with_values(force: Force, values: dict[str, Sequence[Any]] | None, copy: int) -> Force:

@@ -19,10 +19,12 @@ from visviva.generalized._symbolic import Symbols, sympy, time
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
 
-__all__ = ["ExpressionForce"]
+__all__ = ["ExpressionForce", "parameter_names"]
 
 #: Operations by their numbers in a table; functions come after them.
 _OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
+#: In the place of an operation: the letters of a parameter's name follow.
+_NAME = 1000
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -44,7 +46,7 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     force : sequence of three expressions, or callable that gives three, optional
         The components of the force on a body, of its place, its velocity and the time.
     parameters : mapping of symbol or str to float, optional
-        The values of what else stands in the expressions.
+        The values of what else stands in the expressions. Copies of an ensemble may have their own, by these names.
 
     Returns
     -------
@@ -93,7 +95,7 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     argument: Literal["potential", "force"] = "potential" if force is None else "force"
     roots = (potential,) if force is None else _components(force, names)
     found = [_node(argument, root, nodes, names) for root in roots]
-    return ExpressedForce(argument, _table(nodes, found), values, *_AXES)
+    return ExpressedForce(argument, _table(nodes, found, names), values, *_AXES)
 
 
 def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
@@ -136,9 +138,23 @@ def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) 
     return Symbols(nodes, *known).node(argument, expression.xreplace(plain))
 
 
-def _table(nodes: Nodes, roots: list[int]) -> list[float]:
-    """Write nodes as numbers: how many roots, and which; then each node, with its number of arguments."""
+def _table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]:
+    """Write nodes as numbers: how many roots, and which; each node, with its number of arguments; names by letters."""
     table: list[float] = [len(roots), *roots]
     for operation, arguments, value in nodes.all:
         table += [_OPERATIONS.index(operation), value, len(arguments), *arguments]
+    for index, name in enumerate(names):
+        table += [_NAME, index, len(name), *map(ord, name)]
     return table
+
+
+def parameter_names(force: ExpressedForce) -> tuple[str, ...]:
+    """Give the names of a force's parameters, in the order of its ``values``."""
+    table = [int(number) for number in force.nodes]
+    names, at = [], 1 + table[0]
+    while at < len(table):
+        operation, _, count = table[at : at + 3]
+        if operation == _NAME:
+            names.append("".join(map(chr, table[at + 3 : at + 3 + count])))
+        at += 3 + count
+    return tuple(names)

@@ -204,3 +204,35 @@ def test_a_series_goes_over_no_turn_of_any_body(count: int) -> None:
         scene.run(t=2.1, method="taylor")
     ensemble = scene.ensemble(position=start[None] + np.zeros((3, 1, 1))).run(t=1.4, method="taylor")
     assert np.array_equal(ensemble.position[1, -1], out.position[-1])
+
+
+@pytest.mark.parametrize("method", [{"method": "dop853"}, {"method": "taylor"}, {"method": "leapfrog", "dt": 2.0**-6}])
+@pytest.mark.parametrize("count", [1, 3, 11])
+def test_copies_with_parameters_of_their_own_move_as_alone(count: int, method: dict[str, Any]) -> None:
+    trap = vv.ExpressionForce(potential=k * (x**2 + y**2) / 2 + q * (x**2 + z**2) ** 2, parameters={k: 2.0, q: 0.25})
+    scene = vv.Scene(bodies(count), vv.UniformField([0.0, 0.0, -1.0]), trap)
+    stiffness, quartic = np.linspace(0.5, 3.0, 13), np.linspace(1.0, 0.0, 13)
+    out = scene.ensemble(parameters={trap: {"k": stiffness, "q": quartic}}).run(t=1.5, threads=2, **method)
+    for copy in range(13):
+        own = vv.ExpressionForce(
+            potential=k * (x**2 + y**2) / 2 + q * (x**2 + z**2) ** 2,
+            parameters={k: stiffness[copy], q: quartic[copy]},
+        )
+        alone = vv.Scene(bodies(count), vv.UniformField([0.0, 0.0, -1.0]), own).run(t=1.5, **method)
+        assert np.array_equal(out.position[copy, -1], alone.position[-1])
+        assert np.array_equal(out.energy[copy], alone.energy)
+
+
+def test_parameters_of_copies_are_asked_by_name() -> None:
+    trap = vv.ExpressionForce(potential=k * x**2, parameters={k: 2.0})
+    scene = vv.Scene(bodies(2), trap)
+    for wrong, message in (
+        ({"kk": [1.0]}, r"expected parameters of the expressions \['k'\], got 'kk'; did you mean 'k'"),
+        ({"k": [[1.0, 2.0]]}, "expected one number 'k' for each copy"),
+        ({"k": [np.nan]}, "copy 0"),
+    ):
+        with pytest.raises(vv.InvalidInput, match=message):
+            scene.ensemble(parameters={trap: wrong})
+    assert (
+        pickle.loads(pickle.dumps(scene.ensemble(parameters={trap: {"k": [1.0, 3.0]}}))).forces[1][0].values[0] == 3.0
+    )

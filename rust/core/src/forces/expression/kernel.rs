@@ -1,6 +1,6 @@
 //! The kernel of an expression: eight bodies at once from the lanes to its coordinates, through its code, and back.
 
-use super::{Expressions, Place, VARIABLES};
+use super::{ExpressionForce, Place, VARIABLES};
 use crate::error::Result;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
@@ -58,19 +58,28 @@ impl Way {
 /// An expression at work.
 pub(super) struct Kernel {
     way: Way,
-    machine: Machine<Lanes>,
+    /// One for each block of systems, with their parameters.
+    machines: Vec<Machine<Lanes>>,
     needs: Needs,
 }
 
 impl Kernel {
-    pub(super) fn new(expressions: &Expressions, place: &Place, context: &Context<'_>) -> Self {
-        let parameters: Vec<Lanes> = expressions.parameters.iter().map(|&p| Lanes::splat(p)).collect();
+    pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Self {
+        let machine = |parameters: Vec<Lanes>| Machine::new(term.expressions.force.clone(), &parameters);
         Self {
-            way: Way::new(place, context),
-            machine: Machine::new(expressions.force.clone(), &parameters),
-            needs: expressions.needs,
+            way: Way::new(&term.place, context),
+            machines: parameters(term, context).into_iter().map(machine).collect(),
+            needs: term.expressions.needs,
         }
     }
+}
+
+/// The parameters of each block of systems, of every system in its lane.
+fn parameters(term: &ExpressionForce, context: &Context<'_>) -> Vec<Vec<Lanes>> {
+    let of =
+        |index: usize| context.per_system(|system| context.own(term, system).expressions.parameters[index]);
+    let each: Vec<Vec<Lanes>> = (0..term.expressions.parameters.len()).map(of).collect();
+    (0..context.blocks()).map(|block| each.iter().map(|values| values[block]).collect()).collect()
 }
 
 /// Three components along the axes.
@@ -94,14 +103,15 @@ fn apply_body<V: Vector8 + Scalar>(
     a: &mut [Lanes],
     first: bool,
 ) {
-    let Kernel { way, machine, needs } = kernel;
+    let Kernel { way, machines, needs } = kernel;
     let rows = way.shape.rows;
-    let (code, registers) = machine.parts();
-    let outputs = code.output_registers();
-    let registers = V::view_mut(registers);
+    let of_block = rows / machines.len();
     let (q, v, a) = (V::view(phase.q), V::view(phase.v), V::view_mut(a));
     let t = V::splat(way.time).multiply_add(V::load(*phase.t), V::splat(way.t0));
     for row in 0..rows {
+        let (code, registers) = machines[row / of_block].parts();
+        let outputs = code.output_registers();
+        let registers = V::view_mut(registers);
         let mut place = [V::zero(); 3];
         for c in 0..way.shape.components {
             let origin = V::splat(-way.origin[c]);
@@ -164,11 +174,14 @@ pub(super) struct Expanded {
 }
 
 impl Expanded {
-    pub(super) fn new(expressions: &Expressions, place: &Place, context: &Context<'_>) -> Option<Self> {
-        let parameters: Vec<Lanes> = expressions.parameters.iter().map(|&p| Lanes::splat(p)).collect();
-        let row = Expansion::new(expressions.series.clone()?, &parameters);
-        let way = Way::new(place, context);
-        Some(Self { rows: vec![row; way.shape.rows], way, needs: expressions.needs })
+    pub(super) fn new(term: &ExpressionForce, context: &Context<'_>) -> Option<Self> {
+        let series = term.expressions.series.as_ref()?;
+        let way = Way::new(&term.place, context);
+        let blocks = parameters(term, context);
+        let of_block = way.shape.rows / blocks.len();
+        let row = |parameters: &Vec<Lanes>| vec![Expansion::new(series.clone(), parameters); of_block];
+        let rows = blocks.iter().flat_map(row).collect();
+        Some(Self { rows, way, needs: term.expressions.needs })
     }
 }
 

@@ -106,6 +106,8 @@ struct Expressions {
     potential: Option<Arc<Code>>,
     parameters: Vec<f64>,
     needs: Needs,
+    /// What they were made from, but for the parameters.
+    made_from: Vec<u64>,
 }
 
 /// What leads from a scene to the coordinates of the expressions.
@@ -152,10 +154,10 @@ impl ForceTerm for ExpressionForce {
         &DECLARATION
     }
     fn kernel(&self, context: &Context<'_>) -> Box<dyn Force<Lanes>> {
-        Box::new(Kernel::new(&self.expressions, &self.place, context))
+        Box::new(Kernel::new(self, context))
     }
     fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
-        Some(Box::new(Expanded::new(&self.expressions, &self.place, context)?))
+        Some(Box::new(Expanded::new(self, context)?))
     }
     fn has_series(&self) -> bool {
         self.expressions.series.is_some()
@@ -206,6 +208,12 @@ impl ForceTerm for ExpressionForce {
     fn conserves(&self) -> Conserves {
         let energy = self.expressions.potential.is_some() && !self.expressions.needs.time;
         Conserves { energy, ..Conserves::NOTHING }
+    }
+    /// Copies may have parameters of their own.
+    fn in_every_lane(&self) -> Option<Vec<u64>> {
+        let Place { axes, origin, scales } = &self.place;
+        let place = axes.as_flattened().iter().chain(origin).chain(scales).map(|x| x.to_bits());
+        Some(place.chain(self.expressions.made_from.iter().copied()).collect())
     }
     fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
         let Expressions { force, parameters, .. } = &self.expressions;

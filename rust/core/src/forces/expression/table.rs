@@ -1,7 +1,8 @@
 //! Expressions in a table of numbers, as a file has them.
 //!
 //! First how many expressions there are, and their nodes; then node after node: its operation, its value, how many arguments
-//! it has, and those, as numbers of nodes before it.
+//! it has, and those, as numbers of nodes before it. What has the operation [`NAME`] is no node: the letters of a parameter's
+//! name, which is asked for elsewhere.
 
 use super::{Expressions, VARIABLES};
 use crate::error::{Error, Result};
@@ -12,6 +13,9 @@ use crate::expressions::program::Output;
 use crate::expressions::series::Series;
 use crate::ode::system::Needs;
 use std::sync::Arc;
+
+/// In the place of an operation: a name follows.
+const NAME: usize = 1000;
 
 fn refused(why: &str) -> Error {
     Error::invalid("nodes", format!("these are no expressions as visviva.ExpressionForce writes them: {why}"))
@@ -50,7 +54,13 @@ pub(super) fn read(potential: bool, table: &[f64], parameters: &[f64]) -> Result
     let mut graph = Graph::default();
     let mut ids: Vec<Id> = Vec::new();
     while !reader.0.is_empty() {
-        let name = operation(reader.count()?).ok_or_else(|| refused("there is no such operation"))?;
+        let number = reader.count()?;
+        if number == NAME {
+            let (_, letters) = (reader.number()?, reader.count()?);
+            let _ = reader.counts(letters)?;
+            continue;
+        }
+        let name = operation(number).ok_or_else(|| refused("there is no such operation"))?;
         let value = reader.number()?;
         let arguments = reader.count()?;
         let arguments: Vec<u32> = reader.counts(arguments)?.into_iter().map(|index| index as u32).collect();
@@ -67,7 +77,8 @@ pub(super) fn read(potential: bool, table: &[f64], parameters: &[f64]) -> Result
         ids.push(id);
     }
     let roots = roots.iter().map(|&root| ids.get(root).copied().ok_or_else(|| refused("a node is missing")));
-    expressions(potential, graph, roots.collect::<Result<_>>()?, parameters)
+    let made_from = core::iter::once(u64::from(potential)).chain(table.iter().map(|x| x.to_bits())).collect();
+    Ok(Expressions { made_from, ..expressions(potential, graph, roots.collect::<Result<_>>()?, parameters)? })
 }
 
 /// Derives and compiles.
@@ -103,5 +114,6 @@ fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[
         potential: if potential { Some(compiled(&roots)?) } else { None },
         parameters: parameters.to_vec(),
         needs,
+        made_from: vec![],
     })
 }
