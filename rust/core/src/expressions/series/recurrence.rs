@@ -109,6 +109,25 @@ fn convolved<S: Real>(x: &[S], y: &[S]) -> S {
     (first + second) + (third + fourth)
 }
 
+/// As [`convolved`] with two at once, in two chains each: what they share is read once.
+#[inline(always)]
+fn convolved_with_both<S: Real>(x: &[S], y: &[S], z: &[S]) -> (S, S) {
+    let (y, z) = (&y[..x.len()], &z[..x.len()]);
+    let (mut even, mut odd) = ((S::zero(), S::zero()), (S::zero(), S::zero()));
+    let (forward, of_y, of_z) = (x.chunks_exact(2), y.rchunks_exact(2), z.rchunks_exact(2));
+    let rest = (forward.remainder(), of_y.remainder(), of_z.remainder());
+    for ((x, y), z) in forward.zip(of_y).zip(of_z) {
+        if let ([x0, x1], [y0, y1], [z0, z1]) = (x, y, z) {
+            even = (x0.multiply_add(*y1, even.0), x0.multiply_add(*z1, even.1));
+            odd = (x1.multiply_add(*y0, odd.0), x1.multiply_add(*z0, odd.1));
+        }
+    }
+    if let ([x], [y], [z]) = rest {
+        even = (x.multiply_add(*y, even.0), x.multiply_add(*z, even.1));
+    }
+    (even.0 + odd.0, even.1 + odd.1)
+}
+
 /// Σ a_j b_{n−j} of 0 < j < n.
 #[inline(always)]
 fn inner<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
@@ -274,8 +293,9 @@ fn further<S: Scalar>(
         Recurrence::Part { to, a, constant } => numbers[to + n] = numbers[a + n] / numbers[constant],
         Recurrence::Slopes { to, of } => numbers[to + n] = S::splat(n as f64) * numbers[of + n],
         Recurrence::SineCosine { sine, cosine, slopes, .. } => {
-            let of_sine = integral(numbers, slopes, cosine, n);
-            let of_cosine = integral(numbers, slopes, sine, n);
+            let slopes = &numbers[slopes + 1..slopes + n + 1];
+            let pair = (&numbers[cosine..cosine + n], &numbers[sine..sine + n]);
+            let (of_sine, of_cosine) = convolved_with_both(slopes, pair.0, pair.1);
             numbers[sine + n] = over(of_sine, inverse);
             numbers[cosine + n] = -over(of_cosine, inverse);
         }
@@ -320,10 +340,16 @@ fn further<S: Scalar>(
                     if !entry.varies {
                         continue;
                     }
-                    right_room[i] -= known(numbers, entry.place, to[j], n);
-                    if i != j {
-                        right_room[j] -= known(numbers, entry.place, to[i], n);
+                    if i == j {
+                        right_room[i] -= known(numbers, entry.place, to[j], n);
+                        continue;
                     }
+                    let last = numbers[entry.place + n];
+                    let inner = &numbers[entry.place + 1..entry.place + n];
+                    let both = (&numbers[to[j] + 1..to[j] + n], &numbers[to[i] + 1..to[i] + n]);
+                    let (of_i, of_j) = convolved_with_both(inner, both.0, both.1);
+                    right_room[i] -= last.multiply_add(numbers[to[j]], of_i);
+                    right_room[j] -= last.multiply_add(numbers[to[i]], of_j);
                 }
             }
             execute::solve(factored, right_room);
