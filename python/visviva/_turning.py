@@ -12,7 +12,7 @@ from visviva.errors import InvalidInput
 from visviva.particles import Particles
 from visviva.rigid._arguments import rows
 from visviva.rigid._orientation import rotate, rotate_back
-from visviva.rigid_bodies import RigidBodies
+from visviva.rigid_bodies import IS_ROUNDED, RigidBodies
 from visviva.rigid_forces import AppliedTorque, RotationalDrag
 from visviva.rigid_springs import AttachedSpring
 
@@ -150,7 +150,10 @@ def rigid_of_copies(
             raise InvalidInput("velocity", "expected 0 for bodies with fixed points, or what follows from their spins")
         moving = full["velocity"].copy()
         centers = moving[:, -len(rigid) :]
-        centers[...] = np.where(rigid.pivoted[None, :, None], follows, centers)
+        # What a run gives stays as it is, which is that but for roundings.
+        largest = np.abs(told["angular_velocity"]).max(axis=-1) * np.abs(arms).max(axis=-1)
+        other = rigid.pivoted & ~(apart <= IS_ROUNDED * largest)
+        centers[...] = np.where(other[..., None], follows, centers)
         moving.setflags(write=False)
         full["velocity"] = moving
     return told

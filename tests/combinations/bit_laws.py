@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 from law_book import law
-from recipe import COLUMNS, Case, Recipe, Refused
+from recipe import Case, Recipe, Refused
 from running import TIERS, Bits, collisions, differences, events, execute, outcome, worker
 
 import visviva as vv
@@ -159,7 +159,7 @@ def tiers_change_no_bit(recipe: Recipe) -> None:
 def recorded_columns_change_no_bit(recipe: Recipe) -> None:
     case = recipe.case()
     some = _ran(case)
-    every = outcome(case.start, case.t, {**case.how, "record": COLUMNS})
+    every = outcome(case.start, case.t, {**case.how, "record": recipe.every_column})
     # Where numbers cease to be, the last state is that of a row that has all of it.
     of = (name for name in some if not (_gone(some) and name.startswith("final")))
     _same(some, every, "with every column", of=tuple(of))

@@ -35,6 +35,7 @@ POTENTIALS = {entry["class_name"]: entry for entry in _core.potentials()}
 # What is kept (`kept.py`) from when there were no others stays what it was.
 FIRST_POTENTIALS = ["Coulomb", "Yukawa", "LennardJones"]
 METHODS = {method.name: method for method in vv.methods()}
+RIGID_METHODS = {method.name: method for method in vv.rigid.methods()}
 # Potentials a derivative of which jumps somewhere, the third or a higher one.
 ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
 # As those, in a speed.

@@ -15,7 +15,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from drawing import EVENTS, FORCES, METHODS, NEED_MASS, declared, event, force
+from drawing import EVENTS, FORCES, METHODS, NEED_MASS, RIGID_METHODS, declared, event, force
 from hypothesis import strategies as st
 
 import visviva as vv
@@ -72,6 +72,27 @@ class Recipe:
         except vv.InvalidInput as error:
             # A part that makes no sense here, such as a spring between a body and itself.
             raise Refused(f"refused {error.argument}") from error
+
+    @property
+    def every_column(self) -> tuple[str, ...]:
+        """All that may be recorded of it."""
+        return COLUMNS
+
+    def scene(self) -> vv.Scene:
+        """Where it begins, in its own units and at the time 0."""
+        return _scene(self)
+
+    def begun_at(self, scene: vv.Scene, t0: float) -> vv.Scene:
+        """The same at another time."""
+        return vv.Scene(scene.particles, *scene.forces, t0=t0)
+
+    def copies(self, scene: vv.Scene) -> vv.EnsembleScene:
+        """Those that differ as the recipe says."""
+        return _ensemble(self, scene)
+
+    def span(self, scene: vv.Scene) -> float:
+        """How long it is followed."""
+        return _span(scene, tame=self.tame)
 
 
 @dataclass(frozen=True)
@@ -150,14 +171,14 @@ def _span(scene: vv.Scene, *, tame: bool) -> float:
 
 @lru_cache(maxsize=8)  # every law asks for it again
 def _case(recipe: Recipe) -> Case:
-    scene = _scene(recipe)
+    scene = recipe.scene()
     # A step that is a power of two and a start that is a multiple of it: every node is exact.
-    step = 2.0 ** np.floor(np.log2(_span(scene, tame=recipe.tame) / recipe.steps))
+    step = 2.0 ** np.floor(np.log2(recipe.span(scene) / recipe.steps))
     t0 = recipe.t0 if recipe.t0 == 0.0 else np.round(recipe.t0 / step) * step
     if recipe.offset:
         away = 10.0**recipe.offset * np.array([1.0, -2.0, 0.0 if recipe.planar else 0.5])
         scene = scene.shifted(position=away)
-    scene = vv.Scene(scene.particles, *scene.forces, t0=float(t0))
+    scene = recipe.begun_at(scene, float(t0))
     power = recipe.units[1] + 2 * (recipe.units[0] - recipe.units[2])
     # An energy in the new units must be a number, and no square on the way to it beyond float64.
     if any(recipe.units) and abs(power) < 800:
@@ -169,7 +190,7 @@ def _case(recipe: Recipe) -> Case:
             pass  # potentials that cannot be scaled, or numbers beyond float64
     start: vv.Scene | vv.EnsembleScene = scene
     if recipe.members:
-        start = _ensemble(recipe, scene)
+        start = recipe.copies(scene)
     sign = -1.0 if recipe.backward else 1.0
     end = (recipe.steps - 0.4 if recipe.ragged else recipe.steps) * step
     rng = np.random.default_rng(recipe.seed + 1)
@@ -178,7 +199,7 @@ def _case(recipe: Recipe) -> Case:
         step * int(rng.integers(0, recipe.steps)) if i % 2 else float(rng.random()) * end for i in range(recipe.outputs)
     ]
     times = sorted({min(place, end) for place in places} | {end})
-    method = METHODS.get(recipe.method)
+    method = METHODS.get(recipe.method) or RIGID_METHODS.get(recipe.method)
     how: dict[str, Any] = {"method": recipe.method, "record": recipe.columns}
     if method is None or method.adaptive:
         how |= {"rtol": 10.0**-recipe.decades, "max_steps": MAX_STEPS}

@@ -88,6 +88,8 @@ def collisions(result: Any, how: dict[str, Any]) -> Bits:
 def final(result: Any) -> Bits:
     end = result.final
     states = {name: getattr(end.particles, name) for name in ("mass", "radius", "position", "velocity")}
+    if end.rigid_bodies is not None:
+        states |= {name: getattr(end.rigid_bodies, name) for name in ("orientation", "angular_velocity")}
     return {f"final {name}": value for name, value in _bits(t0=end.t0, **states).items()}
 
 

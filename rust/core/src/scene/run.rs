@@ -193,7 +193,7 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
         }
     }
     if matches!(plan.turning, Turning::Exact) {
-        turn_freely(scene, request, &mut columns, &outcomes, &mut reached, ticker)?;
+        turn_freely((scene, begun.start(scene)), request, &mut columns, &outcomes, &mut reached, ticker)?;
     }
     if wanted.keep_states {
         let rows: Vec<usize> = outcomes.iter().map(|outcome| outcome.rows).collect();

@@ -74,12 +74,16 @@ impl Begun {
         Ok(Self { start: None, plan, groups, plans })
     }
 
+    /// The scene that is planned from.
+    pub(super) fn start<'a>(&'a self, whole: &'a Scene) -> &'a Scene {
+        self.start.as_ref().unwrap_or(whole)
+    }
+
     /// The copies that are run together.
     pub(super) fn parts<'a>(&'a self, whole: &'a Scene) -> Vec<Part<'a>> {
         match &self.groups {
             None => {
-                let scene = self.start.as_ref().unwrap_or(whole);
-                vec![Part { whole, scene, plan: &self.plan, members: None }]
+                vec![Part { whole, scene: self.start(whole), plan: &self.plan, members: None }]
             }
             Some(groups) => groups
                 .iter()

@@ -14,12 +14,13 @@ use crate::rigid::quaternion::Quaternion;
 /// Orientations that one thread finds at a time, about.
 const TOGETHER: usize = 1 << 12;
 
-/// Fills in orientations and angular velocities, of the rows that each copy has and of where it ended.
+/// Fills in orientations and angular velocities, of the rows that each copy has and of where it ended: of a scene, which may
+/// go on with a run that began at `start`. Then bodies turn on from there, as they would have in one run.
 ///
 /// # Errors
 /// A spin that no body has, or turns that nobody can count.
 pub(super) fn turn_freely(
-    scene: &Scene,
+    (scene, start): (&Scene, &Scene),
     request: &Request,
     columns: &mut Columns,
     outcomes: &[Outcome],
@@ -34,13 +35,12 @@ pub(super) fn turn_freely(
     let found = for_chunks(request.threads, chunks.len(), ticker, |chunk, ticker| {
         let mut found = Vec::new();
         for &body in chunks[chunk] {
-            let (orientation, spin) = bodies.principal(body);
-            let motion = FreeRotation::new(bodies.moments[body], spin, orientation)?;
+            let (motion, t0) = motion_of((scene, start), bodies, body)?;
             let outcome = &outcomes[body / bodies.count];
             let rows = request.times[..if columns.rigid > 0 { outcome.rows } else { 0 }].iter();
             for &t in rows.chain([&outcome.time]) {
-                motion.check_time(t - scene.t0)?;
-                let state = motion.state(t - scene.t0);
+                motion.check_time(t - t0)?;
+                let state = motion.state(t - t0);
                 found.push(if t == scene.t0 {
                     (bodies.orientation[body], bodies.angular_velocity[body])
                 } else {
@@ -67,6 +67,26 @@ pub(super) fn turn_freely(
         }
     }
     Ok(())
+}
+
+/// How a body turns, and from which time on: that at which an earlier run began, if the body is where that led.
+fn motion_of(
+    (scene, start): (&Scene, &Scene),
+    bodies: &RigidBodies,
+    body: usize,
+) -> Result<(FreeRotation, f64)> {
+    if let Some(begun) = start.rigid.as_ref().filter(|_| start.t0 != scene.t0) {
+        let (orientation, spin) = begun.principal(body);
+        let motion = FreeRotation::new(begun.moments[body], spin, orientation)?;
+        motion.check_time(scene.t0 - start.t0)?;
+        let state = motion.state(scene.t0 - start.t0);
+        let here = (bodies.orientation[body], bodies.angular_velocity[body]);
+        if begun.given(body, state.orientation, state.angular_velocity) == here {
+            return Ok((motion, start.t0));
+        }
+    }
+    let (orientation, spin) = bodies.principal(body);
+    Ok((FreeRotation::new(bodies.moments[body], spin, orientation)?, scene.t0))
 }
 
 /// What the rigid bodies of a recorded row add to its columns.
