@@ -142,7 +142,7 @@ def test_momenta_of_symmetries_are_kept_to_round_off(method: str) -> None:
 
 @pytest.mark.parametrize("method", ORDERS)
 def test_the_map_is_symplectic_on_the_sphere(method: str) -> None:
-    """Areas Σ dp ∧ dq of the cotangent bundle, by the chart's coordinates at both ends; rk4 and projection keep none."""
+    """Areas Σ dp ∧ dq of the cotangent bundle, by the chart's coordinates at both ends; rk4 keeps none."""
     start = np.array([1.1, 0.3, 0.2, 0.5])
     delta = 2e-3
 
@@ -223,7 +223,9 @@ def test_what_cannot_be_run_is_refused_by_name() -> None:
         return caught.value.argument
 
     (x, y), (vx, vy) = coordinates("x y")
-    skate = vv.Lagrangian((vx**2 + vy**2) / 2, [x, y], position=[0.0, 0.0], velocity=[1.0, 2.0], nonholonomic=[vy - 2 * vx])
+    skate = vv.Lagrangian(
+        (vx**2 + vy**2) / 2, [x, y], position=[0.0, 0.0], velocity=[1.0, 2.0], nonholonomic=[vy - 2 * vx]
+    )
     pendulum, well = vv.systems.pendulum(), vv.systems.henon_heiles()
     for method in ORDERS:
         assert argument(lambda m=method: ball().run(1.0, method=m), f"{method} has a fixed one; pass dt") == "dt"
