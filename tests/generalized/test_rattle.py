@@ -142,7 +142,7 @@ def test_momenta_of_symmetries_are_kept_to_round_off(method: str) -> None:
 
 @pytest.mark.parametrize("method", ORDERS)
 def test_the_map_is_symplectic_on_the_sphere(method: str) -> None:
-    """Areas Σ dp ∧ dq of the cotangent bundle, by the chart's coordinates at both ends; rk4 and projection keep none."""
+    """Areas Σ dp ∧ dq of the cotangent bundle, by the chart's coordinates at both ends; rk4 keeps none."""
     start = np.array([1.1, 0.3, 0.2, 0.5])
     delta = 2e-3
 

@@ -24,7 +24,9 @@ __all__ = ["DiscreteAction", "discrete_action"]
 @known_keywords
 @dataclass(frozen=True, slots=True)
 class DiscreteAction:
-    """The action of a discrete path, and its derivatives; ``float`` gives its value. Made by `Lagrangian.discrete_action`.
+    """The action of a discrete path, and its derivatives; ``float`` gives its value.
+
+    Made by `Lagrangian.discrete_action`.
 
     Attributes
     ----------
@@ -38,8 +40,8 @@ class DiscreteAction:
         The momenta that a segment has at its first and its last place, −∂L_d/∂qₖ − f⁻ and ∂L_d/∂qₖ₊₁ + f⁺ (the discrete
         Legendre transforms; f are the impulses of further forces).
     residual : ndarray, shape (T − 2, n)
-        What the discrete Euler–Lagrange equations leave at the inner places: the momentum of the segment before less that
-        of the segment after. Without further forces it is the derivative of the action with respect to the place.
+        What the discrete Euler–Lagrange equations leave at the inner places: the momentum of the segment before less
+        that of the segment after. Without further forces it is the derivative of the action with respect to the place.
     relative_residual : ndarray, shape (T − 2, n)
         Its size relative to what it is made of: a few units of round-off along a run of this method.
 

@@ -11,12 +11,15 @@
 //! Polynomials of degree s with the s points of Gauss's quadrature are Gauss's collocation of Hamilton's equations (VI.6, there),
 //! which [`gauss`](super::gauss) does on the Hamiltonian; beyond the midpoint, which is that of degree 1, they are not here.
 
+mod balance;
 mod equations;
 mod newton;
+mod node;
 pub mod path;
 mod step;
 mod table;
 mod trial;
+mod velocities;
 
 use crate::ode::methods::{kahan_li6, kahan_li8, yoshida4};
 use crate::ode::{self, Scheme};

@@ -24,6 +24,11 @@ pub(super) enum Verdict {
     Lost,
 }
 
+/// The larger of two sizes; what is no number is.
+pub(super) fn larger(most: f64, size: f64) -> f64 {
+    if size <= most || most.is_nan() { most } else { size }
+}
+
 /// How corrections fall.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Corrections {
@@ -81,12 +86,17 @@ impl Linear {
         &mut self.matrix
     }
 
-    /// The unknowns, if the matrix has an inverse.
-    pub(super) fn solved(&mut self, right: &[f64]) -> Option<&[f64]> {
+    /// Finds the unknowns; whether the matrix has an inverse.
+    pub(super) fn solve(&mut self, right: &[f64]) -> bool {
         let (without, count) = (self.without, self.right.len());
         let kept = || self.matrix.view((without, 0), (count, count)).clone_owned();
         let factors = self.factors.get_or_insert_with(|| kept().lu());
         self.right.copy_from_slice(&right[without..]);
-        factors.solve_mut(&mut self.right).then(|| self.right.as_slice())
+        factors.solve_mut(&mut self.right)
+    }
+
+    /// The unknowns that were found last.
+    pub(super) fn found(&self) -> &[f64] {
+        self.right.as_slice()
     }
 }

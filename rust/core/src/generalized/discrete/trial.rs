@@ -1,7 +1,8 @@
 //! Discrete motions as trials that are never refused: equal steps, and shadow steps for states between nodes.
 
 use super::Equations;
-use super::step::{Node, Solver};
+use super::node::Node;
+use super::step::Solver;
 use crate::error::Result;
 use crate::ode::norm::Norm;
 use crate::ode::state::State;
