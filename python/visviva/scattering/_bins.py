@@ -165,7 +165,7 @@ def _made(spacing: str, n: object, low: object, high: object) -> Bins:
     return bins
 
 
-def asked_for(tally: object, bins: object) -> list[Axes]:
+def asked_for(tally: object, bins: Any) -> list[Axes]:
     """What is asked for: of each tally its quantities and their bins."""
     if isinstance(tally, str):
         tally = (tally,)
@@ -186,7 +186,7 @@ def asked_for(tally: object, bins: object) -> list[Axes]:
             raise InvalidInput(
                 "bins", f"expected bins of what is tallied, {sorted(tallied)}, got some of {unknown[0]!r}"
             )
-    elif not isinstance(bins, Bins) and np.ndim(bins) == 0:  # type: ignore[arg-type]
+    elif not isinstance(bins, Bins) and np.ndim(bins) == 0:
         bins = whole_number("bins", bins, 1, _MOST)
     return [_axes(name, given, bins) for name, given in pairs]
 

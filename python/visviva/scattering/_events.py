@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from os import fspath
+from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -17,8 +17,6 @@ from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam, _which
 
 if TYPE_CHECKING:
-    from os import PathLike
-
     from numpy.typing import NDArray
 
     from visviva._progress import Progress, Report
@@ -108,7 +106,7 @@ def _columns(request: dict[str, Any], first: int, count: int, report: Report | N
 
 def _path(to: object) -> str:
     try:
-        path = fspath(to)  # type: ignore[call-overload]
+        path = fspath(to) if isinstance(to, str | PathLike) else None
     except TypeError:
         path = None
     if not isinstance(path, str):

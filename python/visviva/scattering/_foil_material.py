@@ -171,8 +171,8 @@ class Material:
         return float(self.density * 0.602214076 / (parts @ np.array(self.mass)))
 
 
-def _several(name: str, value: object) -> tuple[float, ...]:
-    array = float_array(name, [value] if np.ndim(value) == 0 else value, (None,))  # type: ignore[arg-type]
+def _several(name: str, value: Any) -> tuple[float, ...]:
+    array = float_array(name, [value] if np.ndim(value) == 0 else value, (None,))
     if not array.size or not (array > 0.0).all():
         raise InvalidInput(name, f"expected one or more positive numbers, got {array.tolist()}")
     return tuple(array.tolist())
