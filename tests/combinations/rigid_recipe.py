@@ -122,9 +122,7 @@ def _bodies(recipe: RigidRecipe, at: vv.Particles) -> vv.RigidBodies:
     shape: dict[str, Any] = {"moments": moments}
     if recipe.shape == "tilted":
         shape = {
-            "inertia": [
-                vv.rigid.rotate_tensor(np.diag(m), turn) for m, turn in zip(moments, turns[1], strict=True)
-            ]
+            "inertia": [vv.rigid.rotate_tensor(np.diag(m), turn) for m, turn in zip(moments, turns[1], strict=True)]
         }
     return vv.RigidBodies(
         mass,
@@ -166,7 +164,9 @@ def rigid_recipes(draw: st.DrawFn, forces: list[str]) -> RigidRecipe:
     bodies = rigid + draw(_some((1, st.just(0)), (1, st.integers(1, 3))))
     names = [name for name in forces if draw(st.booleans()) or name not in NEED_MASS]
     kinds = st.sampled_from(LOADS if draw(st.integers(0, 3)) else LOADS + LOOKING)
-    known = _some((6, st.sampled_from(sorted(RIGID_METHODS))), (1, st.just("auto")), (1, st.sampled_from(sorted(METHODS))))
+    known = _some(
+        (6, st.sampled_from(sorted(RIGID_METHODS))), (1, st.just("auto")), (1, st.sampled_from(sorted(METHODS)))
+    )
     powers = st.integers(-60, 60)
     return RigidRecipe(
         method=draw(known),
