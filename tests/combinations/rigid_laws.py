@@ -134,6 +134,8 @@ def two_methods_agree_on_attitudes(recipe: RigidRecipe) -> None:
     other = "rk4" if looking or method == "kahan_li6" else "kahan_li6"
     coarse, fine = (_state(scene, end, _fine(scene, case, steps, method)) for steps in (64, 128))
     rough, sharp = (_state(scene, end, _fine(scene, case, steps, other)) for steps in (64, 128))
+    if max(*_apart(coarse, fine).values(), *_apart(rough, sharp).values()) > 0.01:
+        raise Refused("a needle is spun up in less than a step")
     allowed = _sum(_apart(coarse, fine), _apart(rough, sharp), _rounding(scene, fine, 128))
     _judge(f"{method} and {other}", _apart(fine, sharp), {name: 2.0 * bound for name, bound in allowed.items()})
 
