@@ -191,7 +191,8 @@ def rigid_recipes(draw: st.DrawFn, forces: list[str]) -> RigidRecipe:
         decades=draw(st.integers(5, 11)),
         outputs=draw(st.integers(0, 5)),
         columns=tuple(draw(st.lists(st.sampled_from(COLUMNS), unique=True, min_size=1))),
-        events=draw(_some((3, st.just(())), (1, _events()))),
+        # The energy is a precise sum at some twenty places of every step: seconds, of ten copies.
+        events=tuple(one for one in draw(_some((3, st.just(())), (1, _events()))) if one[0] != "energy"),
         terminal=draw(_some((2, st.just(0)), (1, st.integers(1, 2)))),
         collisions=draw(_some((12, st.just("")), (1, st.sampled_from(["bounce", "merge", "stop"])))),
         t0=draw(_some((2, st.just(0.0)), (1, st.floats(-100.0, 100.0)))),
