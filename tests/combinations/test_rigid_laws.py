@@ -26,12 +26,7 @@ def workers() -> Iterator[None]:
     close_workers()
 
 
-# A leg may still have other positions than the whole run has there, of a free body on a spring by an explicit method.
-KNOWN = pytest.mark.xfail(reason="legs of some runs have other roundings than the whole", strict=False)
-ASKED = [pytest.param(name, marks=[KNOWN] if "goes_on" in name else []) for name in RIGID_LAWS]
-
-
-@pytest.mark.parametrize("name", ASKED)
+@pytest.mark.parametrize("name", RIGID_LAWS)
 @given(recipe=rigid_recipes(sorted(FORCES)))
 @settings(max_examples=EXAMPLES, deadline=None, suppress_health_check=list(HealthCheck))
 def test_law(name: str, recipe: RigidRecipe) -> None:

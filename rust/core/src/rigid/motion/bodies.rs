@@ -8,7 +8,7 @@ use super::super::moments::check;
 use super::super::quaternion::{IDENTITY, Quaternion, conjugate, product, rotated, unit};
 use super::flows::Free;
 use super::loads::Load;
-use super::turn::differences;
+use super::turn::Inverses;
 use super::vectors::turned;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -150,8 +150,8 @@ pub struct LaneBody {
     pub moments: [Lanes; 3],
     /// Their inverses, 0 about the axis of a rod.
     pub inverse: [Lanes; 3],
-    /// Differences of the inverses ([`differences`]).
-    pub differences: [Lanes; 3],
+    /// The same and their differences, to more digits.
+    pub exact: Inverses<Lanes>,
     /// Of two moments that agree, the inverse.
     pub pair: Lanes,
     /// Whether two moments agree, in all lanes or in some.
@@ -236,6 +236,12 @@ impl LaneBody {
             Lanes(core::array::from_fn(|lane| number(&starts[lane.min(starts.len() - 1)])))
         };
         let vector = |part: fn(&Start) -> [f64; 3]| [0, 1, 2].map(|c| of(&|start| part(start)[c]));
+        let rounded = |part: fn(&Start) -> ([f64; 3], [f64; 3])| {
+            (
+                [0, 1, 2].map(|c| of(&|start| part(start).0[c])),
+                [0, 1, 2].map(|c| of(&|start| part(start).1[c])),
+            )
+        };
         let pair = |start: &Start| {
             let [a, b, c] = start.moments;
             if a == b || a == c {
@@ -253,7 +259,10 @@ impl LaneBody {
             row,
             moments: vector(|start| start.moments),
             inverse: [0, 1, 2].map(|c| of(&|start| inverse(start.moments[c]))),
-            differences: vector(|start| differences(start.moments)),
+            exact: Inverses {
+                inverse: rounded(|start| Inverses::of(start.moments).inverse),
+                differences: rounded(|start| Inverses::of(start.moments).differences),
+            },
             pair: of(&|start| inverse(pair(start).unwrap_or(0.0))),
             symmetric: match bits {
                 0xff => Symmetric::All,

@@ -3,7 +3,7 @@
 //! Both change a state in place, eight systems side by side, compensated as those of points are (`ode::passes::updates`).
 
 use super::bodies::{Arrangement, LaneBody, Symmetric};
-use super::turn;
+use super::turn::{self, Inverses};
 use super::vectors::{cross, times_plus, turned, turned_back};
 use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -138,12 +138,20 @@ impl Pass<Lanes> for KickDrift<'_> {
     }
 }
 
+#[inline(always)]
+fn loaded<V: View<Lanes>>(of: &[Lanes; 3]) -> [V; 3] {
+    [V::load(of[0]), V::load(of[1]), V::load(of[2])]
+}
+
 /// How far a body turns freely, less the identity, and where it is too far for this.
 #[inline(always)]
 fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [V]) -> ([V; 4], V::Mask) {
-    let LaneBody { inverse, differences, pair, symmetric, discrete, .. } = of;
-    let differences = [V::load(differences[0]), V::load(differences[1]), V::load(differences[2])];
-    let inverse = [V::load(inverse[0]), V::load(inverse[1]), V::load(inverse[2])];
+    let LaneBody { inverse, exact, pair, symmetric, discrete, .. } = of;
+    let inverse = loaded(inverse);
+    let exact = Inverses {
+        inverse: (loaded(&exact.inverse.0), loaded(&exact.inverse.1)),
+        differences: (loaded(&exact.differences.0), loaded(&exact.differences.1)),
+    };
     match (discrete, symmetric) {
         (Some(discrete), _) => {
             let (turn, found) = discrete.load::<V>().turn(&momentum, h);
@@ -152,10 +160,10 @@ fn turn_of<V: View<Lanes>>(of: &LaneBody, momentum: [V; 3], h: V, series: &mut [
         (None, Symmetric::All) => {
             (turn::symmetric(inverse, V::load(*pair), momentum, h), V::zero().less(V::zero()))
         }
-        (None, Symmetric::None) => turn::asymmetric((inverse, differences), momentum, h, series),
+        (None, Symmetric::None) => turn::asymmetric(&exact, momentum, h, series),
         (None, Symmetric::Some(lanes)) => {
             let lanes = V::mask(*lanes);
-            let (mut turn, far) = turn::asymmetric((inverse, differences), momentum, h, series);
+            let (mut turn, far) = turn::asymmetric(&exact, momentum, h, series);
             let other = turn::symmetric(inverse, V::load(*pair), momentum, h);
             for c in 0..4 {
                 turn[c] = V::select(lanes, other[c], turn[c]);

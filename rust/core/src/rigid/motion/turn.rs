@@ -11,6 +11,7 @@
 use super::super::free::FreeRotation;
 use super::super::quaternion::IDENTITY;
 use super::vectors::{cross, dot, joined, largest, product, times};
+use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::real::{Mask, Real};
 
 /// The highest order of a series.
@@ -122,33 +123,66 @@ pub fn symmetric<S: Real>(inverse: [S; 3], pair: S, momentum: [S; 3], h: S) -> [
     joined(about_momentum, rotation(spin))
 }
 
-/// What Euler's equations multiply, (1/I₃ − 1/I₂, 1/I₁ − 1/I₃, 1/I₂ − 1/I₁), from the moments: a difference of rounded inverses
-/// would lose what turns a needle about itself.
-pub fn differences(moments: [f64; 3]) -> [f64; 3] {
-    [[2, 1], [0, 2], [1, 0]].map(|[one, other]| {
-        let [a, b] = [moments[one], moments[other]];
-        match (a == 0.0, b == 0.0) {
-            (false, false) => (b - a) / a / b,
-            // Nothing spins about the axis of a rod.
-            (true, false) => -1.0 / b,
-            (false, true) => 1.0 / a,
-            (true, true) => 0.0,
-        }
-    })
+/// Numbers about three axes, and what they leave out.
+pub type Rounded<S> = ([S; 3], [S; 3]);
+
+/// What Euler's equations multiply. Inverses and differences go together to the digits of both parts: what is rounded alike in
+/// every step would move the energy by as much in each.
+#[derive(Clone, Copy, Debug)]
+pub struct Inverses<S> {
+    /// 1/I, and zero about the axis of a rod, about which nothing spins.
+    pub inverse: Rounded<S>,
+    /// 1/I₃ − 1/I₂, 1/I₁ − 1/I₃, 1/I₂ − 1/I₁, from the moments: a difference of rounded inverses would lose what turns a
+    /// needle about itself.
+    pub differences: Rounded<S>,
+}
+
+impl Inverses<f64> {
+    /// Of a body with these moments.
+    pub fn of(moments: [f64; 3]) -> Self {
+        let zero = DoubleDouble::from(0.0);
+        let exact = moments.map(DoubleDouble::from);
+        let one_over = |i: usize| if moments[i] == 0.0 { zero } else { DoubleDouble::from(1.0) / exact[i] };
+        let differences = [[2, 1], [0, 2], [1, 0]].map(|[one, other]| {
+            if moments[one] == 0.0 || moments[other] == 0.0 {
+                one_over(one) - one_over(other)
+            } else {
+                (exact[other] - exact[one]) / exact[one] / exact[other]
+            }
+        });
+        let parts = |of: [DoubleDouble; 3]| (of.map(DoubleDouble::high), of.map(DoubleDouble::low));
+        Self { inverse: parts([0, 1, 2].map(one_over)), differences: parts(differences) }
+    }
+}
+
+/// 1/n, and what that leaves out.
+const RECIPROCALS: [(f64, f64); ORDER + 1] = {
+    let mut table = [(0.0, 0.0); ORDER + 1];
+    let mut n = 1;
+    while n <= ORDER {
+        let (whole, high) = (n as f64, 1.0 / n as f64);
+        // Halves of its digits have exact products with so small a number.
+        let shifted = 134_217_729.0 * high;
+        let upper = shifted - (shifted - high);
+        table[n] = (high, ((1.0 - upper * whole) - (high - upper) * whole) / whole);
+        n += 1;
+    }
+    table
+};
+
+/// A number times a rounded one.
+#[inline(always)]
+fn by<S: Real>(x: S, (high, low): (S, S)) -> S {
+    x.multiply_add(high, x * low)
 }
 
 /// The turn of any body, and where it is too far for series; `room` holds [`ROOM`] numbers.
 #[inline(always)]
-pub fn asymmetric<S: Real>(
-    (inverse, differences): ([S; 3], [S; 3]),
-    momentum: [S; 3],
-    h: S,
-    room: &mut [S],
-) -> ([S; 4], S::Mask) {
+pub fn asymmetric<S: Real>(body: &Inverses<S>, momentum: [S; 3], h: S, room: &mut [S]) -> ([S; 4], S::Mask) {
     let mut momentum = momentum;
     let mut rates = momentum;
     for c in 0..3 {
-        rates[c] = inverse[c] * momentum[c] * h;
+        rates[c] = body.inverse.0[c] * momentum[c] * h;
     }
     let mut angle = largest(rates);
     let far = S::splat(FAR).less(angle);
@@ -162,11 +196,11 @@ pub fn asymmetric<S: Real>(
         large = S::splat(PART).less(angle);
         count *= 2;
     }
-    let mut turn = short((inverse, differences), &mut momentum, part, room);
+    let mut turn = short(body, &mut momentum, part, room);
     let mut done = S::one();
     let mut on = done.less(parts);
     while on.any() && !on.not().or(far).all() {
-        let next = short((inverse, differences), &mut momentum, part, room);
+        let next = short(body, &mut momentum, part, room);
         let both = joined(turn, next);
         for c in 0..4 {
             turn[c] = S::select(on, both[c], turn[c]);
@@ -177,24 +211,30 @@ pub fn asymmetric<S: Real>(
     (turn, far)
 }
 
+/// Half the angular velocity of a momentum, times the time.
+#[inline(always)]
+fn half_rates<S: Real>(half: S, (inverse, rest): Rounded<S>, momentum: [S; 3]) -> [S; 3] {
+    let mut rates = momentum;
+    for c in 0..3 {
+        rates[c] = half * by(momentum[c], (inverse[c], rest[c]));
+    }
+    rates
+}
+
 /// The turn in a part of the time that is short, and the momentum after it.
 #[inline(always)]
-fn short<S: Real>(
-    (inverse, differences): ([S; 3], [S; 3]),
-    momentum: &mut [S; 3],
-    h: S,
-    room: &mut [S],
-) -> [S; 4] {
+fn short<S: Real>(body: &Inverses<S>, momentum: &mut [S; 3], h: S, room: &mut [S]) -> [S; 4] {
+    let Inverses { inverse, differences } = *body;
     let half = h * S::splat(0.5);
     let rows = room.as_chunks_mut::<{ ORDER + 1 }>().0;
     let [m0, m1, m2, r0, r1, r2, q0, q1, q2, q3] = rows else { return [S::splat(f64::NAN); 4] };
-    let differences = times(differences, h);
+    let turns = times(differences.0, h);
+    let mut rest = turns;
+    for c in 0..3 {
+        rest[c] = differences.0[c].multiply_add(h, -turns[c]) + differences.1[c] * h;
+    }
     [m0[0], m1[0], m2[0]] = *momentum;
-    let first = [
-        half * (inverse[0] * momentum[0]),
-        half * (inverse[1] * momentum[1]),
-        half * (inverse[2] * momentum[2]),
-    ];
+    let first = half_rates(half, inverse, *momentum);
     [r0[0], r1[0], r2[0]] = first;
     [q0[0], q1[0], q2[0], q3[0]] = [S::zero(), S::zero(), S::zero(), S::one()];
     let least = largest(first) * S::splat(NOTHING);
@@ -221,20 +261,16 @@ fn short<S: Real>(
             );
         }
         order += 1;
-        let per = S::splat(1.0 / order as f64);
+        let per = (S::splat(RECIPROCALS[order].0), S::splat(RECIPROCALS[order].1));
         let mut size = S::zero();
         for c in 0..3 {
-            products[c] = S::select(ended, S::zero(), products[c] * differences[c] * per);
+            products[c] = S::select(ended, S::zero(), by(by(products[c], (turns[c], rest[c])), per));
         }
         for c in 0..4 {
-            turning[c] = S::select(ended, S::zero(), turning[c] * per);
+            turning[c] = S::select(ended, S::zero(), by(turning[c], per));
             size = size.max(turning[c].abs());
         }
-        let rates = [
-            half * (inverse[0] * products[0]),
-            half * (inverse[1] * products[1]),
-            half * (inverse[2] * products[2]),
-        ];
+        let rates = half_rates(half, inverse, products);
         size = size.max(largest(rates));
         [m0[order], m1[order], m2[order]] = products;
         [r0[order], r1[order], r2[order]] = rates;
@@ -273,14 +309,16 @@ pub fn far(moments: [f64; 3], inverse: [f64; 3], momentum: [f64; 3], h: f64) -> 
     }
 }
 
-/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1 by what it lacked of that before:
-/// turns change no length but by rounding. The momentum is in space, and does not depend on it.
+/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1 by what it lacked of that before and
+/// what the turn has too much. The momentum is in space, and does not depend on it.
 #[inline(always)]
 pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 4]) {
     let square = q[0].multiply_add(q[0], q[1].multiply_add(q[1], q[2].multiply_add(q[2], q[3] * q[3])));
     let twice =
         q[0].multiply_add(rest[0], q[1].multiply_add(rest[1], q[2].multiply_add(rest[2], q[3] * rest[3])));
-    let missing = S::splat(0.5) * ((S::one() - square) - (twice + twice));
+    let [x, y, z, w] = turn;
+    let over = x.multiply_add(x, y.multiply_add(y, z.multiply_add(z, w * (S::splat(2.0) + w))));
+    let missing = S::splat(0.5) * (((S::one() - square) - (twice + twice)) - over);
     let (change, small) = (product(q, turn), product(rest, turn));
     let (mut to, mut left) = (q, rest);
     for c in 0..4 {

@@ -12,8 +12,7 @@ fn free(moments: [f64; 3], rate: [f64; 3], h: f64) -> Quaternion {
 /// Of the series, whatever the moments.
 fn by_series(moments: [f64; 3], rate: [f64; 3], h: f64) -> ([f64; 4], bool) {
     let momentum = [0, 1, 2].map(|c| moments[c] * rate[c]);
-    let inverse = moments.map(|moment| 1.0 / moment);
-    asymmetric((inverse, differences(moments)), momentum, h, &mut [0.0; ROOM])
+    asymmetric(&Inverses::of(moments), momentum, h, &mut [0.0; ROOM])
 }
 
 /// Quaternions of the same rotation differ by a sign.
