@@ -140,3 +140,6 @@ impl Energies {
         Ok(worst)
     }
 }
+
+#[cfg(test)]
+mod tests;

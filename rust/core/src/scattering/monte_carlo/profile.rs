@@ -180,3 +180,6 @@ impl Direction {
         crate::numerics::angles::atan2((x * x + y * y).sqrt(), along * cosine - across * ahead * sine)
     }
 }
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,74 @@
+//! Tables of a range of energies against direct quadrature, where they were not tried, and what is refused.
+
+use super::*;
+use crate::parallel::Control;
+use crate::potentials::parameters::Value;
+use crate::registry;
+
+fn deflector(name: &str, numbers: &[f64]) -> Deflector {
+    let values: Vec<Value> = numbers.iter().map(|x| Value::Number(*x)).collect();
+    let potential = (registry::potential(name).unwrap().make)(&values).unwrap();
+    Deflector::new(&potential, 1e-12).unwrap()
+}
+
+fn built(deflector: &Deflector, range: [f64; 2], b_max: f64, threads: usize) -> Result<Energies> {
+    Energies::build(deflector, range, b_max, threads, &mut Ticker::quiet(&Control::new(0)))
+}
+
+/// Within what is certified, at energies and impact parameters on a grid of which none was tried; the same by any
+/// number of threads, and small.
+#[test]
+fn between_the_tables_are_the_deflections() {
+    for (name, numbers, range, b_max) in [
+        ("yukawa", vec![1.0, 1.0], [0.6, 0.9], 5.0),
+        ("lennard_jones", vec![1.0, 1.0], [2.0, 2.2], 3.0),
+        ("plummer", vec![-1.0, 1.0], [0.5, 0.7], 4.0),
+    ] {
+        let deflector = deflector(name, &numbers);
+        let energies = built(&deflector, range, b_max, 1).unwrap();
+        assert_eq!(energies, built(&deflector, range, b_max, 3).unwrap(), "{name}");
+        assert!(energies.tables().map(EventTable::bytes).sum::<usize>() <= MOST_BYTES);
+        assert!(energies.error() <= MOST_ERROR);
+        for i in 0..24 {
+            let energy = range[0] + (range[1] - range[0]) * (f64::from(i) + 0.31) / 24.0;
+            let parts: Vec<f64> = (0..60).map(|j| (f64::from(j) + 0.43) / 60.0).collect();
+            let b: Vec<f64> = parts.iter().map(|part| part * b_max).collect();
+            let direct = deflector
+                .deflect(&vec![energy; b.len()], &b, false, 1, &mut Ticker::quiet(&Control::new(0)))
+                .unwrap();
+            for (part, direct) in parts.iter().zip(&direct) {
+                let angle = energies.angle(energy, *part).unwrap();
+                let off = ((0.5 * angle).sin().powi(2) - (0.5 * direct.angle).sin().powi(2)).abs();
+                assert!(off <= MOST_ERROR, "{name} at {energy}, {part}: {off}");
+            }
+        }
+    }
+}
+
+/// At the energy of a table the polynomial is that table, bit for bit, where its formula divides by zero.
+#[test]
+fn at_a_tables_energy_it_is_the_table() {
+    let energies = built(&deflector("yukawa", &[1.0, 1.0]), [0.6, 0.9], 5.0, 1).unwrap();
+    for (energy, _, table) in &energies.tables {
+        for part in [0.0, 0.1, 0.5, 0.99] {
+            assert_eq!(energies.angle(*energy, part), table.angle(part));
+        }
+    }
+    assert_eq!(energies.tables.first().map(|table| table.0), Some(0.6));
+    assert!(energies.tables.last().is_some_and(|table| (table.0 - 0.9).abs() <= 2.3e-16));
+}
+
+/// Capture, and energies across which orbiting ceases: the message says what to do.
+#[test]
+fn what_is_not_smooth_is_refused() {
+    for (name, numbers, range, b_max) in
+        [("power_law", vec![-1.0, 4.0], [0.4, 0.6], 4.0), ("lennard_jones", vec![1.0, 1.0], [0.5, 1.2], 4.0)]
+    {
+        let refused = built(&deflector(name, &numbers), range, b_max, 2);
+        assert!(
+            matches!(&refused, Err(Error::InvalidInput { argument, message, .. })
+                if argument == "energy_spread" && message.contains("as a Spectrum")),
+            "{name}: {refused:?}"
+        );
+    }
+}

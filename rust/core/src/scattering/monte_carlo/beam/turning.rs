@@ -1,0 +1,68 @@
+//! Where a quantity turns: the draws between which it only rises or only falls, as bisection needs them.
+
+use super::{Beam, Target, UNIT};
+use crate::scattering::event_table::EventTable;
+use crate::scattering::monte_carlo::quantity::Quantity;
+
+/// Points of a piece of a table among which turning points are looked for.
+const TRIED: u64 = 8;
+
+impl Beam {
+    /// Whether two impact parameters lead to one value: a heavy projectile's laboratory angle.
+    pub fn two_branches(&self, quantity: Quantity) -> bool {
+        quantity == Quantity::LabAngle && self.collision.turning_point().is_some()
+    }
+    /// The draws between which a quantity rises or falls: those at which it may turn.
+    pub(in crate::scattering::monte_carlo) fn turning_draws(&self, quantity: Quantity) -> Vec<u64> {
+        match &self.target {
+            Target::Coulomb { reach, .. } => (quantity == Quantity::LabAngle)
+                .then(|| self.collision.turning_point())
+                .flatten()
+                .map(|t| (t / reach) * (t / reach))
+                .filter(|share| *share < 1.0)
+                .map(|share| (self.profile.part(self.b_max, share) * UNIT.recip()) as u64)
+                .into_iter()
+                .collect(),
+            Target::Table(..) if quantity == Quantity::ImpactParameter => Vec::new(),
+            Target::Table(table, _) => self.turns(quantity, table),
+            // No step function is made of what has several draws.
+            Target::Tables(..) => Vec::new(),
+        }
+    }
+    /// Those of a table: the ends of its pieces, and within a piece where what is tried rises and falls.
+    fn turns(&self, quantity: Quantity, table: &EventTable) -> Vec<u64> {
+        let at = |draw: u64| self.value(quantity, self.share(draw as f64 * UNIT));
+        let draw = |part: &f64| (self.profile.part(self.b_max, part * part) / UNIT) as u64;
+        let draws: Vec<u64> = table.starts().iter().map(draw).collect();
+        let mut turns = draws.clone();
+        for pair in draws.windows(2).filter(|pair| pair[1] - pair[0] > TRIED) {
+            let width = pair[1] - pair[0];
+            let tried: Vec<u64> = (0..=TRIED)
+                .map(|i| pair[0] + (u128::from(width) * u128::from(i) / u128::from(TRIED)) as u64)
+                .collect();
+            for three in tried.windows(3) {
+                let [Some(first), Some(middle), Some(last)] = [at(three[0]), at(three[1]), at(three[2])]
+                else {
+                    continue;
+                };
+                if (middle - first) * (last - middle) < 0.0 {
+                    turns.push(extremum(&at, three[0], three[2], middle > first));
+                }
+            }
+        }
+        turns
+    }
+}
+
+/// Where a function with one maximum (or minimum) between two draws has it.
+fn extremum(at: &impl Fn(u64) -> Option<f64>, from: u64, to: u64, maximum: bool) -> u64 {
+    let (mut from, mut to) = (from, to);
+    let sign = if maximum { 1.0 } else { -1.0 };
+    let value = |draw| at(draw).map_or(f64::NEG_INFINITY, |value| sign * value);
+    while to - from > 2 {
+        let third = (to - from) / 3;
+        let (left, right) = (from + third, to - third);
+        if value(left) < value(right) { from = left } else { to = right }
+    }
+    from + 1
+}
