@@ -10,7 +10,7 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 /// No velocity's scale is below this times the largest.
 const LEAST_SCALE: f64 = 1e-8;
 /// What a place's last digits make of a velocity, over a step, is this much larger than what round-off may be.
-const OF_PLACES: f64 = 1e-3;
+const OF_PLACES: f64 = 5e-2;
 
 impl Solver {
     /// Finds the displacements.
@@ -126,12 +126,15 @@ impl Solver {
     fn set_scales(&mut self, from: &Node, h: f64) {
         let (n, s) = (self.equations.coordinates, self.table.degree);
         let mut most = 0.0;
+        // Constraints are told to the last digits of all places that they have.
+        let all = from.q.iter().fold(0.0, |most, q| larger(most, q.abs()));
         for a in 0..n {
             let mut size = from.sizes[a];
             for velocity in (0..s).map(|j| self.unknowns[j * n + a]).chain([from.v[a]]) {
                 size = if velocity.abs() > size { velocity.abs() } else { size };
             }
-            self.scales[a] = size + OF_PLACES * from.q[a].abs() / h.abs();
+            let place = if self.equations.constraints > 0 { all } else { from.q[a].abs() };
+            self.scales[a] = size + OF_PLACES * place / h.abs();
             most = if size > most { size } else { most };
         }
         for scale in &mut self.scales {
