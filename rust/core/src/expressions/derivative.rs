@@ -85,7 +85,7 @@ impl Graph {
         let mut active: HashMap<Id, Vec<(f64, Id)>> = variables.iter().map(|&id| (id, vec![])).collect();
         for &id in &order {
             let mut depends = false;
-            super::graph::for_each_argument(self.node(id), |argument| {
+            super::walk::for_each_argument(self.node(id), |argument| {
                 depends |= active.contains_key(&argument)
             });
             if depends {
@@ -124,7 +124,7 @@ impl Graph {
                 continue;
             }
             let mut depends = false;
-            super::graph::for_each_argument(self.node(id), |argument| {
+            super::walk::for_each_argument(self.node(id), |argument| {
                 depends |= change.contains_key(&argument)
             });
             if !depends {

@@ -16,6 +16,7 @@ pub mod nodes;
 pub mod program;
 pub mod series;
 mod verify;
+mod walk;
 
 pub use code::Code;
 pub use graph::{Graph, Id, Node};

@@ -4,7 +4,8 @@
 //! that nobody else needs, so that they become chains of fused operations; which, is decided here, for every tier alike.
 
 use super::function::Function;
-use super::graph::{Dependence, Graph, Id, Node, for_each_argument, number};
+use super::graph::{Dependence, Graph, Id, Node, number};
+use super::walk::for_each_argument;
 use crate::error::{Error, Result};
 use std::collections::HashMap;
 

@@ -75,19 +75,11 @@ impl<S: Element> Dynamics<S> {
         Ok(())
     }
 
+    /// The shortest of the steps that the forces allow, if any limits them.
     pub(super) fn series_smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
         let forces = self.series.iter().flat_map(|series| &series.forces);
-        shortest(forces.map(AsRef::as_ref), jet, h)
+        forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
     }
-}
-
-/// The shortest of the steps that forces allow.
-pub fn shortest<'a, S: Element>(
-    forces: impl Iterator<Item = &'a (dyn Series<S> + 'a)>,
-    jet: &Jet<S>,
-    h: S,
-) -> Option<S> {
-    forces.fold(None, |until, force| force.smooth_until(jet, until.unwrap_or(h)).or(until))
 }
 
 /// A force that is linear in coordinates and velocities but for a constant.

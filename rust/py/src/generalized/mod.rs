@@ -2,8 +2,10 @@
 //!
 //! `visviva.generalized` makes [`nodes`] of SymPy's trees and makes trees of them again.
 
+mod constraints;
 mod nodes;
 mod runs;
+mod small_motions;
 
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
@@ -12,25 +14,19 @@ use nodes::{NodeParts, added, all_chosen, chosen, shown};
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use runs::{Asked, collected};
+use runs::Asked;
 use std::sync::Arc;
 use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
-use visviva_core::generalized::abreast::{solve_together, together};
-use visviva_core::generalized::dependence::Dependence;
 use visviva_core::generalized::discrete::path::segments;
 use visviva_core::generalized::discrete::{self, Equations};
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
-use visviva_core::generalized::linear::{Linear, modes};
 use visviva_core::generalized::linear_motion::LinearMotion;
 use visviva_core::generalized::one_freedom::OneFreedom;
-use visviva_core::generalized::run::solve;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
 use visviva_core::generalized::variation::variational;
 use visviva_core::generalized::{Kind, Model, Source};
-use visviva_core::numerics::lanes::WIDTH;
-use visviva_core::parallel::{for_chunks, thread_count};
 use visviva_core::{Error, Result};
 
 type Array<'py> = PyReadonlyArrayDyn<'py, f64>;
@@ -239,24 +235,7 @@ impl GeneralizedModel {
         state: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<(Vec<f64>, Vec<f64>, Column<'py>)> {
-        let model = self.copy();
-        let (mut state, _) = copied("state", &state, [Some(model.numbers())])?;
-        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
-        let (places, velocities) = match &model.projection {
-            None => (vec![], vec![]),
-            Some(projection) => {
-                let mut projector = projection.at_work(&parameters);
-                if let Some(found) = projector.dependence(t, &state) {
-                    return Err(raised(py, dependent(&found)));
-                }
-                let residuals = projector.residuals(t, &state);
-                let mut rest = vec![0.0; state.len()];
-                projector.project(t, &mut state, &mut rest, true).map_err(|error| raised(py, error))?;
-                residuals
-            }
-        };
-        let length = state.len();
-        Ok((places, velocities, moved(py, state, &[length])?))
+        constraints::projected(py, &self.model, t, &state, &parameters)
     }
 
     /// The equilibria that Newton's method reaches from starts (S, n), `None` where it reaches none.
@@ -267,19 +246,7 @@ impl GeneralizedModel {
         starts: Array<'_>,
         parameters: Array<'_>,
     ) -> PyResult<Vec<Option<Vec<f64>>>> {
-        let mut model = self.copy();
-        let n = model.source.coordinates;
-        let (starts, _) = copied("position", &starts, [None, Some(n)])?;
-        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
-        compute(py, 0, None, |ticker| {
-            let linear = Linear::new(&mut model)?;
-            let find = |start: &[f64]| {
-                ticker.tick()?;
-                Ok(linear.equilibrium(t, start, &parameters))
-            };
-            starts.chunks(n).map(find).collect::<Result<Vec<_>>>()
-        })?
-        .whole(py)
+        small_motions::equilibria(py, &self.model, t, &starts, &parameters)
     }
 
     /// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
@@ -290,30 +257,7 @@ impl GeneralizedModel {
         position: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let mut model = self.copy();
-        let n = model.source.coordinates;
-        let (position, _) = copied("position", &position, [Some(n)])?;
-        let (parameters, _) = copied("parameters", &parameters, [Some(model.source.parameters)])?;
-        let (at, found) = compute(py, 0, None, |_| {
-            let at = Linear::new(&mut model)?.matrices(t, &position, &parameters);
-            let found = modes(&at, n)?;
-            Ok((at, found))
-        })?
-        .whole(py)?;
-        let result = PyDict::new(py);
-        result.set_item("mass", moved(py, at.mass, &[n, n])?)?;
-        result.set_item("damping", moved(py, at.damping, &[n, n])?)?;
-        result.set_item("stiffness", moved(py, at.stiffness, &[n, n])?)?;
-        result.set_item("forces", moved(py, at.forces, &[n])?)?;
-        result.set_item("eigenvalues", found.eigenvalues)?;
-        result.set_item(
-            "symmetric",
-            match found.symmetric {
-                None => None,
-                Some((squares, modes)) => Some((moved(py, squares, &[n])?, moved(py, modes, &[n, n])?)),
-            },
-        )?;
-        Ok(result)
+        small_motions::linearized(py, &self.model, t, &position, &parameters)
     }
 
     /// Of one coordinate: turning points, period and action of the oscillation; with a turn, (period, action) of a rotation.
@@ -409,63 +353,8 @@ impl GeneralizedModel {
         threads: Option<i64>,
         progress: Option<Py<PyAny>>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        let model = &*self.model;
-        let (states, [members, _]) = copied("states", &states, [None, Some(model.numbers())])?;
-        let (parameters, _) =
-            copied("parameters", &parameters, [Some(members), Some(model.source.parameters)])?;
-        let request = asked.request(py, self)?;
-        let threads = thread_count(threads).map_err(|error| raised(py, error))?;
-        let (numbers, count) = (model.numbers(), model.source.parameters);
-        let several = if together(model, &request) { abreast(members, threads) } else { 1 };
-        let worked = compute(py, members as u64, progress.as_ref(), |ticker| {
-            for_chunks(threads, members.div_ceil(several), ticker, |chunk, ticker| {
-                let last = (chunk * several + several).min(members);
-                let of = |all: &[f64], width: usize| {
-                    let own = all.get(chunk * several * width..last * width);
-                    own.map(<[f64]>::to_vec).unwrap_or_default()
-                };
-                let (states, own) = (of(&states, numbers), of(&parameters, count));
-                if several > 1 {
-                    return solve_together(model, &request, (&states, &own), ticker);
-                }
-                let outcome = solve(model, &request, (&states, &own), ticker);
-                ticker.advance(1);
-                Ok(vec![outcome?])
-            })
-        })?;
-        let (solutions, interrupted) = worked.partial(py)?;
-        let solutions = solutions.concat();
-        let result = collected(py, &solutions, numbers)?;
-        result.set_item("interrupted", interrupted)?;
-        Ok(result)
+        runs::run(py, self, &asked, (&states, &parameters), threads, progress.as_ref())
     }
-}
-
-/// The most copies that are run side by side: lanes are taken up by those that wait.
-const ABREAST: usize = 64;
-
-/// How many copies are run side by side: all threads have as much to do, and eight lanes.
-fn abreast(members: usize, threads: usize) -> usize {
-    if members == 1 { 1 } else { members.div_ceil(threads).next_multiple_of(WIDTH).min(ABREAST) }
-}
-
-/// Constraints that do not leave the multipliers determined.
-fn dependent(found: &Dependence) -> Error {
-    let one = found.one;
-    let names: Vec<String> = found.others.iter().map(usize::to_string).collect();
-    let names = names.join(", ");
-    let words = match (found.others.len(), found.disagree) {
-        (0, _) => format!("constraint {one} has no gradient at the start; start elsewhere"),
-        (1, false) => format!("constraints {names} and {one} are dependent at the start; leave one out"),
-        (_, false) => {
-            format!("constraint {one} follows from constraints {names} at the start; leave one out")
-        }
-        (_, true) => format!(
-            "constraints {names} and {one} do not agree: their gradients are dependent at the start, and no small change \
-             there makes all of them hold; change one, leave it out, or start elsewhere"
-        ),
-    };
-    Error::invalid("constraints", words)
 }
 
 /// The results of a code, row by row.

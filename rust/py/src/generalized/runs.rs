@@ -4,13 +4,17 @@ use super::nodes::{NodeParts, added, chosen};
 use super::{Array, GeneralizedModel};
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
+use crate::gate::compute;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
-use visviva_core::generalized::run::{Integrator, Request, Section, Solution};
+use visviva_core::generalized::abreast::{solve_together, together};
+use visviva_core::generalized::run::{Integrator, Request, Section, Solution, solve};
 use visviva_core::generalized::{discrete, gauss};
+use visviva_core::numerics::lanes::WIDTH;
 use visviva_core::ode::run::Ending;
 use visviva_core::ode::{Method, Scheme};
+use visviva_core::parallel::{for_chunks, thread_count};
 use visviva_core::{Error, Result, registry};
 
 /// The method that takes no steps.
@@ -77,11 +81,7 @@ impl Asked<'_> {
 }
 
 /// Solutions as columns, member after member.
-pub(super) fn collected<'py>(
-    py: Python<'py>,
-    solutions: &[Solution],
-    numbers: usize,
-) -> PyResult<Bound<'py, PyDict>> {
+fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> PyResult<Bound<'py, PyDict>> {
     let result = PyDict::new(py);
     let lengths: Vec<usize> = solutions.iter().map(|solution| solution.t.len()).collect();
     let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
@@ -116,4 +116,51 @@ pub(super) fn collected<'py>(
         .set_item("evaluations", solutions.iter().map(|solution| solution.evaluations).collect::<Vec<_>>())?;
     result.set_item("longest_step", solutions.iter().map(|solution| solution.h).collect::<Vec<_>>())?;
     Ok(result)
+}
+
+/// Runs states (B, 2n) with parameters (B, p) from a time to another.
+pub(super) fn run<'py>(
+    py: Python<'py>,
+    of: &GeneralizedModel,
+    asked: &Asked<'py>,
+    (states, parameters): (&Array<'py>, &Array<'py>),
+    threads: Option<i64>,
+    progress: Option<&Py<PyAny>>,
+) -> PyResult<Bound<'py, PyDict>> {
+    let model = &*of.model;
+    let (states, [members, _]) = copied("states", states, [None, Some(model.numbers())])?;
+    let (parameters, _) = copied("parameters", parameters, [Some(members), Some(model.source.parameters)])?;
+    let request = asked.request(py, of)?;
+    let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+    let (numbers, count) = (model.numbers(), model.source.parameters);
+    let several = if together(model, &request) { abreast(members, threads) } else { 1 };
+    let worked = compute(py, members as u64, progress, |ticker| {
+        for_chunks(threads, members.div_ceil(several), ticker, |chunk, ticker| {
+            let last = (chunk * several + several).min(members);
+            let own_of = |all: &[f64], width: usize| {
+                let own = all.get(chunk * several * width..last * width);
+                own.map(<[f64]>::to_vec).unwrap_or_default()
+            };
+            let (states, own) = (own_of(&states, numbers), own_of(&parameters, count));
+            if several > 1 {
+                return solve_together(model, &request, (&states, &own), ticker);
+            }
+            let outcome = solve(model, &request, (&states, &own), ticker);
+            ticker.advance(1);
+            Ok(vec![outcome?])
+        })
+    })?;
+    let (solutions, interrupted) = worked.partial(py)?;
+    let solutions = solutions.concat();
+    let result = collected(py, &solutions, numbers)?;
+    result.set_item("interrupted", interrupted)?;
+    Ok(result)
+}
+
+/// The most copies that are run side by side: lanes are taken up by those that wait.
+const ABREAST: usize = 64;
+
+/// How many copies are run side by side: all threads have as much to do, and eight lanes.
+fn abreast(members: usize, threads: usize) -> usize {
+    if members == 1 { 1 } else { members.div_ceil(threads).next_multiple_of(WIDTH).min(ABREAST) }
 }

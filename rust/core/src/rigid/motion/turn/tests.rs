@@ -76,15 +76,19 @@ proptest! {
         prop_assert!((energy(after) - before).abs() <= 2e-15 * before.max(1e-3));
     }
 
-    /// However far turns are, and however many: the length stays 1.
+    /// However far turns are, and however many: the length stays 1, to the rounding of four numbers and of their squares.
     #[test]
-    fn lengths_do_not_grow(half in prop::array::uniform3(-3.0..3.0f64)) {
+    fn lengths_do_not_grow(half in prop::array::uniform3(-3.0..3.0f64), size in 0.0..7.0f64) {
+        let half = half.map(|part| part * size.exp2());
         let (mut q, mut rest) = (IDENTITY, [0.0; 4]);
         for _ in 0..200 {
-            (q, rest) = oriented(q, rest, rotation(half));
+            // As seen from the body: what is turned back by a quaternion off length 1 is off as much.
+            let turn = rotation(half);
+            let [x, y, z] = turned_back(q, [turn[0], turn[1], turn[2]]);
+            (q, rest) = oriented(q, rest, [x, y, z, turn[3]]);
         }
         let square = q.iter().map(|part| part * part).sum::<f64>();
-        prop_assert!((square - 1.0).abs() <= 8.0 * f64::EPSILON, "{square}");
+        prop_assert!((square - 1.0).abs() <= 4.0 * f64::EPSILON, "{square}");
     }
 
     /// Back is the inverse.
@@ -114,6 +118,28 @@ proptest! {
         }
         let cosine = crate::numerics::angles::cos(angle) - 1.0;
         prop_assert!((found[3] - cosine).abs() <= 2.0 * f64::EPSILON * (1.0 + 2.0 * angle));
+    }
+}
+
+/// What is rounded alike in every step moves energies by as much in each: the low parts are there, and right.
+#[test]
+fn constants_have_both_their_parts() {
+    for (n, &(high, low)) in RECIPROCALS.iter().enumerate().skip(1) {
+        let exact = DoubleDouble::from(1.0) / DoubleDouble::from(n as f64);
+        assert_eq!(high, exact.high());
+        // The low part itself is rounded.
+        assert!((low - exact.low()).abs() <= f64::EPSILON * f64::EPSILON * high, "1/{n}");
+    }
+    for moments in [[0.6, 0.8, 1.0], [1.0, 1.0 + 1e-15, 1.5], [1e-6, 1.0, 1.0 + 1e-7], [3.0, 5.0, 7.0]] {
+        let Inverses { inverse, differences } = Inverses::of(moments);
+        let whole = |(high, low): Rounded<f64>, c: usize| DoubleDouble::new(high[c], low[c]);
+        for (c, [one, other]) in [[2, 1], [0, 2], [1, 0]].into_iter().enumerate() {
+            let unit = whole(inverse, c) * DoubleDouble::from(moments[c]) - DoubleDouble::from(1.0);
+            assert!(unit.to_f64().abs() <= 1e-31);
+            let off = whole(inverse, one) - whole(inverse, other) - whole(differences, c);
+            let largest = inverse.0[one].abs().max(inverse.0[other].abs());
+            assert!(off.to_f64().abs() <= 1e-31 * largest, "{moments:?} {c}");
+        }
     }
 }
 

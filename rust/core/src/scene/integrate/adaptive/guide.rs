@@ -8,7 +8,7 @@ use super::super::super::unit::{Prepared, uncoupled};
 use crate::error::Result;
 use crate::forces::gravity::passive::Pull;
 use crate::forces::gravity::series::passive::PullSeries;
-use crate::forces::series::{Series, shortest};
+use crate::forces::series::Series;
 use crate::forces::{Force, Phase};
 use crate::numerics::element::{Element, Pass, View};
 use crate::numerics::lanes::{Bits, Lanes};
@@ -268,13 +268,5 @@ impl System<Lanes> for Guided {
     fn expand(&mut self, jet: &mut Jet<Lanes>, ticker: &mut Ticker<'_>) -> Result<()> {
         self.evaluations += 1;
         self.expand_series(jet, ticker)
-    }
-
-    fn smooth_until(&self, jet: &Jet<Lanes>, h: Lanes) -> Option<Lanes> {
-        let others = self.terms.iter().filter_map(|term| match term {
-            Term::Other(_, series) => series.as_deref(),
-            Term::Pull { .. } => None,
-        });
-        shortest(others.map(|series| series as &dyn Series<Lanes>), jet, h)
     }
 }
