@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._exported import Columns, Exported, chosen_columns
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -21,7 +22,7 @@ __all__ = ["CollisionTable"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable:
+class CollisionTable(Exported):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -61,11 +62,18 @@ class CollisionTable:
     survivor: NDArray[np.int64]
     member: NDArray[np.int64]
 
+    _row_axes = ("collision",)
+
     @classmethod
     def _from_core(cls, found: dict[str, NDArray[Any]]) -> CollisionTable:
         for array in found.values():
             array.setflags(write=False)
         return cls(**found)
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        names = chosen_columns(columns, self.__slots__, self.__slots__)
+        of = {name: (("collision", *["component"] * (name == "position")), getattr(self, name)) for name in names}
+        return Columns({"collision": np.arange(len(self))}, of)
 
     def __len__(self) -> int:
         return len(self.t)

@@ -6,6 +6,7 @@ others do not notice.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from operator import index as whole
 from typing import TYPE_CHECKING, Any, overload
 
@@ -25,11 +26,12 @@ from visviva.status import Status
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva._exported import Columns
     from visviva.body import BodyMotion
     from visviva.forces import Force
     from visviva.scene import Scene
@@ -220,6 +222,7 @@ class EnsembleTrajectory(Recorded):
 
     __slots__ = ("ensemble",)
 
+    _row_axes = ("copy", "time")
     ensemble: EnsembleScene
 
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
@@ -276,6 +279,10 @@ class EnsembleTrajectory(Recorded):
         recorded: NDArray[np.float64] | None = self._result["columns"].get(name)
         # A copy's own property computes it, or says what to record.
         return np.stack([getattr(trajectory, name) for trajectory in self]) if recorded is None else recorded
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = super()._exported(columns)
+        return replace(made, of={**made.of, "status": (("copy",), self.status)})
 
     @property
     def status(self) -> NDArray[np.int8]:

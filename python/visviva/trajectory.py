@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -15,9 +16,12 @@ from visviva.recorded import Recorded
 from visviva.status import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._exported import Columns
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation
     from visviva.scene import Scene
@@ -129,6 +133,10 @@ class Trajectory(Recorded):
             return conserved(scene, position, velocity, point, [name])
 
         return by_era(self, told, velocity="velocity" in needs)[name]
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = super()._exported(columns)
+        return replace(made, attributes={**made.attributes, "status": self.status.name})
 
     @property
     def status(self) -> Status:

@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._exported import Columns, Exported
 from visviva._keywords import known_keywords
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._source import _label
-from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
+from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -140,7 +141,7 @@ class GeneralizedEnsemble:
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory:
+class GeneralizedEnsembleTrajectory(Exported):
     """The motions of an ensemble.
 
     Attributes
@@ -201,6 +202,13 @@ class GeneralizedEnsembleTrajectory:
             self._columns = flat.reshape(members, times, -1)
             self._columns.flags.writeable = False
         return self._columns[..., first:last]
+
+    _row_axes = ("copy", "time")
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
+        status = (("copy",), self.status.astype(np.int8))
+        return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
 
     @property
     def _n(self) -> int:
