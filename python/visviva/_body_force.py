@@ -7,7 +7,7 @@ the values by name.
 from __future__ import annotations
 
 from dataclasses import fields
-from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias
+from typing import TYPE_CHECKING, Any, ClassVar, Literal, Self, TypeAlias, cast
 
 import numpy as np
 
@@ -18,6 +18,7 @@ from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
     from numpy.typing import NDArray
 
 __all__ = ["BodyForce", "Vector", "body_of", "keep", "not_negative", "vector"]
@@ -46,7 +47,7 @@ class BodyForce:
         refuse_subclass(cls, "a torque of one's own is a CompiledTorque")
 
     def _values(self) -> dict[str, Any]:
-        return {each.name: getattr(self, each.name) for each in fields(self)}  # type: ignore[arg-type]
+        return {each.name: getattr(self, each.name) for each in fields(cast("DataclassInstance", self))}
 
     def _with(self, **changes: Any) -> Self:
         return type(self)(**(self._values() | changes))

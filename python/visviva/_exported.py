@@ -13,14 +13,15 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-    import pandas
-    import xarray
     from numpy.typing import NDArray
+    from pandas import DataFrame
+    from xarray import Dataset
 
 __all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels", "needed"]
 
@@ -54,6 +55,7 @@ class Columns:
         return self.axes[axis] if axis in self.axes else AXES[axis]
 
 
+@known_keywords
 class Exported:
     """Base of what can be handed to xarray and pandas."""
 
@@ -66,7 +68,7 @@ class Exported:
     # How many leading axes are rows of a DataFrame: copy and time of an ensemble.
     _row_axes: tuple[str, ...] = ("time",)
 
-    def to_xarray(self, columns: str | Sequence[str] | None = None) -> xarray.Dataset:
+    def to_xarray(self, columns: str | Sequence[str] | None = None) -> Dataset:
         """As an ``xarray.Dataset``: a variable for each column, over named axes with their labels.
 
         Parameters
@@ -103,10 +105,10 @@ class Exported:
 
         variables = {name: (axes, values, about(name)) for name, (axes, values) in export.of.items()}
         coordinates = {axis: (axis, export.labels(axis), about(axis)) for axis in used}
-        made: xarray.Dataset = module.Dataset(variables, coordinates, dict(export.attributes))
+        made: Dataset = module.Dataset(variables, coordinates, dict(export.attributes))
         return made
 
-    def to_pandas(self, columns: str | Sequence[str] | None = None) -> pandas.DataFrame:
+    def to_pandas(self, columns: str | Sequence[str] | None = None) -> DataFrame:
         """As a ``pandas.DataFrame`` with a row for each time, of an ensemble for each copy and time.
 
         Parameters
@@ -153,7 +155,7 @@ class Exported:
             keys.extend((name, *place) for place in _places([export.labels(axis) for axis in axes[len(rows) :]]))
         levels = max(map(len, keys), default=1)
         padded = [(*key, *[""] * (levels - len(key))) for key in keys]
-        frame: pandas.DataFrame = module.DataFrame(dict(enumerate(parts)), index=index)
+        frame: DataFrame = module.DataFrame(dict(enumerate(parts)), index=index)
         frame.columns = module.MultiIndex.from_tuples(padded) if levels > 1 else [key[0] for key in keys]
         return frame
 

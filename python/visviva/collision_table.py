@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -22,7 +23,7 @@ __all__ = ["CollisionTable"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable(Exported):
+class CollisionTable(Exported, Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -80,6 +81,12 @@ class CollisionTable(Exported):
 
     def __repr__(self) -> str:
         return f"CollisionTable({count(len(self), 'collision')})"
+
+    def _sheet(self) -> Sheet:
+        columns = (self.t, self.first, self.second, self.speed, self.energy_lost, self.survivor, self.member)
+        rows, note = first_rows(len(self), lambda at: (str(at), *(f"{column[at]:.6g}" for column in columns)))
+        header = ("", "t", "first", "second", "speed", "energy lost", "survivor", "copy")
+        return Sheet(f"Collisions: {len(self)}", rows, header, note)
 
     def __getitem__(self, chosen: slice | NDArray[Any]) -> CollisionTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:

@@ -14,6 +14,7 @@ import numpy as np
 
 from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, left_behind, of_copies
+from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
 from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
@@ -179,6 +180,10 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __repr__(self) -> str:
         return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
+    def _sheet(self) -> Sheet:
+        of = self.scene._sheet()
+        return Sheet(f"{count(len(self), 'copy', 'copies')} of a scene at t0 = {self.scene.t0:g}", of.rows)
+
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
         own = turning_of(self._keywords, slice(None))
@@ -266,6 +271,11 @@ class EnsembleTrajectory(Recorded):
         failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
         copies = count(len(self), "copy", "copies")
         return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
+
+    def _sheet(self) -> Sheet:
+        kinds = np.unique(self.status, return_counts=True)
+        ended = ", ".join(f"{number} {Status(int(kind)).name}" for kind, number in zip(*kinds, strict=True))
+        return self._run_sheet(f"Motions of {count(len(self), 'copy', 'copies')}", ended)
 
     @property
     def _start(self) -> EnsembleScene:
@@ -362,3 +372,7 @@ def _rebuild(
     own: dict[str, Any] = turning or {}
     copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
     return attached(copies if forces is None else copies._own(forces), continuation)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -18,6 +18,7 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index
 from visviva.errors import InvalidInput
@@ -325,7 +326,7 @@ def from_description(kept: dict[str, Any]) -> Event:
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class EventTable(Exported):
+class EventTable(Exported, Shown):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -380,6 +381,15 @@ class EventTable(Exported):
 
     def __repr__(self) -> str:
         return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
+
+    def _sheet(self) -> Sheet:
+        def row(at: int) -> tuple[str, ...]:
+            which = int(self.which[at])
+            kind = self.definitions[which].kind if which < len(self.definitions) else ""
+            return (str(at), f"{self.t[at]:.6g}", f"{which} {kind}".rstrip(), str(self.member[at]))
+
+        rows, note = first_rows(len(self), row)
+        return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
 
     def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:

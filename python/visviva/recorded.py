@@ -14,8 +14,10 @@ import numpy as np
 
 from visviva import _core
 from visviva._exported import Columns, Exported, chosen_columns, labels
+from visviva._html import Sheet, Shown
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plan import Plan, told
 
@@ -80,7 +82,7 @@ _ELSEWHERE = {
 
 @known_keywords
 @frozen
-class Recorded(Exported, ABC):
+class Recorded(Exported, Shown, ABC):
     """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
 
     __slots__ = ("_columns", "_result", "t")
@@ -328,6 +330,20 @@ class Recorded(Exported, ABC):
                     own[axis] = np.arange(length)
         return Columns(own, of, {"method": self.stats.method})
 
+    def _run_sheet(self, caption: str, ended: str) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        cost = self.stats
+        rows = [
+            ("of", repr(self._scene)),
+            ("times", f"{len(self.t)}{span}"),
+            *((name, f"array of shape {self._column(name).shape}") for name in self.recorded),
+            ("method", cost.method),
+            ("steps", f"{cost.steps}, and {cost.rejected} rejected; {cost.evaluations} force evaluations"),
+            ("time", f"{cost.seconds:.2g} s, {count(cost.threads, 'thread')}, {cost.simd}"),
+            ("ended", ended),
+        ]
+        return Sheet(caption, rows)
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to one ``.npz`` file that this and every later version loads.
 
@@ -343,3 +359,7 @@ class Recorded(Exported, ABC):
         from visviva.io import save
 
         save(path, self)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

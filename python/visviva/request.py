@@ -246,3 +246,7 @@ def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
     if error["kind"] == "interrupted":
         return Interrupted(error["message"], trajectory)
     return ConvergenceError(error["message"], error["time"], trajectory)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Generic, TypeVar
 
 from visviva import _core
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva.plan import Plan
 from visviva.request import PlanRequest, RunRequest, asked_by, execute
@@ -19,7 +20,7 @@ _Result = TypeVar("_Result")
 
 
 @known_keywords
-class Runnable(ABC, Generic[_Result]):
+class Runnable(Shown, ABC, Generic[_Result]):
     """Base of `Scene` and `EnsembleScene`; ``_Result`` is what their runs give."""
 
     __slots__ = ()
@@ -164,3 +165,7 @@ class Runnable(ABC, Generic[_Result]):
         """
         asked = request.to_core(self._keywords, self._names)
         return Plan._from_core(_core.plan(asked), asked)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva._exported import Columns
+    from visviva._html import Sheet
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation
     from visviva.scene import Scene
@@ -80,6 +81,9 @@ class Trajectory(Recorded):
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
         bodies = count(len(self.scene.particles), "body", "bodies")
         return f"Trajectory({count(len(self.t), 'time')}, {bodies}, {span}, {self.status.name})"
+
+    def _sheet(self) -> Sheet:
+        return self._run_sheet("Trajectory", self.status.name)
 
     def __len__(self) -> int:
         return len(self.t)
@@ -242,3 +246,7 @@ class Trajectory(Recorded):
         from visviva.plot import plot_trajectory
 
         return plot_trajectory(self)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

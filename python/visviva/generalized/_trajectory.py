@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.status import Status
@@ -47,7 +48,7 @@ def exported(
 
 
 @known_keywords
-class GeneralizedTrajectory(Exported):
+class GeneralizedTrajectory(Exported, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Attributes
@@ -111,6 +112,17 @@ class GeneralizedTrajectory(Exported):
         names = ", ".join(self.system.coordinates)
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
         return f"GeneralizedTrajectory({names}; {len(self.t)} times, {span}, {self.status.name})"
+
+    def _sheet(self) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        rows = [
+            ("of", repr(self.system)),
+            ("times", f"{len(self.t)}{span}"),
+            ("method", self.method),
+            ("steps", f"{self.steps}; {self.evaluations} evaluations"),
+            ("ended", self.status.name),
+        ]
+        return Sheet("Trajectory in generalized coordinates", rows)
 
     def __len__(self) -> int:
         return len(self.t)

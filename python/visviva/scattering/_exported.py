@@ -10,14 +10,14 @@ if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy as np
-    import pandas
-    import xarray
     from numpy.typing import NDArray
+    from pandas import IntervalIndex
+    from xarray import Dataset
 
 __all__ = ["dataset", "intervals"]
 
 
-def intervals(name: str, edges: NDArray[np.float64]) -> pandas.IntervalIndex:
+def intervals(name: str, edges: NDArray[np.float64]) -> IntervalIndex:
     """The bins as an index, closed on the left.
 
     Raises
@@ -25,15 +25,13 @@ def intervals(name: str, edges: NDArray[np.float64]) -> pandas.IntervalIndex:
     ImportError
         Without the package pandas.
     """
-    index: pandas.IntervalIndex = needed("pandas", "to_pandas").IntervalIndex.from_breaks(
-        edges, closed="left", name=name
-    )
+    index: IntervalIndex = needed("pandas", "to_pandas").IntervalIndex.from_breaks(edges, closed="left", name=name)
     return index
 
 
 def dataset(
     edges: Mapping[str, NDArray[np.float64]], columns: Mapping[str, NDArray[Any]], told: Mapping[str, Any]
-) -> xarray.Dataset:
+) -> Dataset:
     """Columns over the middles of bins, with the ends of the bins beside them.
 
     Raises
@@ -52,5 +50,5 @@ def dataset(
         ):
             coordinates[label] = (name, values, units)
     variables = {name: (tuple(edges), values) for name, values in columns.items()}
-    made: xarray.Dataset = module.Dataset(variables, coordinates, dict(told))
+    made: Dataset = module.Dataset(variables, coordinates, dict(told))
     return made

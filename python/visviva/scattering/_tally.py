@@ -15,10 +15,10 @@ from visviva.scattering._beam import Beam, described
 from visviva.scattering._counts import plot_tally, poisson_interval
 
 if TYPE_CHECKING:
-    import pandas
-    import xarray
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
+    from xarray import Dataset
 
 __all__ = ["CrossSection", "JointTally", "OfEvents", "Tally", "is_zero"]
 
@@ -254,7 +254,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
         return _to_hist((self.name,), (self.edges,), flow)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
 
         Returns
@@ -279,13 +279,13 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         """
         from visviva.scattering._exported import intervals
 
-        frame: pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(
+        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(
             {"counts": self.counts, "reachable": self.reachable}, index=intervals(self.name, self.edges)
         )
         frame.attrs.update(self._about())
         return frame
 
-    def to_xarray(self) -> xarray.Dataset:
+    def to_xarray(self) -> Dataset:
         """As an ``xarray.Dataset`` of ``counts`` and ``reachable`` over the middles of the bins.
 
         Returns
@@ -410,7 +410,7 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         """
         return _to_hist(self.name, self.edges, self.flow)
 
-    def to_pandas(self) -> pandas.DataFrame:
+    def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of counts: rows are bins of the first quantity, columns of the second.
 
         Returns
@@ -434,11 +434,11 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         from visviva.scattering._exported import intervals
 
         rows, columns = map(intervals, self.name, self.edges)
-        frame: pandas.DataFrame = needed("pandas", "to_pandas").DataFrame(self.counts, index=rows, columns=columns)
+        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(self.counts, index=rows, columns=columns)
         frame.attrs.update(captured=self.captured, n_events=self.n_events)
         return frame
 
-    def to_xarray(self) -> xarray.Dataset:
+    def to_xarray(self) -> Dataset:
         """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins of both quantities.
 
         Returns
