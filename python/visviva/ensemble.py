@@ -35,6 +35,7 @@ if TYPE_CHECKING:
     from visviva._exported import Columns
     from visviva.body import BodyMotion
     from visviva.forces import Force
+    from visviva.request import RunRequest
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
@@ -192,6 +193,13 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     @property
     def _names(self) -> tuple[str, ...]:
         return self.scene.particles.names
+
+    def _execute(self, request: RunRequest) -> EnsembleTrajectory:
+        if request.executor is None:
+            return super()._execute(request)
+        from visviva._copies_apart import run_apart
+
+        return run_apart(self, request)
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)

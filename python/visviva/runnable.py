@@ -99,6 +99,10 @@ class Runnable(Shown, ABC, Generic[_Result]):
             Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
         progress : bool or callable, optional
             True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
+        executor : concurrent.futures.Executor or dask.distributed.Client, optional
+            Of an ensemble: who runs it. Copies go out in parts, motions come home, with the bits of the run without
+            one; the part of a worker that is lost is done again. Each worker uses `threads` threads, or one; `progress`
+            counts copies. Events that are functions of one's own stay here, and are refused.
 
         Returns
         -------
@@ -140,6 +144,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (2, 2, 3, 3)
         """
+        return self._execute(request)
+
+    def _execute(self, request: RunRequest) -> _Result:
         return execute(self._keywords, request, names=self._names, ensemble=self._is_ensemble, make=self._finished)
 
     @asked_by(PlanRequest)
