@@ -195,6 +195,10 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         return self.scene.particles.names
 
     def _execute(self, request: RunRequest) -> EnsembleTrajectory:
+        if request.save_every is not None or request.save_to is not None:
+            raise InvalidInput(
+                "save_every", "an ensemble is not written while it goes on; run and save it in slices: ensemble[:1000]"
+            )
         if request.executor is None:
             return super()._execute(request)
         from visviva._copies_apart import run_apart

@@ -25,6 +25,7 @@ from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from os import PathLike
 
     from numpy.typing import ArrayLike
 
@@ -161,6 +162,8 @@ class RunRequest(PlanRequest):
     threads: int | None = None
     progress: Progress = False
     executor: Any = None
+    save_every: float | None = None
+    save_to: str | PathLike[str] | None = None
 
 
 # Name, default, what the core is told if the default was left, and the check of anything else.

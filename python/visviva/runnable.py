@@ -103,6 +103,14 @@ class Runnable(Shown, ABC, Generic[_Result]):
             Of an ensemble: who runs it. Copies go out in parts, motions come home, with the bits of the run without
             one; the part of a worker that is lost is done again. Each worker uses `threads` threads, or one; `progress`
             counts copies. Events that are functions of one's own stay here, and are refused.
+        save_every : float, optional
+            Of a scene: the time of the scene after which what was done is written to `save_to`, each time a file. After
+            a crash ``visviva.resume(save_to)`` goes on from the last one that is whole, to the bits of a run that none
+            broke. Fixed steps (the time is rounded to a whole number of them) have the bits that they have without it;
+            adaptive ones, and steps after a collision, are chosen anew after each part. Not with a time transformation
+            or functions as events.
+        save_to : path-like, optional
+            The folder of these files. It is made, in one that exists; it must hold no run yet.
 
         Returns
         -------

@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
     from visviva.orbits import Elements
+    from visviva.request import RunRequest
 
     _Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
 
@@ -163,6 +164,13 @@ class Scene(Runnable[Trajectory], Framed):
         parts = ((type(part).__name__, repr(part)) for part in (self.particles, *rigid))
         forces = ((type(force).__name__, repr(force)) for force in (*self.forces, *self.body_forces))
         return Sheet(f"Scene at t0 = {self.t0:g}", [*parts, *forces])
+
+    def _execute(self, request: RunRequest) -> Trajectory:
+        if request.save_every is None and request.save_to is None:
+            return Runnable._execute(self, request)
+        from visviva.saved_runs import run_saved
+
+        return run_saved(self, request)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
