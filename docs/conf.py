@@ -8,6 +8,8 @@ import re
 from pathlib import Path
 from typing import Any
 
+import matplotlib
+
 import visviva
 
 project = "visviva"
@@ -73,4 +75,28 @@ def setup(app: Any) -> None:
     app.connect("autodoc-process-docstring", keep_bars, priority=400)
 
 
+GALLERY = Path(__file__).parent / "_gallery"
+
+
+def write_gallery() -> None:
+    """One page of all the scripts in docs/gallery, each with its picture, which is made here."""
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    GALLERY.mkdir(exist_ok=True)
+    text = ["# Gallery", "", "Each picture is made by the script below it.", ""]
+    for script in sorted((Path(__file__).parent / "gallery").glob("*.py")):
+        source = script.read_text(encoding="utf-8")
+        plt.close("all")
+        exec(compile(source, str(script), "exec"), {})
+        plt.gcf().savefig(GALLERY / f"{script.stem}.png", dpi=90)
+        told, _, code = source.partition("\n")
+        told = told.strip('"')
+        text += [f"## {script.stem.replace('_', ' ').capitalize()}", "", told, ""]
+        text += [f"![{told}]({script.stem}.png)", "", "```python", code.strip(), "```", ""]
+    plt.close("all")
+    (GALLERY / "index.md").write_text("\n".join(text), encoding="utf-8")
+
+
 write_reference()
+write_gallery()

@@ -80,6 +80,7 @@ _HOME = {
     "coordinate": "generalized",
     "load": "io",
     "methods": "integrators",
+    "resume": "saved_runs",
     "solve_ivp": "initial_value",
     "time": "generalized",
     "work_precision": "comparison",
@@ -177,6 +178,7 @@ __all__ = [
     "orbits",
     "potentials",
     "problems",
+    "resume",
     "rigid",
     "scattering",
     "solve_ivp",
@@ -259,6 +261,7 @@ if TYPE_CHECKING:
     from visviva.rigid_body import RigidBody
     from visviva.rigid_forces import AppliedTorque, CompiledTorque, RotationalDrag
     from visviva.rigid_springs import AttachedSpring
+    from visviva.saved_runs import resume
     from visviva.scene import Scene
     from visviva.status import Status
     from visviva.trajectory import Trajectory

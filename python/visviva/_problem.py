@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scene import Scene
@@ -38,7 +39,7 @@ class Reference:
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class Problem:
+class Problem(Shown):
     """A scene, how far to run it, and what must come out.
 
     Attributes
@@ -61,6 +62,13 @@ class Problem:
     references: tuple[Reference, ...]
     conditioning: tuple[tuple[float, float], ...]
     source: str
+
+    def __repr__(self) -> str:
+        return f"Problem({self.name!r}: {self.summary}; to t = {self.t_end:g})"
+
+    def _sheet(self) -> Sheet:
+        rows = [("what", self.summary), ("scene", repr(self.scene)), ("end", f"t = {self.t_end:g}")]
+        return Sheet(f"Problem: {self.name}", [*rows, ("source", self.source)])
 
     def error(self, final: Scene | Trajectory) -> float:
         """Largest distance of a body from its reference position at the time of `final`.

@@ -10,7 +10,7 @@ import numpy as np
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
 
-__all__ = ["article", "count", "table"]
+__all__ = ["article", "count", "short", "table"]
 
 
 def count(number: int, one: str, many: str | None = None) -> str:
@@ -38,7 +38,7 @@ def article(noun: str) -> str:
 
 
 def table(record: DataclassInstance, leave_out: tuple[str, ...] = ()) -> str:
-    """A line for each field but those left out, with the digits that a reader compares; ``repr`` has them all.
+    """A line for each field but those left out, with the digits that a reader compares.
 
     Examples
     --------
@@ -51,6 +51,22 @@ def table(record: DataclassInstance, leave_out: tuple[str, ...] = ()) -> str:
     rows = [(field.name, getattr(record, field.name)) for field in fields(record) if field.name not in leave_out]
     width = max(len(name) for name, _ in rows) + 2
     return "\n".join(f"{name:<{width}}{_value(value, width)}" for name, value in rows)
+
+
+def short(record: DataclassInstance) -> str:
+    """The name of a record and how many of what it is of, for ``repr``.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
+    Elements(mu=1, 21 more: print shows them)
+    """
+    first, *rest = fields(record)
+    value = getattr(record, first.name)
+    shape = np.shape(value)
+    told = f"{first.name}={value:.9g}" if shape == () else f"{first.name} of shape {shape}"
+    return f"{type(record).__name__}({told}, {len(rest)} more: print shows them)"
 
 
 def _value(value: Any, indent: int) -> str:

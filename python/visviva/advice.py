@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva._arrays import number
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva._trial import stretch
 from visviva.errors import ConvergenceError, InvalidInput
@@ -59,7 +60,7 @@ class Option:
 
 @known_keywords
 @dataclass(frozen=True, slots=True)
-class Advice:
+class Advice(Shown):
     """Which method and step hold an error; the answer of `Scene.advise`. Print it.
 
     Attributes
@@ -221,3 +222,7 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
             how = {"method": method.name, name: sizes[k]}
             return Option(how, error * growth, round(steps * whole), seconds * whole)
     return None
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -142,3 +142,7 @@ class BodyMotion:
         [0.5, 0.5]
         """
         return self._run.elements(self.index, about=about, G=G)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

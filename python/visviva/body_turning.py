@@ -115,3 +115,7 @@ class BodyTurning(Rotation):
         from visviva.rigid._pictures import plot_free_rotation
 
         return plot_free_rotation(self, kind)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -170,3 +170,7 @@ def _info(_: argparse.Namespace) -> None:
     for name, value in _core.info().items():
         shown = ", ".join(map(str, value)) if isinstance(value, list | tuple) else value
         print(f"{name.replace('_', ' ')}: {shown}")
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -7,12 +7,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -21,7 +23,7 @@ __all__ = ["CollisionTable"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable:
+class CollisionTable(Exported, Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -61,17 +63,30 @@ class CollisionTable:
     survivor: NDArray[np.int64]
     member: NDArray[np.int64]
 
+    _row_axes = ("collision",)
+
     @classmethod
     def _from_core(cls, found: dict[str, NDArray[Any]]) -> CollisionTable:
         for array in found.values():
             array.setflags(write=False)
         return cls(**found)
 
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        names = chosen_columns(columns, self.__slots__, self.__slots__)
+        of = {name: (("collision", *["component"] * (name == "position")), getattr(self, name)) for name in names}
+        return Columns({"collision": np.arange(len(self))}, of)
+
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
         return f"CollisionTable({count(len(self), 'collision')})"
+
+    def _sheet(self) -> Sheet:
+        columns = (self.t, self.first, self.second, self.speed, self.energy_lost, self.survivor, self.member)
+        rows, note = first_rows(len(self), lambda at: (str(at), *(f"{column[at]:.6g}" for column in columns)))
+        header = ("", "t", "first", "second", "speed", "energy lost", "survivor", "copy")
+        return Sheet(f"Collisions: {len(self)}", rows, header, note)
 
     def __getitem__(self, chosen: slice | NDArray[Any]) -> CollisionTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:

@@ -18,6 +18,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive, whole_number
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva._problem import Problem
 from visviva.errors import AccuracyWarning, Error, InvalidInput
@@ -69,7 +70,7 @@ class Point:
 
 @known_keywords
 @dataclass(frozen=True, slots=True)
-class WorkPrecision:
+class WorkPrecision(Shown):
     """Runs of a problem by several methods; the answer of `work_precision`. Print it, or plot it.
 
     Attributes
@@ -130,6 +131,9 @@ class WorkPrecision:
         'peer'
         """
         return WorkPrecision(self.name, (*self.points, *points))
+
+    def __repr__(self) -> str:
+        return f"WorkPrecision({self.name!r}, {len(self.series)} methods, {len(self.points)} runs)"
 
     def __str__(self) -> str:
         head = f"{self.name:<24}" + "".join(f"{f'to {mark:g}':>12}" for mark in _MARKS) + f"{'best':>12}"
@@ -353,3 +357,7 @@ def _seconds(value: float) -> str:
         if value < size:
             return f"{value / size * 1e3:.3g} {unit}"
     return f"{value:.3g} s"
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._mergers import by_era
 from visviva._text import count
@@ -61,7 +62,7 @@ class Drift:
 
 @known_keywords
 @dataclass(frozen=True, slots=True)
-class Conservation:
+class Conservation(Shown):
     """Drift of each invariant of a trajectory; prints as a table.
 
     Attributes
@@ -92,6 +93,19 @@ class Conservation:
     def rows(self) -> tuple[Drift, ...]:
         """The drifts, in the order of the table."""
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
+
+    def __repr__(self) -> str:
+        largest = ", ".join(f"{row.name} {row.max:.1e}" for row in self.rows if row.conserved)
+        return f"Conservation({largest or 'nothing is conserved'})"
+
+    def _sheet(self) -> Sheet:
+        rows = [
+            (row.name, *(f"{v:.1e}" for v in (row.max, row.end, row.rms)), f"{row.scale:.6g}")
+            if row.conserved
+            else (f"{row.name} (not conserved by these forces)", "", "", "", "")
+            for row in self.rows
+        ]
+        return Sheet("Conservation", rows, ("", "max", "end", "rms", "relative to"), f"virial {self.virial:.1e}")
 
     def __str__(self) -> str:
         lines = [f"{'':<34}{'max':>10}{'end':>10}{'rms':>10}{'relative to':>14}"]
@@ -194,3 +208,7 @@ def _virial(trajectory: Trajectory, closed: bool) -> float:
 
     twice = mean(2.0 * kinetic)
     return (twice + mean(sums["virial"])) / twice if twice > 0.0 else float("nan")
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

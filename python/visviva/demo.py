@@ -143,3 +143,7 @@ def _picture(
 def _progress() -> bool:
     """A bar if there is something to draw it with."""
     return find_spec("tqdm") is not None
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

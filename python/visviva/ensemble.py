@@ -6,6 +6,7 @@ others do not notice.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from operator import index as whole
 from typing import TYPE_CHECKING, Any, overload
 
@@ -13,6 +14,7 @@ import numpy as np
 
 from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, left_behind, of_copies
+from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
 from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
@@ -25,13 +27,15 @@ from visviva.status import Status
 from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
+    from visviva._exported import Columns
     from visviva.body import BodyMotion
     from visviva.forces import Force
+    from visviva.request import RunRequest
     from visviva.scene import Scene
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
@@ -177,6 +181,10 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def __repr__(self) -> str:
         return f"EnsembleScene({count(len(self), 'copy', 'copies')} of {self.scene!r})"
 
+    def _sheet(self) -> Sheet:
+        of = self.scene._sheet()
+        return Sheet(f"{count(len(self), 'copy', 'copies')} of a scene at t0 = {self.scene.t0:g}", of.rows)
+
     def __reduce__(self) -> tuple[Any, ...]:
         state = (self.position, self.velocity, self.mass)
         own = turning_of(self._keywords, slice(None))
@@ -185,6 +193,17 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     @property
     def _names(self) -> tuple[str, ...]:
         return self.scene.particles.names
+
+    def _execute(self, request: RunRequest) -> EnsembleTrajectory:
+        if request.save_every is not None or request.save_to is not None:
+            raise InvalidInput(
+                "save_every", "an ensemble is not written while it goes on; run and save it in slices: ensemble[:1000]"
+            )
+        if request.executor is None:
+            return super()._execute(request)
+        from visviva._copies_apart import run_apart
+
+        return run_apart(self, request)
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)
@@ -220,6 +239,7 @@ class EnsembleTrajectory(Recorded):
 
     __slots__ = ("ensemble",)
 
+    _row_axes = ("copy", "time")
     ensemble: EnsembleScene
 
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
@@ -264,6 +284,11 @@ class EnsembleTrajectory(Recorded):
         copies = count(len(self), "copy", "copies")
         return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
 
+    def _sheet(self) -> Sheet:
+        kinds = np.unique(self.status, return_counts=True)
+        ended = ", ".join(f"{number} {Status(int(kind)).name}" for kind, number in zip(*kinds, strict=True))
+        return self._run_sheet(f"Motions of {count(len(self), 'copy', 'copies')}", ended)
+
     @property
     def _start(self) -> EnsembleScene:
         return self.ensemble
@@ -276,6 +301,10 @@ class EnsembleTrajectory(Recorded):
         recorded: NDArray[np.float64] | None = self._result["columns"].get(name)
         # A copy's own property computes it, or says what to record.
         return np.stack([getattr(trajectory, name) for trajectory in self]) if recorded is None else recorded
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = super()._exported(columns)
+        return replace(made, of={**made.of, "status": (("copy",), self.status)})
 
     @property
     def status(self) -> NDArray[np.int8]:
@@ -355,3 +384,7 @@ def _rebuild(
     own: dict[str, Any] = turning or {}
     copies = EnsembleScene(scene, position=position, velocity=velocity, mass=mass, radius=radius, **own)
     return attached(copies if forces is None else copies._own(forces), continuation)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

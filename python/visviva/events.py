@@ -17,6 +17,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index
 from visviva.errors import InvalidInput
@@ -324,7 +326,7 @@ def from_description(kept: dict[str, Any]) -> Event:
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class EventTable:
+class EventTable(Exported, Shown):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -358,17 +360,36 @@ class EventTable:
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
 
+    _row_axes = ("event",)
+
     @classmethod
     def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> EventTable:
         for array in found.values():
             array.setflags(write=False)
         return cls(**found, definitions=definitions)
 
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        known = [name for name in self.__slots__ if name != "definitions"]
+        of = {
+            name: (("event", *["body", "component"][: 2 * (getattr(self, name).ndim == 3)]), getattr(self, name))
+            for name in chosen_columns(columns, known, known)
+        }
+        return Columns({"event": np.arange(len(self)), "body": np.arange(self.position.shape[1])}, of)
+
     def __len__(self) -> int:
         return len(self.t)
 
     def __repr__(self) -> str:
         return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
+
+    def _sheet(self) -> Sheet:
+        def row(at: int) -> tuple[str, ...]:
+            which = int(self.which[at])
+            kind = self.definitions[which].kind if which < len(self.definitions) else ""
+            return (str(at), f"{self.t[at]:.6g}", f"{which} {kind}".rstrip(), str(self.member[at]))
+
+        rows, note = first_rows(len(self), row)
+        return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
 
     def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:

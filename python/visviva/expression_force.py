@@ -158,3 +158,7 @@ def parameter_names(force: ExpressedForce) -> tuple[str, ...]:
             names.append("".join(map(chr, table[at + 3 : at + 3 + count])))
         at += 3 + count
     return tuple(names)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -201,3 +201,7 @@ def _picture(path: Path, metals: list[MetalComparison], thickness: float) -> Pat
     axes.legend(fontsize="small")
     figure.savefig(path, dpi=150)
     return path
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

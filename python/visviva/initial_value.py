@@ -386,3 +386,7 @@ def _last(event: Function) -> int | None:
     raise InvalidInput(
         "events", f"The `terminal` attribute must be a bool or a positive whole number, got {terminal!r}"
     )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -107,3 +107,7 @@ def methods() -> list[Method]:
 def _records(*, rigid: bool) -> list[Method]:
     """The methods of scenes, or those that step rigid bodies."""
     return [Method(**{name: row[name] for name in Method.__slots__}) for row in _core.methods(rigid=rigid)]
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

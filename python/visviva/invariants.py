@@ -14,8 +14,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import table
+from visviva._text import short, table
 from visviva._turning import kept_by_bodies
 from visviva.errors import InvalidInput
 
@@ -31,7 +32,7 @@ _COLUMNS = ["kinetic_energy", "potential_energy", "energy", "momentum", "angular
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class Invariants:
+class Invariants(Shown):
     """The conserved quantities of a state.
 
     Attributes
@@ -65,6 +66,9 @@ class Invariants:
     center_of_mass_kinetic_energy: float
     internal_kinetic_energy: float
     virial: float
+
+    def __repr__(self) -> str:
+        return short(self)
 
     def __str__(self) -> str:
         return table(self)
@@ -169,3 +173,7 @@ def of_scene(scene: Scene, about: ArrayLike | str | None) -> Invariants:
         internal_kinetic_energy=float(internal["kinetic_energy"][0]),
         virial=float(sums["virial"][0]) if "virial" in sums else np.nan,
     )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

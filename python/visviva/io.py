@@ -219,3 +219,7 @@ def _plain(value: object) -> Any:
     if isinstance(value, np.ndarray | np.generic):
         return value.tolist()
     raise TypeError(f"cannot write {type(value).__name__} into the header")
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, in_range, mass_array, positive
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, checked_names
 from visviva._text import count
@@ -24,7 +25,7 @@ __all__ = ["Particles"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class Particles:
+class Particles(Shown):
     """Point particles, or spheres.
 
     Parameters
@@ -101,6 +102,15 @@ class Particles:
         note = f", {massless} of them massless" if massless else ""
         named = f": {', '.join(self.names[:12])}{', …' if len(self.names) > 12 else ''}" if self.names else ""
         return f"Particles({count(len(self), 'body', 'bodies')}{note}{named})"
+
+    def _sheet(self) -> Sheet:
+        def row(body: int) -> tuple[str, ...]:
+            name = self.names[body] if self.names else str(body)
+            return (name, f"{self.mass[body]:.6g}", *map(_vector, (self.position[body], self.velocity[body])))
+
+        rows, note = first_rows(len(self), row)
+        caption = f"Particles: {count(len(self), 'body', 'bodies')}"
+        return Sheet(caption, rows, ("", "mass", "position", "velocity"), note)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Particles):
@@ -337,3 +347,11 @@ def read_only(array: NDArray[np.float64], given: object = None) -> NDArray[np.fl
         array = array.copy()
     array.flags.writeable = False
     return array
+
+
+def _vector(numbers: NDArray[np.float64]) -> str:
+    return ", ".join(f"{number:.6g}" for number in numbers)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -107,3 +107,7 @@ def _sine_amplitude(u: NDArray[np.float64], k: float) -> NDArray[np.float64]:
     for step in range(steps, 0, -1):
         angle = 0.5 * (angle + np.arcsin(c[step] / a[step] * np.sin(angle)))
     return np.sin(angle)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._text import count
 
 if TYPE_CHECKING:
     from visviva import _core
@@ -39,7 +41,7 @@ class Cost:
 
 @known_keywords
 @dataclass(frozen=True, slots=True)
-class Plan:
+class Plan(Shown):
     """What will run, what is skipped and why, and the cost of a step.
 
     Printing it shows the whole of it, the way a database explains a query, and what the run would cost: `cost`.
@@ -88,6 +90,15 @@ class Plan:
     text: str = field(repr=False)
     # What `cost` tries; not there in the plan of what has run.
     _asked: _core._Request | None = field(default=None, repr=False, compare=False)
+
+    def __repr__(self) -> str:
+        bodies = count(self.particles, "body", "bodies")
+        return f"Plan({self.method!r}, {self.solution!r}, {bodies}; print shows the whole of it)"
+
+    def _sheet(self) -> Sheet:
+        skipped = [(f"skipped: {what}", "", why) for what, why in self.skipped]
+        cost = f"{self.evaluations_per_step} force evaluations a step, {self.pairs_per_evaluation} pairs in each"
+        return Sheet(f"Plan: {self.method}", [*self.rows, *skipped], ("", "decision", "reason"), cost)
 
     def __str__(self) -> str:
         found = self.cost()
@@ -163,3 +174,7 @@ def _duration(seconds: float) -> str:
         return f"{seconds:.2g} s"
     minutes = seconds / 60.0
     return f"{minutes:.3g} minutes" if minutes < 100.0 else f"{minutes / 60.0:.3g} hours"
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

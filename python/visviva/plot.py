@@ -97,3 +97,7 @@ def _energy(axes: Axes, trajectory: Trajectory) -> None:
     axes.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
     if np.ptp(energy) == 0.0:
         axes.set_ylim(-1e-16, 1e-16)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -12,8 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva import _core
+from visviva._exported import Columns, Exported, chosen_columns, labels
+from visviva._html import Sheet, Shown
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plan import Plan, told
 
@@ -52,6 +56,16 @@ class Stats:
         return cls(**{name: stats[name] for name in cls.__slots__})
 
 
+# The axes of a column after time: what it is over, and the numbers of each.
+_AXES: dict[str, tuple[str, ...]] = {
+    "position": ("body", "component"),
+    "velocity": ("body", "component"),
+    "orientation": ("rigid_body", "quaternion"),
+    "angular_velocity": ("rigid_body", "component"),
+}
+_AXES |= {name: ("component",) if width == 3 else () for name, _, width, _ in _core.columns()}
+
+
 # What people look for from elsewhere, and where it is here.
 _ELSEWHERE = {
     "y": "position and velocity",
@@ -68,7 +82,7 @@ _ELSEWHERE = {
 
 @known_keywords
 @frozen
-class Recorded(ABC):
+class Recorded(Exported, Shown, ABC):
     """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
 
     __slots__ = ("_columns", "_result", "t")
@@ -300,6 +314,36 @@ class Recorded(ABC):
         """What ran, what was skipped, and why."""
         return Plan._from_core(told(self._result["plan"]))
 
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        rows = self._row_axes
+        of = {
+            name: ((*rows, *_AXES[name]), self._column(name)) for name in chosen_columns(columns, self.recorded, _AXES)
+        }
+        own: dict[str, NDArray[Any]] = {"time": self.t}
+        rigid = self._scene.rigid_bodies
+        names = {"body": self._start._names, "rigid_body": rigid.names if rigid is not None else ()}
+        for axes, values in of.values():
+            for axis, length in zip(axes, values.shape, strict=True):
+                if axis in names:
+                    own[axis] = labels(names[axis], length)
+                elif axis == "copy":
+                    own[axis] = np.arange(length)
+        return Columns(own, of, {"method": self.stats.method})
+
+    def _run_sheet(self, caption: str, ended: str) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        cost = self.stats
+        rows = [
+            ("of", repr(self._scene)),
+            ("times", f"{len(self.t)}{span}"),
+            *((name, f"array of shape {self._column(name).shape}") for name in self.recorded),
+            ("method", cost.method),
+            ("steps", f"{cost.steps}, and {cost.rejected} rejected; {cost.evaluations} force evaluations"),
+            ("time", f"{cost.seconds:.2g} s, {count(cost.threads, 'thread')}, {cost.simd}"),
+            ("ended", ended),
+        ]
+        return Sheet(caption, rows)
+
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to one ``.npz`` file that this and every later version loads.
 
@@ -315,3 +359,7 @@ class Recorded(ABC):
         from visviva.io import save
 
         save(path, self)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

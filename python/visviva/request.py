@@ -25,6 +25,7 @@ from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from os import PathLike
 
     from numpy.typing import ArrayLike
 
@@ -33,7 +34,7 @@ if TYPE_CHECKING:
     from visviva.integrators import Method
     from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName, TransformationName
 
-__all__ = ["PlanRequest", "RunRequest", "asked_by", "execute"]
+__all__ = ["PlanRequest", "RunRequest", "asked_by", "execute", "finished"]
 
 _Parameters = ParamSpec("_Parameters")
 _Request = TypeVar("_Request")
@@ -160,6 +161,9 @@ class RunRequest(PlanRequest):
 
     threads: int | None = None
     progress: Progress = False
+    executor: Any = None
+    save_every: float | None = None
+    save_to: str | PathLike[str] | None = None
 
 
 # Name, default, what the core is told if the default was left, and the check of anything else.
@@ -216,6 +220,8 @@ def execute(
     make: Callable[[dict[str, Any]], _Result],
 ) -> _Result:
     """Run the request and make its result, or raise the core's error with the result attached."""
+    if request.executor is not None:
+        raise InvalidInput("executor", "one scene is one piece of work; scene.ensemble(...) has parts to send")
     asked = request.to_core(prepared, names)
     threads = None if request.threads is None else whole_number("threads", request.threads)
     if request.progress is False:
@@ -225,6 +231,13 @@ def execute(
 
         with callback(request.progress) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
+    return finished(result, asked, ensemble=ensemble, make=make)
+
+
+def finished(
+    result: dict[str, Any], asked: _core._Request, *, ensemble: bool, make: Callable[[dict[str, Any]], _Result]
+) -> _Result:
+    """The result of what the core gave, or the core's error with the result attached."""
     if asked["events"]:
         from visviva.events import described
 
@@ -246,3 +259,7 @@ def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
     if error["kind"] == "interrupted":
         return Interrupted(error["message"], trajectory)
     return ConvergenceError(error["message"], error["time"], trajectory)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

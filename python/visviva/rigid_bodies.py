@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, in_range, mass_array, positive
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
 from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
@@ -38,7 +39,7 @@ IS_ROUNDED = 16 * np.finfo(np.float64).eps
 
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class RigidBodies:
+class RigidBodies(Shown):
     """Rigid bodies, free or turning about a fixed point.
 
     Parameters
@@ -227,6 +228,25 @@ class RigidBodies:
         named = f": {', '.join(self.names[:12])}{', …' if len(self.names) > 12 else ''}" if self.names else ""
         return f"RigidBodies({count(len(self), 'body', 'bodies')}{note}{named})"
 
+    def _sheet(self) -> Sheet:
+        def row(body: int) -> tuple[str, ...]:
+            inertia = self.inertia[body].ravel() if self.inertia is not None else np.zeros(0)
+            moments = self.moments[body] if self.moments is not None else inertia
+            vectors = (moments, self.position[body], self.velocity[body], self.angular_velocity[body])
+            texts = (", ".join(f"{number:.6g}" for number in vector) for vector in vectors)
+            return (self.names[body] if self.names else str(body), f"{self.mass[body]:.6g}", *texts)
+
+        rows, note = first_rows(len(self), row)
+        header = (
+            "",
+            "mass",
+            "moments" if self.moments is not None else "inertia",
+            "position",
+            "velocity",
+            "angular velocity (body)",
+        )
+        return Sheet(f"Rigid bodies: {len(self)}", rows, header, note)
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, RigidBodies):
             return NotImplemented
@@ -367,3 +387,7 @@ class RigidBodies:
                         known, in_range(name, np.where(known, old, 0.0), np.where(known, old * scale, 0.0)), old
                     )
         return self._changed(**new)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

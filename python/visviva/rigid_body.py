@@ -76,3 +76,7 @@ def RigidBody(  # noqa: N802
         names=None if name is None else [name],
         **{argument: float_array(argument, value, (3,))[None] for argument, value in vectors.items()},
     )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -179,3 +179,7 @@ class CompiledTorque(BodyForce):
         raise InvalidInput(
             "function", "a compiled function is at its address in this process only: it cannot be pickled"
         )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -149,3 +149,7 @@ class AttachedSpring(BodyForce):
         if self.damping:
             raise InvalidInput("forces", "AttachedSpring cannot be reversed: damping takes energy away")
         return self
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

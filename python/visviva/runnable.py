@@ -9,6 +9,7 @@ from abc import ABC, abstractmethod
 from typing import Any, ClassVar, Generic, TypeVar
 
 from visviva import _core
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva.plan import Plan
 from visviva.request import PlanRequest, RunRequest, asked_by, execute
@@ -19,7 +20,7 @@ _Result = TypeVar("_Result")
 
 
 @known_keywords
-class Runnable(ABC, Generic[_Result]):
+class Runnable(Shown, ABC, Generic[_Result]):
     """Base of `Scene` and `EnsembleScene`; ``_Result`` is what their runs give."""
 
     __slots__ = ()
@@ -98,6 +99,18 @@ class Runnable(ABC, Generic[_Result]):
             Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
         progress : bool or callable, optional
             True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
+        executor : concurrent.futures.Executor or dask.distributed.Client, optional
+            Of an ensemble: who runs it. Copies go out in parts, motions come home, with the bits of the run without
+            one; the part of a worker that is lost is done again. Each worker uses `threads` threads, or one; `progress`
+            counts copies. Events that are functions of one's own stay here, and are refused.
+        save_every : float, optional
+            Of a scene: the time of the scene after which what was done is written to `save_to`, each time a file. After
+            a crash ``visviva.resume(save_to)`` goes on from the last one that is whole, to the bits of a run that none
+            broke. Fixed steps (the time is rounded to a whole number of them) have the bits that they have without it;
+            adaptive ones, and steps after a collision, are chosen anew after each part. Not with a time transformation
+            or functions as events.
+        save_to : path-like, optional
+            The folder of these files. It is made, in one that exists; it must hold no run yet.
 
         Returns
         -------
@@ -139,6 +152,9 @@ class Runnable(ABC, Generic[_Result]):
         >>> scene.ensemble(position=starts).run(t=1.0).position.shape
         (2, 2, 3, 3)
         """
+        return self._execute(request)
+
+    def _execute(self, request: RunRequest) -> _Result:
         return execute(self._keywords, request, names=self._names, ensemble=self._is_ensemble, make=self._finished)
 
     @asked_by(PlanRequest)
@@ -164,3 +180,7 @@ class Runnable(ABC, Generic[_Result]):
         """
         asked = request.to_core(self._keywords, self._names)
         return Plan._from_core(_core.plan(asked), asked)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -18,6 +18,7 @@ from visviva._arrays import number
 from visviva._body_force import BodyForce
 from visviva._continuation import attached
 from visviva._frames import Framed
+from visviva._html import Sheet
 from visviva._keywords import known_keywords
 from visviva._text import article
 from visviva._turning import described, joined, with_centers
@@ -38,6 +39,7 @@ if TYPE_CHECKING:
     from visviva.ensemble import EnsembleScene
     from visviva.invariants import Invariants
     from visviva.orbits import Elements
+    from visviva.request import RunRequest
 
     _Part: TypeAlias = Particles | RigidBodies | Force | BodyForce
 
@@ -156,6 +158,19 @@ class Scene(Runnable[Trajectory], Framed):
         rigid = () if self.rigid_bodies is None else (self.rigid_bodies,)
         parts = ", ".join(map(repr, (*points, *rigid, *self.forces, *self.body_forces)))
         return f"Scene({parts}, t0={self.t0!r})"
+
+    def _sheet(self) -> Sheet:
+        rigid = () if self.rigid_bodies is None else (self.rigid_bodies,)
+        parts = ((type(part).__name__, repr(part)) for part in (self.particles, *rigid))
+        forces = ((type(force).__name__, repr(force)) for force in (*self.forces, *self.body_forces))
+        return Sheet(f"Scene at t0 = {self.t0:g}", [*parts, *forces])
+
+    def _execute(self, request: RunRequest) -> Trajectory:
+        if request.save_every is None and request.save_to is None:
+            return Runnable._execute(self, request)
+        from visviva.saved_runs import run_saved
+
+        return run_saved(self, request)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Scene):
@@ -433,3 +448,7 @@ def _rebuild(
     scene = object.__new__(Scene)
     scene._set(particles, forces, t0, rigid_bodies, body_forces)
     return attached(scene, continuation)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

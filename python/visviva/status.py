@@ -26,3 +26,7 @@ class Status(IntEnum):
     STOPPED = 5
     OUTSIDE_DOMAIN = 6
     RESTING = 7
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
@@ -15,9 +16,13 @@ from visviva.recorded import Recorded
 from visviva.status import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva._exported import Columns
+    from visviva._html import Sheet
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation
     from visviva.scene import Scene
@@ -77,6 +82,9 @@ class Trajectory(Recorded):
         bodies = count(len(self.scene.particles), "body", "bodies")
         return f"Trajectory({count(len(self.t), 'time')}, {bodies}, {span}, {self.status.name})"
 
+    def _sheet(self) -> Sheet:
+        return self._run_sheet("Trajectory", self.status.name)
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -129,6 +137,10 @@ class Trajectory(Recorded):
             return conserved(scene, position, velocity, point, [name])
 
         return by_era(self, told, velocity="velocity" in needs)[name]
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = super()._exported(columns)
+        return replace(made, attributes={**made.attributes, "status": self.status.name})
 
     @property
     def status(self) -> Status:
@@ -234,3 +246,7 @@ class Trajectory(Recorded):
         from visviva.plot import plot_trajectory
 
         return plot_trajectory(self)
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -131,3 +131,7 @@ def _integrated(spin: NDArray[np.float64], end: float) -> NDArray[np.float64]:
 
 def _spread(values: NDArray[np.float64]) -> float:
     return float(np.ptp(values) / np.abs(values[0]))
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

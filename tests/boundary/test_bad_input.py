@@ -215,7 +215,7 @@ def test_what_an_ensemble_lacks_its_copies_have(name: str, message: str) -> None
         copies.ensemble  # type: ignore[attr-defined]  # noqa: B018
     with pytest.raises(AttributeError, match=r"status == vv\.Status\.OK"):
         copies[0].run(1.0).success  # type: ignore[attr-defined]  # noqa: B018
-    assert not hasattr(copies, "_repr_html_")
+    assert not hasattr(copies, "_repr_svg_")
 
 
 def test_a_frozen_attribute_is_the_error_that_programs_catch() -> None:

@@ -11,6 +11,15 @@ import matplotlib.pyplot as plt
 SCRIPTS = sorted((Path(__file__).parents[2] / "docs" / "gallery").glob("*.py"))
 
 
+def test_there_are_twenty_and_each_says_what_it_shows() -> None:
+    assert len(SCRIPTS) >= 20
+    for script in SCRIPTS:
+        lines = script.read_text(encoding="utf-8").splitlines()
+        assert len(lines) <= 40, script.name
+        assert lines[0].startswith('"""'), script.name
+        assert lines[0].endswith('."""'), script.name
+
+
 @pytest.mark.parametrize("script", SCRIPTS, ids=[script.stem for script in SCRIPTS])
 def test_makes_one_picture(script: Path, tmp_path: Path) -> None:
     plt.close("all")
@@ -26,5 +35,7 @@ def test_makes_one_picture(script: Path, tmp_path: Path) -> None:
         assert box is not None
         assert figure.bbox.padded(1).containsx(box.x0)
         assert figure.bbox.padded(1).containsx(box.x1)
+        assert figure.bbox.padded(1).containsy(box.y0)
+        assert figure.bbox.padded(1).containsy(box.y1)
         assert any(len(line.get_xdata()) > 1 for line in axes.lines)
     plt.close("all")

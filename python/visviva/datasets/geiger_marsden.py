@@ -136,3 +136,7 @@ def geiger_marsden_1913() -> GeigerMarsden:
         gold,
         "H. Geiger, E. Marsden, Phil. Mag. 25 (1913) 604, table II",
     )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -245,3 +245,7 @@ def toutatis() -> Toutatis:
         radar=radar,
         source="Takahashi, Busch & Scheeres, Astron. J. 146 (2013) 95; radar: Hudson & Ostro, Science 270 (1995) 84",
     )
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

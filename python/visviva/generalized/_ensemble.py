@@ -8,13 +8,17 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._exported import Columns, Exported
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._source import _label
-from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
+from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
+from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -25,7 +29,7 @@ __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
 
 
 @known_keywords
-class GeneralizedEnsemble:
+class GeneralizedEnsemble(Shown):
     """Copies of a system with starts or parameters of their own. Made by ``ensemble`` of a system.
 
     Examples
@@ -76,6 +80,15 @@ class GeneralizedEnsemble:
         self._parameters = np.tile(system._values, (members, 1))
         for name, values in own.items():
             self._parameters[:, list(system.parameters).index(name)] = values
+
+    def __repr__(self) -> str:
+        return f"GeneralizedEnsemble({count(len(self), 'copy', 'copies')} of {self.system!r})"
+
+    def _sheet(self) -> Sheet:
+        parameters = ", ".join(self.system.parameters)
+        return Sheet(
+            f"{count(len(self), 'copy', 'copies')} of a system", [("of", repr(self.system)), ("parameters", parameters)]
+        )
 
     def __len__(self) -> int:
         return len(self._states)
@@ -140,7 +153,7 @@ class GeneralizedEnsemble:
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory:
+class GeneralizedEnsembleTrajectory(Exported, Shown):
     """The motions of an ensemble.
 
     Attributes
@@ -185,6 +198,22 @@ class GeneralizedEnsembleTrajectory:
             array.flags.writeable = False
         self._columns: NDArray[np.float64] | None = None
 
+    def __repr__(self) -> str:
+        failed = int(np.count_nonzero(self.status != Status.OK))
+        copies = count(len(self), "copy", "copies")
+        return f"GeneralizedEnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
+
+    def _sheet(self) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        ended, numbers = np.unique([Status(each).name for each in self.status], return_counts=True)
+        rows = [
+            ("of", repr(self.ensemble.system)),
+            ("times", f"{len(self.t)}{span}"),
+            ("steps", f"{self.steps.sum()}; {self.evaluations.sum()} evaluations"),
+            ("ended", ", ".join(f"{number} {name}" for name, number in zip(ended, numbers, strict=True))),
+        ]
+        return Sheet(f"Motions of {count(len(self), 'copy', 'copies')} in generalized coordinates", rows)
+
     def __len__(self) -> int:
         return len(self.status)
 
@@ -201,6 +230,13 @@ class GeneralizedEnsembleTrajectory:
             self._columns = flat.reshape(members, times, -1)
             self._columns.flags.writeable = False
         return self._columns[..., first:last]
+
+    _row_axes = ("copy", "time")
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
+        status = (("copy",), self.status.astype(np.int8))
+        return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
 
     @property
     def _n(self) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.generalized._methods import LINEAR
 
@@ -24,7 +25,7 @@ _MASS = {
 
 @known_keywords
 @dataclass(frozen=True, slots=True)
-class GeneralizedPlan:
+class GeneralizedPlan(Shown):
     """What will run, and what was found on the way.
 
     Attributes
@@ -71,6 +72,12 @@ class GeneralizedPlan:
             ("steps", steps),
         )
         return cls(asked["method"], tuple(system.conserved), rows)
+
+    def __repr__(self) -> str:
+        return f"GeneralizedPlan({self.method!r}, conserved={self.conserved!r}; print shows the whole of it)"
+
+    def _sheet(self) -> Sheet:
+        return Sheet(f"Plan: {self.method}", self.rows)
 
     def __str__(self) -> str:
         width = max(len(subject) for subject, _ in self.rows)

@@ -11,6 +11,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import FrozenAttribute, InvalidInput
 from visviva.generalized._source import Source, _label
@@ -27,7 +28,7 @@ __all__ = ["States", "whole"]
 
 
 @known_keywords
-class States:
+class States(Shown):
     """Base of `GeneralizedSystem`: what it is made of, and the same system elsewhere."""
 
     __slots__ = ("_model", "_second", "_source", "_values", "coordinates", "parameters", "position", "t0")
@@ -76,6 +77,14 @@ class States:
     def __repr__(self) -> str:
         names = ", ".join(self.coordinates)
         return f"{type(self).__name__}({names}; {len(self.parameters)} parameters)"
+
+    def _sheet(self) -> Sheet:
+        values = ", ".join(f"{name} = {value:g}" for name, value in self.parameters.items())
+        rows = [("coordinates", ", ".join(self.coordinates)), ("parameters", values)]
+        if self.position is not None:
+            rows.append(("position", ", ".join(f"{value:g}" for value in self.position)))
+            rows.append((self._second_name, ", ".join(f"{value:g}" for value in self._second)))
+        return Sheet(type(self).__name__, rows)
 
     @property
     def _structure(self) -> dict[str, Any]:

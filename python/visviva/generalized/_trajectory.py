@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._exported import Columns, Exported, chosen_columns
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.status import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -26,8 +31,24 @@ STATUS = {
 }
 
 
+def exported(
+    run: Any, columns: str | Sequence[str] | None, rows: tuple[str, ...], coordinates: Sequence[str]
+) -> Columns:
+    """The columns of a run, or of an ensemble of them, over time, coordinates and constraints."""
+    known = ["position", "velocity", "momentum", "energy", "reactions"]
+    # Without constraints there are no reactions to show, unless somebody asks.
+    usual = known if run.reactions.shape[-1] else known[:-1]
+    over = {"energy": (), "reactions": ("constraint",)}
+    of = {
+        name: ((*rows, *over.get(name, ("coordinate",))), getattr(run, name))
+        for name in chosen_columns(columns, usual, known)
+    }
+    axes = {"time": run.t, "coordinate": np.array(coordinates), "constraint": np.arange(run.reactions.shape[-1])}
+    return Columns(axes, of)
+
+
 @known_keywords
-class GeneralizedTrajectory:
+class GeneralizedTrajectory(Exported, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Attributes
@@ -92,6 +113,17 @@ class GeneralizedTrajectory:
         span = f"t = {self.t[0]:g} … {self.t[-1]:g}" if len(self.t) else "empty"
         return f"GeneralizedTrajectory({names}; {len(self.t)} times, {span}, {self.status.name})"
 
+    def _sheet(self) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        rows = [
+            ("of", repr(self.system)),
+            ("times", f"{len(self.t)}{span}"),
+            ("method", self.method),
+            ("steps", f"{self.steps}; {self.evaluations} evaluations"),
+            ("ended", self.status.name),
+        ]
+        return Sheet("Trajectory in generalized coordinates", rows)
+
     def __len__(self) -> int:
         return len(self.t)
 
@@ -106,6 +138,10 @@ class GeneralizedTrajectory:
             columns.flags.writeable = False
             self._columns = columns
         return self._columns[:, first:last]
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        found = exported(self, columns, self._row_axes, self.system.coordinates)
+        return replace(found, attributes={"method": self.method, "status": self.status.name})
 
     @property
     def position(self) -> NDArray[np.float64]:

@@ -9,8 +9,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive
+from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import table
+from visviva._text import short, table
 from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, fields, shaped
 from visviva.potentials import Potential
@@ -138,7 +139,7 @@ def path_equation(
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class CircularOrbits:
+class CircularOrbits(Shown):
     """Circles in a potential; what :func:`circular_orbit` and :func:`circular_orbits` return.
 
     Attributes
@@ -163,6 +164,9 @@ class CircularOrbits:
     radial_frequency: NDArray[np.float64]
     growth_rate: NDArray[np.float64]
     apsidal_angle: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return short(self)
 
     def __str__(self) -> str:
         return table(self)

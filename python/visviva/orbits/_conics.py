@@ -6,8 +6,9 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from visviva import _core
+from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import table
+from visviva._text import short, table
 from visviva.orbits._arguments import broadcast, fields, shaped
 
 if TYPE_CHECKING:
@@ -17,7 +18,7 @@ if TYPE_CHECKING:
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class Conic:
+class Conic(Shown):
     """What is constant on a conic, for a body of mass m in V(r) = −γ/r; see :func:`conic`.
 
     Every attribute has the shape of the conics asked for (a number for one).
@@ -60,6 +61,9 @@ class Conic:
     period: NDArray[np.float64]
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return short(self)
 
     def __str__(self) -> str:
         return table(self)

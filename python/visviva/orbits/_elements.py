@@ -7,8 +7,9 @@ from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Shown
 from visviva._keywords import known_keywords
-from visviva._text import table
+from visviva._text import short, table
 from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, fields, shaped
 
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class Elements:
+class Elements(Shown):
     """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
@@ -97,6 +98,9 @@ class Elements:
     period: NDArray[np.float64]
     areal_rate: NDArray[np.float64]
     turning_angle: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        return short(self)
 
     def __str__(self) -> str:
         return table(self)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
@@ -30,7 +31,7 @@ _FORMAT, _VERSION = "visviva scattering", 2
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its tallies
+class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
 
     Attributes
@@ -110,6 +111,13 @@ class MonteCarlo(OfEvents, Mapping[Any, Any]):  # noqa: PLW1641 — as its talli
     def __radd__(self, other: int) -> MonteCarlo:
         """Begin a `sum`."""
         return self if is_zero(other) else NotImplemented
+
+    def _sheet(self) -> Sheet:
+        rows = [
+            (str(tally.name), f"{tally.counts.size}", f"{int(tally.counts.sum())}", f"{tally.captured}")
+            for tally in self.tallies
+        ]
+        return Sheet(f"{self.n_events} events on {self.potential!r}", rows, ("", "bins", "counted", "captured"))
 
     def __repr__(self) -> str:
         sizes = ", ".join(f"{tally.name} ({tally.counts.size} bins)" for tally in self.tallies)

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva import _core
+from visviva._exported import needed
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, described
@@ -16,6 +17,8 @@ from visviva.scattering._counts import plot_tally, poisson_interval
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
+    from pandas import DataFrame
+    from xarray import Dataset
 
 __all__ = ["CrossSection", "JointTally", "OfEvents", "Tally", "is_zero"]
 
@@ -251,6 +254,67 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
         return _to_hist((self.name,), (self.edges,), flow)
 
+    def to_pandas(self) -> DataFrame:
+        """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Its index are the bins as intervals, closed on the left (the last bin has its end, too). What is outside of
+            them and what was captured is in ``frame.attrs``.
+
+        Raises
+        ------
+        ImportError
+            Without the package pandas: ``pip install 'visviva[pandas]'``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> frame = run["cm_angle"].to_pandas()
+        >>> frame.shape, int(frame["counts"].sum())
+        ((180, 2), 1000)
+        """
+        from visviva.scattering._exported import intervals
+
+        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(
+            {"counts": self.counts, "reachable": self.reachable}, index=intervals(self.name, self.edges)
+        )
+        frame.attrs.update(self._about())
+        return frame
+
+    def to_xarray(self) -> Dataset:
+        """As an ``xarray.Dataset`` of ``counts`` and ``reachable`` over the middles of the bins.
+
+        Returns
+        -------
+        xarray.Dataset
+            The ends of the bins are the coordinates ``<name>_low`` and ``<name>_high``; what is outside of them and
+            what was captured are attributes. Angles are in radians.
+
+        Raises
+        ------
+        ImportError
+            Without the package xarray: ``pip install 'visviva[xarray]'``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> data = run["cm_angle"].to_xarray()
+        >>> int(data["counts"].sum()), data["cm_angle"].units
+        (1000, 'rad')
+        """
+        from visviva.scattering._exported import dataset
+
+        return dataset({self.name: self.edges}, {"counts": self.counts, "reachable": self.reachable}, self._about())
+
+    def _about(self) -> dict[str, int]:
+        return {name: getattr(self, name) for name in ("underflow", "overflow", "captured", "n_events")}
+
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, Tally):
             return NotImplemented
@@ -279,10 +343,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
 
 
 def _to_hist(names: tuple[str, ...], edges: tuple[NDArray[np.float64], ...], flow: NDArray[np.uint64]) -> Any:
-    try:
-        import hist
-    except ImportError as error:
-        raise ImportError("to_hist needs the package hist: pip install visviva[hist]") from error
+    hist = needed("hist", "to_hist")
     axes = [hist.axis.Variable(values, name=name) for name, values in zip(names, edges, strict=True)]
     filled = hist.Hist(*axes, storage=hist.storage.Int64())
     filled.view(flow=True)[...] = flow
@@ -348,6 +409,60 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
             Without the package hist.
         """
         return _to_hist(self.name, self.edges, self.flow)
+
+    def to_pandas(self) -> DataFrame:
+        """As a ``pandas.DataFrame`` of counts: rows are bins of the first quantity, columns of the second.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Bins are intervals, closed on the left.
+
+        Raises
+        ------
+        ImportError
+            Without the package pandas: ``pip install 'visviva[pandas]'``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
+        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["lab_angle", "energy"].to_pandas().shape
+        (10, 10)
+        """
+        from visviva.scattering._exported import intervals
+
+        rows, columns = map(intervals, self.name, self.edges)
+        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(self.counts, index=rows, columns=columns)
+        frame.attrs.update(captured=self.captured, n_events=self.n_events)
+        return frame
+
+    def to_xarray(self) -> Dataset:
+        """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins of both quantities.
+
+        Returns
+        -------
+        xarray.Dataset
+            As that of `Tally.to_xarray`, with two axes.
+
+        Raises
+        ------
+        ImportError
+            Without the package xarray: ``pip install 'visviva[xarray]'``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
+        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> dict(run["lab_angle", "energy"].to_xarray().sizes)
+        {'lab_angle': 10, 'energy': 10}
+        """
+        from visviva.scattering._exported import dataset
+
+        told = {"captured": self.captured, "n_events": self.n_events}
+        return dataset(dict(zip(self.name, self.edges, strict=True)), {"counts": self.counts}, told)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, JointTally):

@@ -160,3 +160,7 @@ def _dragged(tau: float) -> Scene:
 
 def _pair_at_rest(apart: float) -> Scene:
     return Scene(Particles([1.0, 1.0], np.array([[0, 0, 0], [apart, 0, 0]]), np.zeros((2, 3))), Gravity(1.0))
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

@@ -133,3 +133,7 @@ def _keeps_energy(scene: Scene) -> bool:
     from visviva.invariants import kept_by_forces
 
     return bool(kept_by_forces(scene, np.zeros(3))["energy"])
+
+
+def __dir__() -> list[str]:
+    return list(__all__)

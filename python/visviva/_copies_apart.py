@@ -1,0 +1,134 @@
+"""An ensemble that other processes and machines run: parts of its copies go out, their results are joined.
+
+The one idea: a copy has the bits that it has alone, so that parts only have to be laid one after the other. What is not
+of one copy (the plan, what was looked for) is made here, of the whole.
+"""
+
+from __future__ import annotations
+
+from contextlib import closing
+from dataclasses import replace
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any, cast
+
+import numpy as np
+
+from visviva import _core
+from visviva._arrays import whole_number
+from visviva._executors import answers, checked_executor
+from visviva._progress import callback
+from visviva.errors import Interrupted, InvalidInput
+from visviva.request import execute, finished
+
+if TYPE_CHECKING:
+    from visviva.ensemble import EnsembleScene, EnsembleTrajectory
+    from visviva.request import RunRequest
+    from visviva.typing import ColumnName
+
+__all__ = ["run_apart", "run_part"]
+
+# Parts in all, and copies that go side by side through the lanes.
+_MOST, _LANES = 64, 8
+
+
+def run_part(copies: EnsembleScene, request: RunRequest) -> dict[str, Any]:
+    """Run some of the copies: what a worker does."""
+    asked = request.to_core(copies._keywords, copies._names)
+    result = _core.run(asked, threads=request.threads or 1, progress=None, ensemble=True)
+    # The plan is told of the whole.
+    return {name: value for name, value in result.items() if name != "plan"}
+
+
+def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajectory:
+    """Run an ensemble by ``request.executor``.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        As a run without one, before anything is sent; and for events that are functions.
+    visviva.Interrupted
+        After Ctrl-C; its ``.trajectory`` has the copies before the first that is not home, or is None.
+    """
+    executor = checked_executor(request.executor)
+    alone = replace(request, executor=None, progress=False)
+    if request.threads is not None:
+        whole_number("threads", request.threads, 1, 1024)
+    asked = alone.to_core(ensemble._keywords, ensemble._names)
+    if any(event["kind"] == "function" for event in asked["events"]):
+        raise InvalidInput(
+            "executor", "events that are functions of your own cannot be sent; use those of visviva.events, or run here"
+        )
+    # Which columns are recorded if nothing is said is known by identity, which no journey keeps.
+    alone = replace(alone, record=cast("list[ColumnName]", asked["record"]))
+    plan = _core.plan(asked)
+    number = len(ensemble)
+    parts = max(1, min(_MOST, number // _LANES))
+    bounds = [number * part // parts // _LANES * _LANES for part in range(parts)] + [number]
+    calls = [(ensemble[start:end], alone) for start, end in pairwise(bounds)]
+    home: list[dict[str, Any]] = []
+    with callback(request.progress) as report:
+        try:
+            with closing(answers(executor, run_part, calls)) as coming:
+                for came, end in zip(coming, bounds[1:], strict=True):
+                    home.append(came)
+                    if report is not None:
+                        report(end, number)
+        except InvalidInput:
+            # A worker counts the copies of its part. Refused here, before anything runs, by the number of the copy.
+            return execute(ensemble._keywords, alone, names=ensemble._names, ensemble=True, make=ensemble._finished)
+        except KeyboardInterrupt:
+            reached = ensemble[: bounds[len(home)]] if home else None
+            done = None if reached is None else reached._finished(_joined(home, bounds, plan))
+            message = f"interrupted after {bounds[len(home)]} of {number} copies"
+            raise Interrupted(message, done) from None
+    return finished(_joined(home, bounds, plan), asked, ensemble=True, make=ensemble._finished)
+
+
+def _joined(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]) -> dict[str, Any]:
+    """The result of all copies."""
+    first = parts[0]
+    result: dict[str, Any] = {"t": first["t"], "plan": plan, "error": None}
+    result["status"] = np.concatenate([part["status"] for part in parts])
+    for group in ("columns", "per_trajectory"):
+        result[group] = _stacked([part[group] for part in parts])
+    for table in ("events", "collisions"):
+        if table in first:
+            result[table] = _stacked([part[table] for part in parts])
+            copies = [part[table]["member"] + start for part, start in zip(parts, bounds, strict=False)]
+            result[table]["member"] = np.concatenate(copies)
+    counts = ("steps", "rejected", "evaluations", "seconds")
+    sums = {name: sum(part["stats"][name] for part in parts) for name in counts}
+    result["stats"] = {**first["stats"], **sums}
+    result |= _left(parts)
+    if "dt_beyond" in first:
+        result["dt_beyond"] = first["dt_beyond"]
+    # The worst of all; of equals the last, as the core has it.
+    errors = [
+        (part["energy_error"][0] + start, *part["energy_error"][1:])
+        for part, start in zip(parts, bounds, strict=False)
+        if "energy_error" in part
+    ]
+    if errors:
+        result["energy_error"] = max(reversed(errors), key=lambda error: error[1])
+    return result
+
+
+def _stacked(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    return {name: np.concatenate([part[name] for part in parts]) for name in parts[0]}
+
+
+def _left(parts: list[dict[str, Any]]) -> dict[str, Any]:
+    """The last states, and what was left behind for another run to go on with."""
+    final = [dict(part["final"]) for part in parts]
+    shared: Any = next((part["continuation"] for part in parts if "continuation" in part), None)
+    if shared is not None:
+        shape = next(last["held"].shape[1:] for last in final if "held" in last)
+        for last in final:
+            # Copies none of which ended on a node left nothing, as those have that were stopped beside others.
+            number = len(last["t"])
+            last.setdefault("held", np.zeros((number, *shape)))
+            last.setdefault("node", np.zeros(number, dtype=np.int64))
+    common = [name for name in final[0] if all(name in last for last in final)]
+    same = [name for name in common if len({last[name].shape[1:] for last in final}) == 1]
+    kept = {name: np.concatenate([last[name] for last in final]) for name in same}
+    return {"final": kept} | ({"continuation": shared} if shared is not None and "held" in kept else {})

@@ -1,0 +1,205 @@
+"""Results as they are wanted elsewhere: an xarray Dataset, a pandas DataFrame.
+
+The one idea: a result says its axes and its columns once (`Columns`); both forms follow from that. xarray and pandas
+are imported when they are asked for, so that nobody else pays for them.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass, field
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from numpy.typing import NDArray
+    from pandas import DataFrame
+    from xarray import Dataset
+
+__all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels", "needed"]
+
+# The numbers of a vector and of a quaternion, scalar last.
+AXES = {"component": np.array(["x", "y", "z"]), "quaternion": np.array(["x", "y", "z", "w"])}
+
+
+@dataclass(frozen=True)
+class Columns:
+    """Named columns over named axes.
+
+    Attributes
+    ----------
+    axes : mapping of str to ndarray
+        The labels along each axis; those of `AXES` need not be given.
+    of : mapping of str to (tuple of str, ndarray)
+        Of each column its axes and its numbers.
+    attributes : mapping of str to object
+        What holds for all of it.
+    units : mapping of str to str
+        Of axes and columns, where they are known; everything else is in the units of the caller.
+    """
+
+    axes: Mapping[str, NDArray[Any]]
+    of: Mapping[str, tuple[tuple[str, ...], NDArray[Any]]]
+    attributes: Mapping[str, Any] = field(default_factory=dict)
+    units: Mapping[str, str] = field(default_factory=dict)
+
+    def labels(self, axis: str) -> NDArray[Any]:
+        """What stands along an axis."""
+        return self.axes[axis] if axis in self.axes else AXES[axis]
+
+
+@known_keywords
+class Exported:
+    """Base of what can be handed to xarray and pandas."""
+
+    __slots__ = ()
+
+    @abstractmethod
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        """Columns and axes; the first axis of a table is that of its rows."""
+
+    # How many leading axes are rows of a DataFrame: copy and time of an ensemble.
+    _row_axes: tuple[str, ...] = ("time",)
+
+    def to_xarray(self, columns: str | Sequence[str] | None = None) -> Dataset:
+        """As an ``xarray.Dataset``: a variable for each column, over named axes with their labels.
+
+        Parameters
+        ----------
+        columns : str or sequence of str, optional
+            Which; by default those that were recorded, of results in generalized coordinates and of tables all.
+
+        Returns
+        -------
+        xarray.Dataset
+            Axes are ``time``, ``copy``, ``body`` (names, if the bodies have some), ``component``, ``quaternion``,
+            ``coordinate`` and so on, as far as there are such. Numbers are views of the result's, which are read-only.
+
+        Raises
+        ------
+        ImportError
+            Without the package xarray: ``pip install 'visviva[xarray]'``.
+        visviva.InvalidInput
+            If a column is unknown, or neither recorded nor to be computed from what is.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> data = vv.datasets.outer_solar_system().scene.run(t=[0.0, 100.0]).to_xarray()
+        >>> dict(data.sizes), float(data.position.sel(body="Jupiter", component="x")[0]).__round__(3)
+        ({'time': 2, 'body': 6, 'component': 3}, -3.502)
+        """
+        module = needed("xarray", "to_xarray")
+        export = self._exported(columns)
+        used = dict.fromkeys(axis for axes, _ in export.of.values() for axis in axes)
+
+        def about(name: str) -> dict[str, str]:
+            return {"units": export.units[name]} if name in export.units else {}
+
+        variables = {name: (axes, values, about(name)) for name, (axes, values) in export.of.items()}
+        coordinates = {axis: (axis, export.labels(axis), about(axis)) for axis in used}
+        made: Dataset = module.Dataset(variables, coordinates, dict(export.attributes))
+        return made
+
+    def to_pandas(self, columns: str | Sequence[str] | None = None) -> DataFrame:
+        """As a ``pandas.DataFrame`` with a row for each time, of an ensemble for each copy and time.
+
+        Parameters
+        ----------
+        columns : str or sequence of str, optional
+            As of `to_xarray`.
+
+        Returns
+        -------
+        pandas.DataFrame
+            Where columns hold several numbers a row, as positions do, labels are tuples:
+            ``frame["position"]["Jupiter"]["x"]``, and those of fewer numbers end in empty texts.
+
+        Raises
+        ------
+        ImportError
+            Without the package pandas: ``pip install 'visviva[pandas]'``.
+        visviva.InvalidInput
+            As `to_xarray`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> frame = vv.datasets.outer_solar_system().scene.run(t=[0.0, 100.0]).to_pandas("position")
+        >>> frame.shape, frame["position"]["Jupiter"]["x"].round(3).tolist()[0]
+        ((2, 18), -3.502)
+        """
+        module = needed("pandas", "to_pandas")
+        export = self._exported(columns)
+        rows = self._row_axes
+        index = (
+            module.Index(export.labels(rows[0]), name=rows[0])
+            if len(rows) == 1
+            else module.MultiIndex.from_product([export.labels(axis) for axis in rows], names=rows)
+        )
+        keys: list[tuple[Any, ...]] = []
+        parts: list[NDArray[Any]] = []
+        for name, (axes, values) in export.of.items():
+            if axes[: len(rows)] != rows:
+                continue  # one number a copy: no row has it
+            width = int(np.prod(values.shape[len(rows) :], dtype=int))
+            flat = values.reshape(len(index), width)
+            parts.extend(flat.T)
+            keys.extend((name, *place) for place in _places([export.labels(axis) for axis in axes[len(rows) :]]))
+        levels = max(map(len, keys), default=1)
+        padded = [(*key, *[""] * (levels - len(key))) for key in keys]
+        frame: DataFrame = module.DataFrame(dict(enumerate(parts)), index=index)
+        frame.columns = module.MultiIndex.from_tuples(padded) if levels > 1 else [key[0] for key in keys]
+        return frame
+
+
+def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
+    """Every place of an array with these labels, the last axis fastest."""
+    places: list[tuple[Any, ...]] = [()]
+    for labels_ in axes:
+        places = [(*place, label) for place in places for label in labels_.tolist()]
+    return places
+
+
+def needed(package: str, what: str) -> Any:
+    """The package, or an error that says how to get it.
+
+    Raises
+    ------
+    ImportError
+        If it is not installed.
+    """
+    try:
+        return import_module(package)
+    except ImportError as error:
+        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{package}]'") from error
+
+
+def labels(names: Iterable[str], number: int) -> NDArray[Any]:
+    """The names along an axis, or numbers from 0 where there are none."""
+    given = list(names)
+    return np.array(given) if len(given) == number and number else np.arange(number)
+
+
+def chosen_columns(given: str | Sequence[str] | None, default: Sequence[str], known: Iterable[str]) -> list[str]:
+    """The names of the columns that were asked for.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a name that is none of `known`.
+    """
+    if given is None:
+        return list(default)
+    names = [given] if isinstance(given, str) else list(given)
+    for name in names:
+        if name not in known:
+            raise InvalidInput("columns", f"there is no column {name!r}; there are {', '.join(sorted(known))}")
+    return list(dict.fromkeys(names))
