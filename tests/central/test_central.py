@@ -62,7 +62,7 @@ def zbl(k: float, length: float) -> Any:
     return lambda r: k / r * sum(mpmath.mpf(a) * mpmath.exp(-mpmath.mpf(b) * r / length) for a, b in terms)
 
 
-CASES: dict[str, tuple[Any, Any, float, float, float]] = {
+FIELDS: dict[str, tuple[Any, Any, float, float, float]] = {
     "yukawa": (Yukawa(-1.0, length=5.0), lambda r: -mpmath.exp(-r / 5) / r, -0.2, 0.8, 1.0),
     "plummer": (Plummer(-2.0, 0.5), lambda r: -2 / mpmath.sqrt(r * r + mpmath.mpf(0.25)), -0.9, 0.3, 1.7),
     "lennard_jones": (LennardJones(1.0, 1.0), lambda r: 4 * (r**-12 - r**-6), -0.4, 0.9, 1.0),
@@ -80,9 +80,9 @@ CASES: dict[str, tuple[Any, Any, float, float, float]] = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@pytest.mark.parametrize("name", FIELDS)
 def test_periods_and_angles_have_thirteen_digits(name: str) -> None:
-    potential, value, energy, momentum, mass = CASES[name]
+    potential, value, energy, momentum, mass = FIELDS[name]
     terms = [potential] if isinstance(potential, Potential) else potential
     # An energy that there is, whatever the case says.
     circles = vv.orbits.circular_orbits(terms, angular_momentum=momentum, mass=mass)
