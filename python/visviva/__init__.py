@@ -76,6 +76,7 @@ _HOME = {
     "UniformField": "forces",
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
+    "WrongArguments": "errors",
     "WorkPrecision": "comparison",
     "coordinate": "generalized",
     "load": "io",
@@ -164,6 +165,7 @@ __all__ = [
     "UniformMagneticField",
     "UnknownKeyword",
     "WorkPrecision",
+    "WrongArguments",
     "audit",
     "collisions",
     "coordinate",
@@ -226,6 +228,7 @@ if TYPE_CHECKING:
         Interrupted,
         InvalidInput,
         UnknownKeyword,
+        WrongArguments,
     )
     from visviva.expression_force import ExpressionForce
     from visviva.forces import (
