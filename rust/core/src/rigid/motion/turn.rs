@@ -10,7 +10,7 @@
 
 use super::super::free::FreeRotation;
 use super::super::quaternion::IDENTITY;
-use super::vectors::{cross, dot, joined, largest, product, times};
+use super::vectors::{by_exactly, cross, dot, joined, largest, product, times};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::real::{Mask, Real};
 
@@ -219,14 +219,6 @@ fn timed<S: Real>((high, low): Rounded<S>, x: S) -> Rounded<S> {
         (whole[c], left[c]) = by_exactly(x, (high[c], low[c]));
     }
     (whole, left)
-}
-
-/// A product with a rounded factor, and what its rounding leaves out. Times and moments are round numbers more often than not,
-/// and the errors of such products no noise about zero: in every step the same, they would move the energy.
-#[inline(always)]
-fn by_exactly<S: Real>(x: S, (high, low): (S, S)) -> (S, S) {
-    let whole = x * high;
-    (whole, x.multiply_add(high, -whole) + x * low)
 }
 
 /// Half the angular velocity of a momentum, times the time.
