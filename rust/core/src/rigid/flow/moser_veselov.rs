@@ -226,7 +226,7 @@ impl<S: Real> MoserVeselov<S> {
             angle[at] = self.ratios[at] * u[at];
         }
 
-        let mut p = guess(&inverse, &across, &v);
+        let (mut p, mut p_low) = (guess(&inverse, &across, &v), [S::zero(); 3]);
         let mut done = S::Mask::splat(false);
         for _ in 0..ITERATIONS {
             let mut e = [S::zero(); 3];
@@ -270,7 +270,9 @@ impl<S: Real> MoserVeselov<S> {
             let step = [dot(rest, normal) * per, -(dot(third, aside) * per), dot(second, aside) * per];
             let mut moved = [S::zero(); 3];
             for at in 0..3 {
-                p[at] = S::select(done, p[at], p[at] + step[at]);
+                let (to, low) = two_sum(p[at], step[at]);
+                p_low[at] = S::select(done, p_low[at], low);
+                p[at] = S::select(done, p[at], to);
                 moved[at] = inverse[at] * step[at];
             }
             done = done.or(dot(moved, moved).less_equal(square_of_tolerance::<S>() * size));
@@ -280,7 +282,8 @@ impl<S: Real> MoserVeselov<S> {
         }
         let mut e = [S::zero(); 3];
         for at in 0..3 {
-            let low = change[at].multiply_add(p[at], self.ratios[at] * (half * u_low[at]));
+            let p_low = half.multiply_add(u_low[at], p_low[at]);
+            let low = change[at].multiply_add(p[at], self.ratios[at] * p_low);
             e[at] = self.ratios[at].multiply_add(p[at], low);
         }
         let size = dot(e, e);
