@@ -141,6 +141,14 @@ impl Request {
         if model.needs().time && longest < asked { longest } else { asked }
     }
 
+    /// The steps of a collocation method.
+    pub(super) fn gauss_steps(&self) -> Steps {
+        match self.dt {
+            Some(dt) => Steps::Equal(dt),
+            None => Steps::Chosen { delta: delta(self.rtol), held: self.held },
+        }
+    }
+
     /// The step of a method that has a fixed one, with the sign of time.
     pub(super) fn fixed_step(&self, method: &str) -> Result<f64> {
         let missing = || Error::invalid("dt", format!("{method} needs a step dt"));
@@ -205,11 +213,8 @@ pub fn solve(
         Integrator::Gauss(method) => {
             let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             let machine = Machine::new(model.code.clone(), &lanes);
-            let steps = match request.dt {
-                Some(dt) => Steps::Equal(dt),
-                None => Steps::Chosen { delta: delta(request.rtol), held: request.held },
-            };
-            let trial = GaussStep::new(method, (machine, model.form), drive.state, (steps, max_step), t0);
+            let steps = (request.gauss_steps(), max_step);
+            let trial = GaussStep::new(method, (machine, model.form), drive.state, steps, t0);
             drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
         }
         Integrator::Linear(ref linear) => return linear.solve(request, (y0, parameters), drive.ticker),
