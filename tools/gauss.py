@@ -1,9 +1,9 @@
 """Write the tables of Gauss's collocation methods: ``rust/core/src/generalized/gauss/tables.rs``.
 
 Nodes are the zeros of Legendre's polynomials; every weight is an integral of a Lagrange polynomial, found with 80
-digits and rounded once. Of the matrix some entries are rounded to the other side, so that Σ bᵢ aᵢⱼ is 1/2 to some 1e-20:
-what it lacks is a drift of the energy, the same in every step. With ``--check`` nothing is written: the exit status says whether the checked-in file equals
-what is computed.
+digits and rounded once. Of the matrix some entries are rounded to the other side, so that Σ bᵢ aᵢⱼ is 1/2 to some
+1e-20: what it lacks is a drift of the energy, the same in every step. With ``--check`` nothing is written:
+the exit status says whether the checked-in file equals what is computed.
 
     python tools/gauss.py [--check]
 """
@@ -78,7 +78,7 @@ def lanes(values: list[mpf]) -> str:
 
 
 def balanced(a: matrix, b: list[mpf]) -> matrix:
-    """The entries as binary64 numbers with Σ bᵢ aᵢⱼ = 1/2, no entry farther than 1.5 units in the last place from its own."""
+    """The entries as binary64 numbers with Σ bᵢ aᵢⱼ = 1/2, each within 1.5 units in the last place."""
     stages = len(b)
     rounded = matrix(stages, stages)
     for i in range(stages):

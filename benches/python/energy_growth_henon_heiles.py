@@ -1,8 +1,8 @@
-"""How the energy error of `gauss16` grows on the round-off floor of Hénon–Heiles: an exponent near 1/2 is a random walk.
+"""How the energy error of `gauss16` on Hénon–Heiles grows at round-off: an exponent near 1/2 is a random walk.
 
-32 copies near (0.1, 0; 0, 0.5), to t = 5e4 with equal steps of 0.5: a fit of log rms against log time over two decades, the
-scatter about the mean of the copies, and the drift of that mean per unit of time with its standard error. A drift that is
-many standard errors from zero is a bias of the method; one within them is what 32 random walks leave.
+32 copies near (0.1, 0; 0, 0.5), to t = 5e4 with equal steps of 0.5: a fit of log rms against log time over two decades,
+the scatter about the mean of the copies, and the drift of that mean per unit of time with its standard error. A drift
+that is many standard errors from zero is a bias of the method; one within them is what 32 random walks leave.
 """
 
 from __future__ import annotations

@@ -53,6 +53,22 @@ def test_energy_for_a_long_time() -> None:
     assert np.abs(energy / energy[0] - 1.0).max() <= 3e-14
 
 
+@pytest.mark.parametrize("dt", [0.5, 0.43])
+def test_energies_wander_and_do_not_drift(dt: float) -> None:
+    """Nodes, and the step times them and itself, rounded to doubles were a drift of 8e-19 to 5e-18 in every step.
+
+    The mean of 256 walks of 2000 steps is known to 5e-20 of a step.
+    """
+    random = np.random.default_rng(5)
+    many = vv.systems.henon_heiles().ensemble(
+        position=np.array([0.1, 0.0]) + 1e-3 * random.normal(size=(256, 2)),
+        momentum=np.array([0.0, 0.5]) + 1e-3 * random.normal(size=(256, 2)),
+    )
+    energy = many.run([0.0, 2000 * dt], method="gauss16", dt=dt).energy
+    drift = (energy[:, 1] / energy[:, 0] - 1.0) / 2000
+    assert abs(drift.mean()) < 4.0 * drift.std() / 16.0 < 3e-19
+
+
 def test_cyclic_coordinates() -> None:
     assert vv.systems.spherical_pendulum().cyclic == ["phi"]
     assert vv.systems.cart_pendulum().cyclic == ["x"]

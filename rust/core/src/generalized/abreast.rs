@@ -38,7 +38,7 @@ pub fn together(model: &Model, request: &Request) -> bool {
     };
     lanes_are_trajectories
         && request.outputs.is_some()
-        && request.section.is_none()
+        && request.sections.is_empty()
         && model.projection.is_none()
         && request.span.0 != request.span.1
 }

@@ -144,7 +144,9 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         let mut most = V::zero();
         for k in 0..count {
             let mut change = V::zero();
-            let passed = V::splat(table.c.0[k]) * h;
+            let c = V::splat(table.c.0[k]);
+            let passed = c * h;
+            let passed_rest = V::splat(table.c_rest.0[k]).multiply_add(h, c.multiply_add(h, -passed));
             for i in 0..evaluated {
                 let from = if second_order { evaluated + i } else { i };
                 let (row, y_from) = (&columns.rates[i], V::load(y[from]));
@@ -154,7 +156,8 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
                 change = change.max((number - before).abs() * V::load(columns.scales[i]));
                 columns.numbers[i][k] = number.store();
                 if second_order {
-                    let drift = passed.multiply_add(y_from, V::load(rest[i]));
+                    let left_out = passed_rest.multiply_add(y_from, V::load(rest[i]));
+                    let drift = passed.multiply_add(y_from, left_out);
                     let sum = combined!(count, row, j => V::splat(table.a2[j].0[k]));
                     columns.places[i][k] = (sum.multiply_add(h2, drift) + V::load(y[i])).store();
                 }
@@ -248,7 +251,9 @@ fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<Lanes>) {
                 let drift = y * h;
                 let lost = y.multiply_add(h, -drift);
                 let rest_q = rest_v.multiply_add(h, V::load(rest[i]) + lost);
-                put(i, drift + weighted::<V>(&table.b2, row, last).multiply_add(h * h, rest_q));
+                let (h2, moved) = (h * h, weighted::<V>(&table.b2, row, last));
+                let small = moved.multiply_add(h.multiply_add(h, -h2), rest_q);
+                put(i, drift + moved.multiply_add(h2, small));
             }
         }
     }

@@ -21,8 +21,9 @@ pub use trial::GaussStep;
 #[derive(Debug)]
 pub struct Table {
     pub(super) stages: usize,
-    /// Nodes.
+    /// Nodes, and what they leave out: without it all steps would err to one side, and energies drift.
     c: Lanes,
+    c_rest: Lanes,
     a: [Lanes; WIDTH],
     /// The square of `a`.
     a2: [Lanes; WIDTH],

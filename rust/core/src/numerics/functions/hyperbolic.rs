@@ -106,7 +106,8 @@ pub fn sech_squared<S: Functions>(x: S) -> S {
     let below_low = one.multiply_add(one, -below) + S::splat(2.0) * (one * low);
     let four = S::splat(4.0);
     let (q, q_low) = super::quotient((four * e, four * e_low), (below, below_low));
-    S::select(x.less_equal(x), scaled(q + q_low, n), x)
+    // Below 2⁻¹¹⁰⁰ it is zero.
+    S::select(x.less_equal(x), scaled(q + q_low, n.max(S::splat(-1100.0))), x)
 }
 
 /// tanh x.
