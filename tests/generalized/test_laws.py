@@ -34,8 +34,8 @@ def made(name: str) -> Any:
     return vv.systems.chain(4) if name == "chain" else getattr(vv.systems, name)()
 
 
-# A random walk of some thousand roundings of the largest term of the energy, which for a wild chain is some times it. Of 200
-# double pendulums near this one half stay within 2e-14, and 99 in a hundred within 1.1e-13.
+# A random walk of some thousand roundings of the largest term of the energy, which for a wild chain is some times it.
+# Of 200 double pendulums near this one half stay within 2e-14, and 99 in a hundred within 1.1e-13.
 @pytest.mark.parametrize("name", CONSERVATIVE)
 def test_what_is_said_to_be_conserved_is(name: str) -> None:
     system = made(name)
