@@ -46,7 +46,7 @@ class Runs(States):
             "max_step": None if max_step is None else number("max_step", max_step),
             "max_steps": 100_000_000,
             "outputs": outputs,
-            "section": None,
+            "sections": [],
         }
         return asked, outputs
 
