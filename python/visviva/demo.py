@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import visviva as vv
-from visviva.plot import new_figure, plot_trajectory
+from visviva.plot import new_figure
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,7 +50,7 @@ def outer_solar_system(output: Path, days: float, threads: int | None) -> list[P
     if find_spec("matplotlib") is None:
         return []
     path = output / "outer_solar_system.png"
-    plot_trajectory(out).savefig(path, dpi=150)
+    out.plot().savefig(path, dpi=150)
     return [path]
 
 

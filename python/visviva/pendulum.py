@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import visviva as vv
+from visviva._style import VERMILION
 from visviva.plot import new_figure
 
 if TYPE_CHECKING:
@@ -37,8 +38,8 @@ def pendulum(output: Path, members: int, threads: int | None) -> list[Path]:
     left.plot(t, theta)
     left.set(xlabel="t [s]", ylabel="θ [rad]", title=f"Pendulum at k = {_MODULUS}")
     residual = left.twinx()
-    residual.semilogy(t, np.maximum(error, 1e-17), ".", markersize=2, color="C1")
-    residual.set_ylabel("error against elliptic functions [rad]", color="C1")
+    residual.semilogy(t, np.maximum(error, 1e-17), ".", markersize=2, color=VERMILION)
+    residual.set_ylabel("error against elliptic functions [rad]", color=VERMILION)
     residual.set_ylim(1e-17, 1e-6)
     t, spread = many
     right.semilogy(t, np.maximum(spread, 1e-16))

@@ -2,27 +2,35 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from visviva._keywords import did_you_mean
+from visviva._names import body_indices
+from visviva._style import FRAME, dress
 from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Collection
+    from collections.abc import Collection, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from visviva.trajectory import Trajectory
 
-__all__ = ["axes_or_new", "new_figure", "plot_trajectory"]
+__all__ = ["PLANES", "axes_or_new", "chosen_bodies", "directions", "new_figure", "plot_trajectory"]
 
+PLANES = ("xy", "xz", "yz", "xyz")
+"""What a picture of places shows."""
 # More points than this cannot be told apart in a figure and make the file large.
 _POINTS = 4000
 # A legend of more bodies would hide the picture.
 _LEGEND = 24
+# A relative change of the energy below this is the rounding of its terms, and no drift.
+_ROUND_OFF = 16.0 * float(np.finfo(float).eps)
 
 
 def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = ()) -> tuple[Figure, list[Axes]]:
@@ -38,8 +46,12 @@ def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = 
     except ImportError as error:
         raise InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'") from error
     figure = Figure(figsize=size, layout="constrained")
-    kinds = ["3d" if panel in solid else "rectilinear" for panel in range(panels)]
-    return figure, [figure.add_subplot(1, panels, at, projection=kind) for at, kind in enumerate(kinds, start=1)]
+    axes = []
+    for panel in range(panels):
+        kind = "3d" if panel in solid else "rectilinear"
+        axes.append(figure.add_subplot(1, panels, panel + 1, projection=kind))
+        dress(axes[-1], panel in solid)
+    return figure, axes
 
 
 def axes_or_new(axes: Axes | None) -> Axes:
@@ -53,49 +65,111 @@ def axes_or_new(axes: Axes | None) -> Axes:
     return new_figure(1, (5.5, 4.0))[1][0] if axes is None else axes
 
 
-def plot_trajectory(trajectory: Trajectory) -> Figure:
-    """Orbits in the plane of their largest extent and, if it is known, the relative change of the energy."""
-    if not trajectory.scene.particles or not len(trajectory):
-        raise InvalidInput(
-            "plot",
-            "expected a trajectory with bodies and times, got "
-            f"{count(len(trajectory.scene.particles), 'body', 'bodies')} and {count(len(trajectory), 'time')}",
-        )
+def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
+    """Orbits and, in a figure of its own and if it is known, the relative change of the energy."""
+    chosen, shown = chosen_bodies("plot", trajectory, bodies), directions(trajectory, plane)
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
-    figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0))
-    _orbits(axes[0], trajectory)
+    solid = len(shown) == 3
+    if ax is not None:
+        if solid is not hasattr(ax, "get_zlim"):
+            wanted = "three" if solid else "two"
+            raise InvalidInput("ax", f"expected axes of {wanted} dimensions for plane={plane!r}, got {ax!r}")
+        _orbits(ax, trajectory, chosen, shown)
+        return cast("Figure", ax.figure)
+    figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0), solid=(0,) if solid else ())
+    _orbits(axes[0], trajectory, chosen, shown)
     if with_energy:
         _energy(axes[1], trajectory)
     return figure
 
 
-def _orbits(axes: Axes, trajectory: Trajectory) -> None:
+def chosen_bodies(what: str, trajectory: Trajectory, bodies: object) -> list[int]:
+    """The bodies of a picture: all of them, or those that were asked for.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        If there is nothing to draw, or a body is not there.
+    """
+    particles = trajectory.scene.particles
+    if not particles or not len(trajectory):
+        raise InvalidInput(
+            what,
+            "expected a trajectory with bodies and times, got "
+            f"{count(len(particles), 'body', 'bodies')} and {count(len(trajectory), 'time')}",
+        )
+    if bodies is None:
+        return list(range(len(particles)))
+    chosen = body_indices("bodies", bodies, particles.names, len(particles))
+    if not chosen:
+        raise InvalidInput("bodies", "expected at least one body, got none")
+    return chosen
+
+
+def directions(trajectory: Trajectory, plane: object) -> Sequence[int]:
+    """The directions of space that are drawn: those of a plane, or the two of largest extent.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a plane that there is not.
+    """
+    if plane is None:
+        extent = np.ptp(trajectory.position.reshape(-1, 3), axis=0)
+        return sorted(np.argsort(-extent, kind="stable")[:2].tolist())
+    if plane not in PLANES:
+        near = did_you_mean(plane, PLANES) if isinstance(plane, str) else ""
+        raise InvalidInput("plane", f"expected one of {', '.join(PLANES)}, or None, got {plane!r}{near}")
+    return ["xyz".index(letter) for letter in str(plane)]
+
+
+def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequence[int]) -> None:
     names = trajectory.scene.particles.names
     stride = max(1, len(trajectory) // _POINTS)
-    position = trajectory.position[::stride]
-    # The two largest extents; of equal ones the earlier axis.
-    extent = np.ptp(trajectory.position.reshape(-1, 3), axis=0)
-    across, up = sorted(np.argsort(-extent, kind="stable")[:2].tolist())
-    for body in range(position.shape[1]):
+    position: NDArray[np.float64] = trajectory.position[::stride][..., shown]
+    for body in bodies:
         label = names[body] if names else None
-        (line,) = axes.plot(position[:, body, across], position[:, body, up], linewidth=0.8, label=label)
-        axes.plot(*trajectory.position[-1, body, [across, up]], "o", markersize=4, color=line.get_color())
-    axes.set_aspect("equal", adjustable="datalim")
-    axes.set(xlabel="xyz"[across], ylabel="xyz"[up], title="orbits")
-    if 0 < len(names) <= _LEGEND:
-        axes.legend(fontsize="small", loc="upper right")
+        (line,) = axes.plot(*position[:, body].T, linewidth=0.8, label=label)
+        axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
+    label_places(axes, shown)
+    axes.set_title("orbits")
+    if names and len(bodies) <= _LEGEND:
+        # Beside the orbits, which may be anywhere within.
+        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+
+
+def label_places(axes: Any, shown: Sequence[int]) -> None:
+    """Name the axes of places, whose scales are one."""
+    axes.set(**{f"{axis}label": "xyz"[direction] for axis, direction in zip("xyz", shown, strict=False)})
+    if len(shown) == 3:
+        # Something flat is given a height in which its numbers can be read.
+        ends = np.array([axes.get_xlim(), axes.get_ylim(), axes.get_zlim()])
+        middle, half = ends.mean(axis=1), np.ptp(ends, axis=1) / 2.0
+        half = np.maximum(half, 0.4 * half.max())
+        axes.set(**{f"{axis}lim": (at - off, at + off) for axis, at, off in zip("xyz", middle, half, strict=True)})
+        axes.set_aspect("equal")
+    else:
+        axes.set_aspect("equal", adjustable="datalim")
 
 
 def _energy(axes: Axes, trajectory: Trajectory) -> None:
     energy = trajectory.energy
     scale = abs(energy[0]) if energy[0] != 0.0 else 1.0
     stride = max(1, len(trajectory) // _POINTS)
-    axes.plot(trajectory.t[::stride], ((energy - energy[0]) / scale)[::stride], linewidth=0.8)
-    axes.axhline(0.0, color="0.7", linewidth=0.6, zorder=0)
+    change = (energy - energy[0]) / scale
     axes.set(xlabel="t", ylabel="(E − E₀) / |E₀|" if energy[0] != 0.0 else "E − E₀", title="energy")
+    if energy[0] != 0.0 and np.abs(change).max() <= _ROUND_OFF:
+        # Points, since a line would draw noise as a signal.
+        axes.plot(trajectory.t[::stride], change[::stride], ".", markersize=2)
+        axes.set_ylim(-2.0 * _ROUND_OFF, 2.0 * _ROUND_OFF)
+        axes.axhspan(-_ROUND_OFF, _ROUND_OFF, color="0.95", zorder=-1)
+        axes.annotate("round-off", (0.02, 0.95), xycoords="axes fraction", va="top", color="0.4")
+    else:
+        axes.plot(trajectory.t[::stride], change[::stride], linewidth=0.8)
+    axes.axhline(0.0, color=FRAME, linewidth=0.6, zorder=0)
     axes.margins(x=0.01)
     axes.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))
-    if np.ptp(energy) == 0.0:
+    if np.ptp(energy) == 0.0 and energy[0] == 0.0:
         axes.set_ylim(-1e-16, 1e-16)
 
 

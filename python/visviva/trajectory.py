@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any, NoReturn
+from typing import TYPE_CHECKING, Any, Literal, NoReturn
 
 import numpy as np
 
@@ -17,7 +17,10 @@ from visviva.status import Status
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from os import PathLike
 
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -226,26 +229,101 @@ class Trajectory(Recorded):
 
         return of_trajectory(self, about)
 
-    def plot(self) -> Figure:
+    def plot(
+        self,
+        *,
+        bodies: object = None,
+        plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
         """Orbits beside the relative change of the energy, as a matplotlib Figure.
 
-        The orbits are seen in the coordinate plane in which they extend most, x–y if in doubt.
+        A change of the energy that is no more than rounding is drawn as points in a band of that name.
+
+        Parameters
+        ----------
+        bodies : sequence of int or str, optional
+            Which; all if not given.
+        plane : str, optional
+            ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"`` for three dimensions. By default the coordinate plane in which
+            the orbits extend most, x–y if in doubt.
+        ax : matplotlib.axes.Axes, optional
+            Where the orbits go, without the energy; of three dimensions for ``"xyz"``.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new one, or that of `ax`.
 
         Raises
         ------
         visviva.InvalidInput
-            If matplotlib is not installed, positions were not recorded, or there is no body or no time.
+            If matplotlib is not installed, positions were not recorded, there is no body or no time, or an argument is
+            not one of these.
 
         Examples
         --------
         >>> import visviva as vv
-        >>> figure = vv.problems.figure_eight().scene.run(t=[0.0, 1.0, 2.0]).plot()
+        >>> figure = vv.problems.figure_eight().scene.run(t=[0.0, 1.0, 2.0]).plot(bodies=[0, 2])
         >>> len(figure.axes)
         2
         """
         from visviva.plot import plot_trajectory
 
-        return plot_trajectory(self)
+        return plot_trajectory(self, bodies, plane, ax)
+
+    def animate(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        bodies: object = None,
+        plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
+        trail: float = 0.1,
+        frames: int = 200,
+        fps: int = 25,
+    ) -> FuncAnimation:
+        """Show the bodies as they move, and save that as a GIF, MP4 or HTML page.
+
+        Frames are outputs of the run, those nearest to evenly spaced times: give the run as many as should be seen.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+        bodies : sequence of int or str, optional
+            Which; all if not given.
+        plane : str, optional
+            As in `plot`.
+        trail : float
+            For how much of the run, from 0 to 1, the way of each body is shown behind it.
+        frames : int
+            At most so many.
+        fps : int
+            Frames a second.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+            In a notebook ``IPython.display.HTML(out.animate().to_jshtml())`` shows it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib or what writes the file is not installed, positions were not recorded, there is no body or no
+            time, or an argument is not one of these.
+
+        Examples
+        --------
+        >>> import os, tempfile, visviva as vv
+        >>> out = vv.problems.figure_eight().scene.run(t=[0.0, 0.5, 1.0])
+        >>> with tempfile.TemporaryDirectory() as folder:
+        ...     moving = out.animate(os.path.join(folder, "eight.gif"), plane="xy")
+        ...     os.listdir(folder)
+        ['eight.gif']
+        """
+        from visviva._animation import animate
+
+        return animate(self, path, bodies=bodies, plane=plane, trail=trail, frames=frames, fps=fps)
 
 
 def __dir__() -> list[str]:

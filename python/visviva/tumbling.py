@@ -10,6 +10,7 @@ import numpy as np
 
 import visviva as vv
 from visviva._arrays import whole_number
+from visviva._style import FRAME
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
 from visviva.rigid import _pictures
@@ -93,7 +94,7 @@ def dzhanibekov(output: Path, flips: int) -> list[Path]:
     out = vv.rigid.free_rotation(_MOMENTS, spin, np.linspace(0.0, exact[-1] + 0.25 * path.period, 4001))
     _pictures.spin(components, out)
     for time in exact[-len(shown) :] if flips <= 2 * _ROWS else ():
-        components.axvline(time, color="0.7", linewidth=0.6, zorder=0)
+        components.axvline(time, color=FRAME, linewidth=0.6, zorder=0)
     _pictures.polhode(polhode, out)
     _pictures.traces(axes, out)
     picture = output / "dzhanibekov.png"

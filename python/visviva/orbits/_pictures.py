@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
+from visviva._style import BLUE, FRAME, VERMILION
 from visviva.errors import InvalidInput
 from visviva.orbits._central import effective_potential
 from visviva.plot import new_figure
@@ -47,12 +48,12 @@ def _path(axes: Any, orbit: CentralOrbit) -> None:
         angles = np.linspace(-reach, reach, _POINTS) - orbit.angle_since_pericenter
     r = orbit.radius(angles)
     axes.plot(r * np.cos(angles), r * np.sin(angles), linewidth=0.8)
-    axes.plot(float(np.linalg.norm(orbit._state[1])), 0.0, "o", markersize=4, color="C0")
+    axes.plot(float(np.linalg.norm(orbit._state[1])), 0.0, "o", markersize=4, color=BLUE)
     axes.plot(0.0, 0.0, "+", color="0.4")
     around = np.linspace(0.0, 2.0 * np.pi, 361)
     for radius in (low, high):
         if 0.0 < radius < np.inf:
-            axes.plot(radius * np.cos(around), radius * np.sin(around), linewidth=0.6, color="0.7")
+            axes.plot(radius * np.cos(around), radius * np.sin(around), linewidth=0.6, color=FRAME)
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="x", ylabel="y", title="orbit")
 
@@ -67,9 +68,9 @@ def _well(axes: Any, orbit: CentralOrbit) -> None:
         r = r[(r >= first) & (r <= last)]
     v = effective_potential(orbit.potentials, r, angular_momentum=orbit.angular_momentum, mass=orbit.mass)
     axes.plot(r, v, linewidth=1.2)
-    axes.axhline(orbit.energy, linewidth=0.8, color="C3")
+    axes.axhline(orbit.energy, linewidth=0.8, color=VERMILION)
     turns = [x for x in (low, high) if 0.0 < x < np.inf]
-    axes.plot(turns, [orbit.energy] * len(turns), "o", markersize=4, color="C3")
+    axes.plot(turns, [orbit.energy] * len(turns), "o", markersize=4, color=VERMILION)
     inside = v[(r >= low) & (r <= high)]
     if inside.size:
         deep = max(orbit.energy - float(inside.min()), 1e-9 * abs(orbit.energy))

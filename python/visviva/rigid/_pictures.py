@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
+from visviva._style import VERMILION
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
@@ -67,8 +68,8 @@ def polhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     path = direction / np.sqrt((motion.moments * direction**2).sum(axis=-1))[:, None]
     half = 1.0 / np.sqrt(motion.moments)
     _ellipsoid(axes, half)
-    axes.plot(*path.T, linewidth=1.4, color="C3")
-    axes.plot(*path[:1].T, "o", markersize=4, color="C3")
+    axes.plot(*path.T, linewidth=1.4, color=VERMILION)
+    axes.plot(*path[:1].T, "o", markersize=4, color=VERMILION)
     axes.set_box_aspect(half)
     axes.set(**{f"{letter}label": f"ω{letter} / √2T" for letter in _LETTERS}, title="polhode")
 
@@ -79,8 +80,8 @@ def herpolhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     _directions(momentum[None])
     first, second = _across(momentum)
     velocity = rotate(motion.orientation, motion.angular_velocity)[_thinned(motion)]
-    axes.plot(velocity @ first, velocity @ second, linewidth=0.8, color="C3")
-    axes.plot(velocity[0] @ first, velocity[0] @ second, "o", markersize=4, color="C3")
+    axes.plot(velocity @ first, velocity @ second, linewidth=0.8, color=VERMILION)
+    axes.plot(velocity[0] @ first, velocity[0] @ second, "o", markersize=4, color=VERMILION)
     axes.plot(0.0, 0.0, "+", color="0.4")
     axes.set_aspect("equal", adjustable="datalim")
     axes.set(xlabel="ω across L", ylabel="ω across L", title="herpolhode")
@@ -123,8 +124,8 @@ def nutation(axes: Any, motion: TopMotion) -> None:
         height = np.full_like(around, np.cos(angle))
         axes.plot(np.sin(angle) * np.cos(around), np.sin(angle) * np.sin(around), height, linewidth=0.6, color="0.4")
     path = motion.axis[_thinned(motion)]
-    axes.plot(*path.T, linewidth=1.2, color="C3")
-    axes.plot(*path[:1].T, "o", markersize=4, color="C3")
+    axes.plot(*path.T, linewidth=1.2, color=VERMILION)
+    axes.plot(*path[:1].T, "o", markersize=4, color=VERMILION)
     axes.set_box_aspect(np.ones(3))
     axes.set(xlabel="x", ylabel="y", zlabel="z", title="nutation")
 

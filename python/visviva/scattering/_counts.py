@@ -69,6 +69,7 @@ def _mean(count: int, probability: float) -> float:
 
 def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     """A picture of a tally; see `Tally.plot`."""
+    from visviva._style import BLUE, VERMILION
     from visviva.plot import axes_or_new
 
     axes = axes_or_new(ax)
@@ -83,11 +84,11 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)
     low, high = (np.append(end * shown, np.nan) for end in poisson_interval(tally.counts))
     axes.fill_between(
-        edges, low, high, step="post", alpha=0.35, linewidth=0.0, color="C0", label="central 68 % of Poisson"
+        edges, low, high, step="post", alpha=0.35, linewidth=0.0, color=BLUE, label="central 68 % of Poisson"
     )
-    axes.stairs(tally.values() * scale, edges, linewidth=1.0, color="C0", label=f"{tally.n_events} events")
+    axes.stairs(tally.values() * scale, edges, linewidth=1.0, color=BLUE, label=f"{tally.n_events} events")
     if known:
-        axes.stairs(expected, edges, linewidth=1.0, color="C1", linestyle="--", label="theory")
+        axes.stairs(expected, edges, linewidth=1.0, color=VERMILION, linestyle="--", label="theory")
     across, up = _AXES[tally.name]
     axes.set(xlabel=across, ylabel=up)
     drawn = np.concatenate([(tally.values() * scale)[tally.counts > 0], expected[expected > 0.0]])

@@ -1,0 +1,148 @@
+"""Moving pictures of runs: the bodies at outputs that are evenly spaced in time, and where each has been just before.
+
+The one idea: a frame is an output of the run, the nearest one to its time; nothing is interpolated, so nothing is shown
+that was not computed.
+"""
+
+from __future__ import annotations
+
+from os import fspath
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._arrays import number, whole_number
+from visviva._style import COLORS
+from visviva.errors import InvalidInput
+from visviva.plot import chosen_bodies, directions, label_places, new_figure
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from matplotlib.animation import FuncAnimation
+    from numpy.typing import NDArray
+
+    from visviva.trajectory import Trajectory
+
+__all__ = ["animate"]
+
+_SUFFIXES = (".gif", ".html", ".mp4")
+
+
+def animate(
+    trajectory: Trajectory, path: Any, *, bodies: object, plane: str | None, trail: object, frames: object, fps: object
+) -> FuncAnimation:
+    """As `Trajectory.animate`."""
+    chosen, shown = chosen_bodies("animate", trajectory, bodies), directions(trajectory, plane)
+    most = whole_number("frames", frames, 1, 100_000)
+    part, rate = number("trail", trail), whole_number("fps", fps, 1, 1000)
+    if not 0.0 <= part <= 1.0:
+        raise InvalidInput("trail", f"expected a part of the run from 0 to 1, got {part!r}")
+    figure, (axes,) = new_figure(1, (6.0, 5.5), solid=(0,) if len(shown) == 3 else ())
+    file = None if path is None else _file(path)
+    outputs = _outputs(trajectory.t, most)
+    return _saved(_moving(figure, axes, trajectory, chosen, shown, outputs, part, rate), file, rate)
+
+
+def _outputs(t: NDArray[np.float64], most: int) -> NDArray[np.int64]:
+    """The outputs that are nearest to evenly spaced times."""
+    if len(t) == 1:
+        return np.zeros(1, dtype=np.int64)
+    wanted = np.linspace(t[0], t[-1], min(most, len(t)))
+    forward = 1.0 if t[-1] >= t[0] else -1.0
+    after = np.clip(np.searchsorted(forward * t, forward * wanted), 1, len(t) - 1)
+    return np.unique(np.where(np.abs(t[after - 1] - wanted) <= np.abs(t[after] - wanted), after - 1, after))
+
+
+def _moving(
+    figure: Any,
+    axes: Any,
+    trajectory: Trajectory,
+    bodies: list[int],
+    shown: Sequence[int],
+    outputs: NDArray[np.int64],
+    trail: float,
+    fps: int,
+) -> FuncAnimation:
+    from matplotlib.animation import FuncAnimation
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+
+    FigureCanvasAgg(figure)
+    names = trajectory.scene.particles.names
+    position = trajectory.position[:, bodies][..., shown]
+    low, high = position.min(axis=(0, 1)), position.max(axis=(0, 1))
+    # Room about what moves, and some where nothing does.
+    room = 0.05 * max(float((high - low).max()), 1e-12 * float(np.abs(position).max()), np.finfo(float).tiny)
+    for axis, least, greatest in zip("xyz", low, high, strict=False):
+        getattr(axes, f"set_{axis}lim")(least - room, greatest + room)
+    label_places(axes, shown)
+    if len(shown) == 2:
+        axes.set_aspect("equal", adjustable="box")
+    span = trail * (trajectory.t[-1] - trajectory.t[0])
+    colors = [COLORS[at % len(COLORS)] for at in range(len(bodies))]
+    paths = [
+        axes.plot([], [], *[[]] * (len(shown) - 2), linewidth=0.8, linestyle="-", color=color)[0] for color in colors
+    ]
+    marks = [
+        axes.plot(
+            [], [], *[[]] * (len(shown) - 2), "o", markersize=5, color=color, label=names[body] if names else None
+        )[0]
+        for body, color in zip(bodies, colors, strict=True)
+    ]
+    if names and len(bodies) <= len(COLORS):
+        axes.legend(fontsize="small", loc="upper right")
+    title = axes.set_title("")
+
+    def draw(output: int) -> list[Any]:
+        time = trajectory.t[output]
+        first = int(np.argmax(np.abs(time - trajectory.t[: output + 1]) <= abs(span)))
+        for at, (path, mark) in enumerate(zip(paths, marks, strict=True)):
+            for line, of in ((path, position[first : output + 1, at]), (mark, position[output : output + 1, at])):
+                line.set_data(of[:, 0], of[:, 1])
+                if len(shown) == 3:
+                    line.set_3d_properties(of[:, 2])
+        title.set_text(f"t = {time:.6g}")
+        return [*paths, *marks, title]
+
+    animation = FuncAnimation(figure, draw, frames=outputs.tolist(), interval=1000.0 / fps)
+    # The first frame is drawn, so that nobody is warned who does not look at it.
+    figure.canvas.draw()
+    return animation
+
+
+def _file(path: Any) -> Path:
+    """Where it goes, if there is a writer for it.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For another ending, or a writer that is not installed.
+    """
+    from matplotlib.animation import writers
+
+    try:
+        file = Path(fspath(path))
+    except TypeError:
+        raise InvalidInput("path", f"expected a path, got {path!r}") from None
+    if file.suffix not in _SUFFIXES:
+        raise InvalidInput("path", f"expected a file ending in {', '.join(_SUFFIXES)}, got {str(path)!r}")
+    if not file.parent.is_dir():
+        raise InvalidInput("path", f"expected a file in a folder that exists, got {str(path)!r}")
+    if file.suffix == ".mp4" and not writers.is_available("ffmpeg"):
+        raise InvalidInput("path", "ffmpeg is not installed, which writes .mp4; give a .gif or .html")
+    return file
+
+
+def _saved(animation: FuncAnimation, file: Path | None, fps: int) -> FuncAnimation:
+    if file is None:
+        return animation
+    if file.suffix == ".html":
+        file.write_text(animation.to_jshtml(fps=fps), encoding="utf-8")
+    else:
+        animation.save(file, writer="pillow" if file.suffix == ".gif" else "ffmpeg", fps=fps, dpi=100)
+    return animation
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
