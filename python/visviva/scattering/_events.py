@@ -83,7 +83,7 @@ def scattering_events(
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
-    with callback(progress) as report:
+    with callback(progress, "events") as report:
         if to is None:
             return _columns(request, first, count, report)
         _stream(request, first, count, report, _path(to))

@@ -237,7 +237,7 @@ class Foil:
             if len(axes) > 1:
                 raise InvalidInput("tally", f"expected single quantities, got {tuple(name for name, _ in axes)}")
             asked += axes
-        with callback(progress) as report:
+        with callback(progress, "ions") as report:
             done, stopped, units, told, fates, columns = _core.foil_run(
                 foil=self._described(hit.ion),
                 run=hit._to_core(),

@@ -207,7 +207,7 @@ def _run(
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "tallies": asked, "seed": key, "threads": several}
-    with callback(progress) as report:
+    with callback(progress, "events") as report:
         if executor is not None:
             counted = spread(executor, request, first, count, report)
         else:
