@@ -1,8 +1,8 @@
 """Turn the ``progress`` argument into what the core calls.
 
 The core calls ``f(done, total)`` about every 50 ms and once at the end, on the caller's thread. ``progress=True`` is a
-tqdm bar, notebook-aware, if tqdm is installed, and else one plain line on standard error. Events are counted by what they
-are, with their rate; of other runs, whose parts are steps of some kind, only the share and the time are shown.
+tqdm bar, notebook-aware, if tqdm is installed, and else one plain line on standard error. Events are counted by what
+they are, with their rate; of other runs, whose parts are steps of some kind, only the share and the time are shown.
 """
 
 import sys
