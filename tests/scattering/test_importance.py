@@ -45,7 +45,7 @@ def listed(potential: object = p.Yukawa(1.0, 1.0), **changes: object) -> dict[st
 
 
 def test_the_draw_is_mapped_ring_by_ring() -> None:
-    """b of every event once more in NumPy, from draw number 0; weights from the boundaries as whole numbers of draws."""
+    """b of every event once more in NumPy, from draw number 0; weights from the boundaries as whole numbers."""
     first, n = 2**33 + 7, 5000
     events = listed(first_event=first, n_events=n)
     u = uniforms(BEAM["seed"], first, n)
@@ -100,23 +100,27 @@ def test_every_event_is_counted_in_its_bin_and_stratum(potential: object, beam: 
     for tally in result.tallies:
         assert tally.by_stratum.sum() == 40_000
     one = result["cm_angle"]
-    assert (one.by_stratum.sum(0)[1:-2] == one.counts).all() and one.by_stratum[:, -1].sum() == one.captured
-    weights = np.histogram(events["cm_angle"], one.edges, weights=events["weight"])[0]
-    assert one.values() == pytest.approx(weights, rel=1e-11)  # sums of 40 000 numbers
+    assert (one.by_stratum.sum(0)[1:-2] == one.counts).all()
+    assert one.by_stratum[:, -1].sum() == one.captured
+    bins = np.digitize(events["cm_angle"], one.edges)  # NaN is beyond all
+    weights = np.bincount(bins, events["weight"], minlength=39)[1:-1]
+    assert one.values() == pytest.approx(weights[:37], rel=1e-11)  # sums of up to 40 000 numbers
 
 
 @pytest.mark.parametrize("potential", POTENTIALS, ids=repr)
 def test_means_are_those_without(potential: object) -> None:
-    """`expected` is the same function of the same disc: of 2⁵³ draws in other places, so to rounding of the places."""
+    """`expected` is the same function of the same disc, of 2⁵³ draws in other places: equal as far as the pieces of a
+    table meet, which are refined to 1e-9 of the angles."""
     for beam in ({}, BEAMS[1], BEAMS[3]):
         weighted, plain = (run(potential, bins=20, n_events=200_000, **beam, importance=i) for i in (STRATA, None))
         mean, before = weighted["cm_angle"].expected(), plain["cm_angle"].expected()
-        assert mean == pytest.approx(before, rel=1e-9, abs=1e-9)
+        assert mean == pytest.approx(before, rel=1e-8, abs=1e-9)
         # Five of its own standard deviations, of a seed that is fixed, in every bin of which enough was counted.
         tally = weighted["cm_angle"]
         known = tally.counts > 30
         off = (tally.values() - mean)[known] / np.sqrt(tally.variances()[known] + 1e-300)
-        assert known.any() and np.abs(off).max() < 5.0, off
+        assert known.any()
+        assert np.abs(off).max() < 5.0, off
 
 
 def test_variances_are_those_of_many_runs() -> None:
@@ -134,8 +138,8 @@ def test_backscattering_to_a_thousandth() -> None:
     """Rutherford past 90°: πκ², of a disc 10⁵ times as large. Without strata it would take 10¹¹ events."""
     kappa = 2.0 / (2.0 * 1.5 * 0.8)
     for seed in (1, 2, 3):
-        out = run(p.Coulomb(2.0), b_max=316.0 * kappa, seed=seed, n_events=1_500_000,
-                  tally={"cm_angle": [0.0, np.pi / 2.0, np.pi]}, importance=S.LargeAngles(np.radians(90.0)))  # fmt: skip
+        halves, forced = {"cm_angle": [0.0, np.pi / 2.0, np.pi]}, S.LargeAngles(np.pi / 2.0)
+        out = run(p.Coulomb(2.0), b_max=316.0 * kappa, seed=seed, n_events=1_500_000, tally=halves, importance=forced)
         value, error = out["cm_angle"].cross_section()
         value, error = 2.0 * np.pi * value[1], 2.0 * np.pi * error[1]
         assert error < 1e-3 * value
@@ -166,7 +170,9 @@ def test_a_stratum_of_a_disc_of_atoms() -> None:
     events = listed(p.Coulomb(2.0), importance=S.Strata([0.0, 3e-20, 3.0]), n_events=1000)
     inner = events["weight"] < 1e-30
     b = events["impact_parameter"][inner]
-    assert 400 < inner.sum() < 600 and b.max() < 3e-20 and len(set(b)) == inner.sum()
+    assert 400 < inner.sum() < 600
+    assert b.max() < 3e-20
+    assert len(set(b)) == inner.sum()
     # The recoil angle is (π − ψ)/2 = atan(b/κ): relative precision at the end where π − ψ vanishes.
     assert events["recoil_angle"][inner] == pytest.approx(b / kappa, rel=1e-14)
 
@@ -183,7 +189,8 @@ def test_bits_hang_on_nothing(beam: dict[str, object], tmp_path: Path) -> None:
         assert run(**how, executor=pool) == whole
     whole.save(tmp_path / "counts.npz")
     again = S.MonteCarlo.load(tmp_path / "counts.npz")
-    assert again == whole and again.beam.importance == STRATA
+    assert again == whole
+    assert again.beam.importance == STRATA
     assert (again["cm_angle"].values() == whole["cm_angle"].values()).all()
     assert not whole["cm_angle"].by_stratum.flags.writeable
     assert whole != run(**how, importance=None)
@@ -225,7 +232,7 @@ def test_large_angles_take_every_branch_and_energy() -> None:
             if "energy_spread" in beam and isinstance(potential, p.PowerLaw | p.LennardJones):
                 continue  # refused: captured, or not smooth enough in the energy
             events = listed(potential, importance=S.LargeAngles(0.7, 0.3), **beam)
-            inner = events["weight"] == events["weight"].min()
+            inner = events["weight"] == events["weight"][events["impact_parameter"].argmin()]
             assert abs(inner.mean() - 0.3) < 0.012  # five standard deviations
             assert not (events["cm_angle"][~inner] > 0.7 + 1e-6).any()
             assert (~(events["cm_angle"][inner] < 0.7)).any()
@@ -253,9 +260,15 @@ def test_weights_go_into_tables_and_histograms() -> None:
 def test_events_go_into_a_file(tmp_path: Path) -> None:
     parquet = pytest.importorskip("pyarrow.parquet")
     listed(n_events=100, to=tmp_path / "events.parquet")
-    assert parquet.read_table(tmp_path / "events.parquet")["weight"].to_numpy().tolist() == listed(n_events=100)[
-        "weight"
-    ].tolist()
+    assert (
+        parquet.read_table(tmp_path / "events.parquet")["weight"].to_numpy().tolist()
+        == listed(n_events=100)["weight"].tolist()
+    )
+
+
+def test_intervals_of_counts_are_not_those_of_weights() -> None:
+    with pytest.raises(vv.errors.InvalidInput, match="variances"):
+        run()["cm_angle"].poisson_interval()
 
 
 def test_pictures_show_weighted_counts() -> None:
@@ -271,7 +284,7 @@ def test_pictures_show_weighted_counts() -> None:
         ({"importance": S.Strata([0.0, 1.0])}, "importance", "b_max = 3.0"),
         ({"spot": 1.0}, "importance", "spot"),
         ({"importance": S.LargeAngles(1e-3)}, "importance", "greater angle"),
-        ({"potential": p.Gaussian(0.1, 1.0), "importance": S.LargeAngles(2.0)}, "importance", "no deflection"),
+        ({"potential": p.Plummer(0.1, 1.0), "importance": S.LargeAngles(2.0)}, "importance", "no deflection"),
         ({"importance": S.LargeAngles(1.0), "beam_energy": -1.0}, "beam_energy", "positive"),
         ({"importance": S.LargeAngles(1.0), "masses": (1.0, 0.0)}, "masses", "positive"),
         (
@@ -301,7 +314,6 @@ def test_what_cannot_be_is_refused_by_name(changes: dict[str, object], argument:
         (lambda: S.Strata.logarithmic(5, 1.0, 1.0), "smallest"),
         (lambda: S.LargeAngles(90.0), "smallest_angle"),
         (lambda: S.LargeAngles(1.0, 1.0), "fraction"),
-        (lambda: run()["cm_angle"].poisson_interval(), "importance"),
     ],
 )
 def test_what_are_no_strata_is_refused(make: object, argument: str) -> None:

@@ -61,7 +61,7 @@ def scattering_events(
         Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
         ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
         folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
-        ``"impact_parameter"``. With `importance` ``"weight"``, too: how many events of the run without it one stands for.
+        ``"impact_parameter"``. With `importance` also ``"weight"``: how many events of the run without one stands for.
         Empty with `to`: the columns are those of the file.
 
     Raises

@@ -115,8 +115,8 @@ def monte_carlo(
     importance : Strata or LargeAngles, optional
         Where events are wanted: rings of impact parameters with parts of the events of their own (`Strata`), or a part
         of them for all that is deflected by more than some angle (`LargeAngles`). Draw number 0 is mapped to b² ring by
-        ring. Counts are whole numbers as ever, kept ring by ring; ``values()``, ``variances()`` and cross sections weight
-        them, so that their means are those of the run without. Not beside `spot`.
+        ring. Counts are whole numbers as ever, kept ring by ring; ``values()``, ``variances()`` and cross sections
+        weight them, so that their means are those of the run without. Not beside `spot`.
 
     Returns
     -------

@@ -161,7 +161,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         return poisson_interval(self.counts)
 
     def expected(self) -> NDArray[np.float64]:
-        """The ``values()`` that the deflection function leads to on the average: of each bin the area of its impact parameters.
+        """What ``values()`` are on the average, by the deflection function: of each bin the area of its places.
 
         Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
         certified table), all branches and energies together.
@@ -190,8 +190,8 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
 
-        The bands are those of `poisson_interval`, not √n; with `importance` one standard deviation. Where the disc does not reach, the simulation and `expected`
-        lack the same.
+        The bands are those of `poisson_interval`, not √n; with `importance` one standard deviation. Where the disc does
+        not reach, the simulation and `expected` lack the same.
 
         Parameters
         ----------
@@ -267,7 +267,9 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         return to_hist(self, (self.name,), (self.edges,), flow)
 
     def to_pandas(self) -> DataFrame:
-        """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``; with `importance` ``values`` and ``variances``.
+        """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
+
+        With `importance` ``values`` and ``variances``, too.
 
         Returns
         -------

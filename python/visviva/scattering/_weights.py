@@ -19,7 +19,7 @@ __all__ = ["added", "read_only", "same", "to_hist", "variances", "weighted", "we
 def weighted(
     tally: Tally | JointTally, power: int, counts: NDArray[np.uint64], part: tuple[slice, ...] = (slice(0, -1),)
 ) -> NDArray[np.float64]:
-    """Σ w n, or of power 2 Σ w² n, over the strata, of a part of their slots in the shape of the counts; without strata the counts."""
+    """Σ w n over the strata, or Σ w² n of power 2, of a part of their slots; without strata the counts."""
     strata = tally.beam.importance
     if strata is None or tally.by_stratum is None:
         return counts.astype(np.float64)
