@@ -314,6 +314,7 @@ def test_what_cannot_be_is_refused_by_name(changes: dict[str, object], argument:
         (lambda: S.Strata.logarithmic(5, 1.0, 1.0), "smallest"),
         (lambda: S.LargeAngles(90.0), "smallest_angle"),
         (lambda: S.LargeAngles(1.0, 1.0), "fraction"),
+        (lambda: S.LargeAngles(1.0, 1e-7), "fraction"),
     ],
 )
 def test_what_are_no_strata_is_refused(make: object, argument: str) -> None:

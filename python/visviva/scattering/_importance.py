@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 __all__ = ["LargeAngles", "Strata", "resolved"]
 
-_MOST = 2**10
+_MOST, _LEAST = 2**10, 1e-6
 
 
 @known_keywords
@@ -129,7 +129,7 @@ class LargeAngles:
     smallest_angle : float
         From the beam, in the centre-of-mass frame: in radians, in (0, π).
     fraction : float, optional
-        The part of the events within, in (0, 1).
+        The part of the events within, 1e-6 to 1 − 1e-6.
 
     Raises
     ------
@@ -159,8 +159,8 @@ class LargeAngles:
             raise InvalidInput(
                 "smallest_angle", f"expected radians in (0, π), got {angle}; pass np.radians(…) of degrees"
             )
-        if not 0.0 < fraction < 1.0:
-            raise InvalidInput("fraction", f"expected a part of the events in (0, 1), got {fraction}")
+        if not _LEAST <= fraction <= 1.0 - _LEAST:
+            raise InvalidInput("fraction", f"expected a part of the events, 1e-6 to 1 - 1e-6, got {fraction}")
         object.__setattr__(self, "smallest_angle", angle)
         object.__setattr__(self, "fraction", fraction)
 
