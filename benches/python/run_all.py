@@ -16,6 +16,7 @@ SCRIPTS = (
     "dop853_outer_solar_system",
     "round_off_floor",
     "energy_growth",
+    "energy_growth_henon_heiles",
     "massless",
     "outputs",
     "energy_column",

@@ -77,6 +77,7 @@ _HOME = {
     "UniformMagneticField": "forces",
     "UnknownKeyword": "errors",
     "WorkPrecision": "comparison",
+    "WrongArguments": "errors",
     "coordinate": "generalized",
     "load": "io",
     "methods": "integrators",
@@ -164,6 +165,7 @@ __all__ = [
     "UniformMagneticField",
     "UnknownKeyword",
     "WorkPrecision",
+    "WrongArguments",
     "audit",
     "collisions",
     "coordinate",
@@ -226,6 +228,7 @@ if TYPE_CHECKING:
         Interrupted,
         InvalidInput,
         UnknownKeyword,
+        WrongArguments,
     )
     from visviva.expression_force import ExpressionForce
     from visviva.forces import (

@@ -1,7 +1,8 @@
-"""Refuse names that are not there: keywords a function does not take, attributes a frozen part does not let go.
+"""Refuse calls that cannot be: keywords that are not taken, arguments that are missing, attributes that are frozen.
 
 Every public function and class carries `known_keywords`; a test walks through all of them. The names are compared
 before the call, so nothing has run when a keyword is refused, and a call without a mistake costs about 0.3 µs more.
+Whether arguments are missing or too many Python finds itself; only then is it put in words.
 """
 
 from __future__ import annotations
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
 from visviva._text import article
-from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword
+from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongArguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -38,6 +39,7 @@ _ELSEWHERE = {
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 _T = TypeVar("_T")
+_PLACED = (Parameter.POSITIONAL_ONLY, Parameter.POSITIONAL_OR_KEYWORD)
 _NAMED = (Parameter.POSITIONAL_OR_KEYWORD, Parameter.KEYWORD_ONLY)
 
 
@@ -46,7 +48,7 @@ def known_keywords(target: type[_T]) -> type[_T]: ...
 @overload
 def known_keywords(target: Callable[_P, _R]) -> Callable[_P, _R]: ...
 def known_keywords(target: type[_T] | Callable[_P, _R]) -> type[_T] | Callable[_P, _R]:
-    """Make a function, or the constructor and the public methods of a class, refuse unknown keywords.
+    """Make a function, or the constructor and the public methods of a class, refuse wrong calls in words.
 
     Signature, documentation and types stay what they are. On a dataclass it stands above ``@dataclass``; a frozen one
     is made to refuse assignments in words, too (see `frozen`).
@@ -55,6 +57,8 @@ def known_keywords(target: type[_T] | Callable[_P, _R]) -> type[_T] | Callable[_
     ------
     UnknownKeyword
         By what is decorated, when it is called with a keyword that it does not take.
+    WrongArguments
+        When an argument is missing or given twice, or there are too many.
 
     Examples
     --------
@@ -69,13 +73,13 @@ def known_keywords(target: type[_T] | Callable[_P, _R]) -> type[_T] | Callable[_
 mean 'distance'?
     """
     if not isinstance(target, type):
-        return _checked(target, target.__qualname__, _names(target))
+        return _checked(target, target.__qualname__, 0)
     for attribute, value in list(vars(target).items()):
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
             called = target.__name__ if attribute == "__init__" else attribute
-            setattr(target, attribute, _checked(value, called, _names(value)[1:]))
+            setattr(target, attribute, _checked(value, called, 1))
         elif isinstance(value, classmethod) and not attribute.startswith("_"):
-            made = _checked(value.__func__, attribute, _names(value.__func__)[1:])
+            made = _checked(value.__func__, attribute, 1)
             setattr(target, attribute, classmethod(made))
     settings = vars(target).get("__dataclass_params__")
     return target if settings is None or not settings.frozen else frozen(target)
@@ -151,16 +155,45 @@ def _names(function: Callable[..., object]) -> tuple[str, ...]:
     return tuple(name for name, parameter in signature(function).parameters.items() if parameter.kind in _NAMED)
 
 
-def _checked(function: Callable[_P, _R], called: str, names: tuple[str, ...]) -> Callable[_P, _R]:
+def _checked(function: Callable[_P, _R], called: str, bound: int) -> Callable[_P, _R]:
+    """`bound` is 1 where the first argument is the object or class itself."""
+    names = _names(function)[bound:]
     are_known = frozenset(names).issuperset
 
     @wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
         if not are_known(kwargs):
             raise _unknown(called, names, next(name for name in kwargs if name not in names))
-        return function(*args, **kwargs)
+        try:
+            return function(*args, **kwargs)
+        except TypeError:
+            wrong = _wrong(function, called, bound, args, kwargs)
+            if wrong is None:
+                raise
+        raise wrong
 
     return checked
+
+
+def _wrong(
+    function: Callable[..., object], called: str, bound: int, args: tuple[object, ...], kwargs: dict[str, object]
+) -> WrongArguments | None:
+    """What is wrong with a call that does not fit the signature; None of one that does."""
+    parameters = list(signature(function).parameters.values())[bound:]
+    takes = f"{called} ({', '.join(_names(function)[bound:])})"
+    placed = [parameter.name for parameter in parameters if parameter.kind in _PLACED]
+    given, came = placed[: len(args) - bound], len(args) - bound
+    if came > len(placed) and all(parameter.kind is not Parameter.VAR_POSITIONAL for parameter in parameters):
+        most = f"at most {len(placed)} without a name" if placed else "none without a name"
+        return WrongArguments(called, f"expected arguments as {takes} has them, {most}, got {came}")
+    for name in given:
+        if name in kwargs:
+            return WrongArguments(name, f"expected once in a call of {takes}, got it by place and by name")
+    for parameter in parameters:
+        name = parameter.name
+        if parameter.kind in _NAMED and parameter.default is Parameter.empty and name not in {*given, *kwargs}:
+            return WrongArguments(name, f"expected with every call of {takes}, got none")
+    return None
 
 
 def _unknown(called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:

@@ -18,6 +18,7 @@ __all__ = [
     "Interrupted",
     "InvalidInput",
     "UnknownKeyword",
+    "WrongArguments",
 ]
 
 
@@ -72,6 +73,27 @@ class UnknownKeyword(InvalidInput, TypeError):
     ... except vv.InvalidInput as error:
     ...     print(error)
     g: expected a keyword of Gravity (G, softening), got 'g'; did you mean 'G'?
+    """
+
+
+class WrongArguments(InvalidInput, TypeError):
+    """Arguments that are missing, too many, or given twice; also the `TypeError` that Python itself would raise.
+
+    Parameters
+    ----------
+    argument : str
+        The argument that is missing or came twice; of too many the name of what was called.
+    message : str
+        What is taken, and in which order.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> try:
+    ...     vv.potentials.Yukawa(1.0)
+    ... except TypeError as error:
+    ...     print(error)
+    length: expected with every call of Yukawa (k, length), got none
     """
 
 

@@ -11,6 +11,7 @@ EXAMPLES = [
     (errors.Error("something"), Exception, {}),
     (errors.InvalidInput("dt", "expected a positive number"), ValueError, {"argument": "dt"}),
     (errors.UnknownKeyword("dtt", "expected a keyword of run"), TypeError, {"argument": "dtt"}),
+    (errors.WrongArguments("dt", "expected with every call of run"), TypeError, {"argument": "dt"}),
     (errors.FrozenAttribute("t0", "a Scene is frozen"), AttributeError, {"argument": "t0"}),
     (errors.ConvergenceError("gave up", 2.5), RuntimeError, {"message": "gave up", "time": 2.5, "trajectory": None}),
     (

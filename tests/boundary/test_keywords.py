@@ -36,7 +36,7 @@ def public(module: ModuleType) -> Iterator[tuple[str, Callable[..., Any], bool]]
                 home = next(base for base in found.__mro__ if attribute in vars(base))
                 ours = home.__module__.startswith("visviva")  # not what a base from elsewhere brings
                 if ours and (attribute == "__init__" or not attribute.startswith("_")):
-                    yield f"{label}.{attribute}", value, True
+                    yield f"{label}.{attribute}", value, not isinstance(vars(home)[attribute], staticmethod)
 
 
 CALLABLES = list({label: (label, *rest) for label, *rest in public(vv)}.values())
@@ -85,6 +85,35 @@ def test_an_unknown_keyword_is_refused_by_name(label: str, function: Callable[..
             function(*arguments, **{misspelt: 1})
         assert caught.value.argument == misspelt
         assert str(caught.value).endswith(f"got {misspelt!r}; did you mean '{name}'?")
+
+
+@pytest.mark.parametrize(("label", "function", "method"), CALLABLES, ids=[label for label, *_ in CALLABLES])
+def test_missing_and_superfluous_arguments_are_refused_by_name(
+    label: str, function: Callable[..., Any], method: bool
+) -> None:
+    taken = list(inspect.signature(function).parameters.values())[method:]
+    arguments = (None,) if method else ()
+    if all(parameter.kind is not parameter.VAR_POSITIONAL for parameter in taken):
+        with pytest.raises(vv.WrongArguments, match=r"got 40$"):
+            function(*arguments, *[None] * 40)
+    needed = [p.name for p in taken if p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)]
+    if needed:
+        with pytest.raises(vv.WrongArguments) as caught:
+            function(*arguments)
+        assert caught.value.argument == needed[0]
+    if taken and taken[0].kind is inspect.Parameter.POSITIONAL_OR_KEYWORD:
+        with pytest.raises(vv.WrongArguments) as caught:
+            function(*arguments, None, **{taken[0].name: None})
+        assert caught.value.argument == taken[0].name
+
+
+def test_a_type_error_from_inside_is_not_taken_for_a_wrong_call() -> None:
+    def failing(t: float, q: float, v: float) -> float:
+        raise TypeError("of the user's own function")
+
+    with pytest.raises(TypeError, match="own function") as caught:
+        vv.solve_ivp(lambda t, y: failing(t, 0.0, 0.0), (0.0, 1.0), [1.0])
+    assert not isinstance(caught.value, vv.WrongArguments)
 
 
 @pytest.mark.parametrize(("label", "function", "method"), CALLABLES, ids=[label for label, *_ in CALLABLES])
@@ -137,13 +166,6 @@ def test_it_is_the_error_that_programs_catch() -> None:
     for kind in (TypeError, ValueError, vv.Error, vv.InvalidInput):
         with pytest.raises(kind, match="metod"):
             ONE.run(t=1.0, metod="rk4")  # type: ignore[call-arg]
-
-
-def test_other_type_errors_are_pythons_own() -> None:
-    for call in (ONE.run, lambda: ONE.run(1.0, t=1.0), lambda: vv.Gravity(1.0, 0.0, 0.0)):
-        with pytest.raises(TypeError) as caught:
-            call()
-        assert not isinstance(caught.value, vv.Error)
 
 
 def test_checked_classes_pickle_and_copy_with_changes() -> None:

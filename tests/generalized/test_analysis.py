@@ -255,3 +255,34 @@ def test_a_portrait_shows_separatrix_and_centers() -> None:
 def test_portraits_that_cannot_be(system: Any, position: tuple[float, float], names: str) -> None:
     with pytest.raises(vv.InvalidInput, match=names):
         system.phase_portrait(position, (-1.0, 1.0))
+
+
+@pytest.mark.parametrize("direction", [1, -1, 0])
+@pytest.mark.parametrize("kind", ["lagrangian", "hamiltonian"])
+def test_a_section_that_is_passed_and_left_within_a_step_is_seen(kind: str, direction: int) -> None:
+    """An oscillator with steps of half a unit passes cos 0.05 within 0.05 of where it turns."""
+    if kind == "lagrangian":
+        system: Any = vv.Lagrangian(
+            lambda q, v, _: v[0] ** 2 / 2 - q[0] ** 2 / 2, ["q"], position=[np.cos(1.0)], velocity=[np.sin(1.0)]
+        )
+    else:
+        system = vv.Hamiltonian(
+            lambda q, p, _: p[0] ** 2 / 2 + q[0] ** 2 / 2, ["q"], position=[np.cos(1.0)], momentum=[np.sin(1.0)]
+        )
+    turns = 1.0 + 2 * np.pi * np.arange(5)
+    for expression, middle, half in (
+        (lambda q, _p, _t: q[0] - np.cos(0.05), turns, 0.05),
+        (lambda _q, p, _t: p[0] + np.cos(0.01), turns + np.pi / 2, 0.01),
+    ):
+        sides = [middle - half, middle + half]
+        falls = expression(np.ones(1), -np.ones(1), 0.0) < 0.0
+        up, down = (sides[1], sides[0]) if falls else (sides[0], sides[1])
+        wanted = np.sort({1: up, -1: down, 0: np.concatenate(sides)}[direction])
+        found = system.poincare(expression, t=30.0, direction=direction, method="gauss16", dt=0.5)
+        assert found.t == pytest.approx(wanted, abs=1e-13 / half)
+
+
+def test_a_section_that_is_almost_reached_is_not_passed() -> None:
+    system = vv.Lagrangian(lambda q, v, _: v[0] ** 2 / 2 - q[0] ** 2 / 2, ["q"], position=[0.6], velocity=[0.8])
+    assert len(system.poincare(lambda q, _v, _t: q[0] - 1.0 - 1e-12, t=50.0, direction=0, dt=0.5).t) == 0
+    assert len(system.poincare(lambda q, _v, _t: q[0] - 1.0 + 1e-12, t=50.0, direction=0, dt=0.5).t) == 16

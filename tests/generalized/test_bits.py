@@ -86,6 +86,31 @@ def test_a_copy_has_them_by_splittings_and_sums_too(method: str) -> None:
         assert np.array_equal(many[member].run(T, method=method, dt=0.1).position, out.position[member])
 
 
+@pytest.mark.parametrize("how", [{"dt": 0.1}, {}, {"max_step": 0.05, "rtol": 1e-6}])
+@pytest.mark.parametrize("method", ["gauss4", "gauss8", "gauss16"])
+def test_copies_of_their_own_pace_do_not_feel_each_other(method: str, how: dict[str, Any]) -> None:
+    """Frequencies from 0.1 to 30: some take a hundredth of the steps of others; equal steps may be too long for one."""
+    lengths = np.geomspace(1e-2, 1e3, 19)
+    if "dt" in how:
+        lengths[18] = 1e-12
+    many = vv.systems.pendulum().ensemble(position=np.linspace(-3.0, 3.0, 19)[:, None], parameters={"l": lengths})
+    for times in (np.linspace(0.0, 0.4, 5), [0.0, -0.2]):
+        out = many.run(times, method=method, threads=1, **how)
+        assert (out.status == vv.Status.OK)[9:18].all()
+        for member in range(len(many)):
+            try:
+                alone = many[member].run(times, method=method, **how)
+            except vv.ConvergenceError as error:
+                alone = error.trajectory
+            assert alone.status is vv.Status(out.status[member])
+            read = len(alone.t)
+            assert np.array_equal(alone.position, out.position[member, :read])
+            assert np.isnan(out.position[member, read:]).all()
+            assert (alone.steps, alone.evaluations) == (out.steps[member], out.evaluations[member])
+        if "dt" in how:
+            assert out.status[18] is not vv.Status.OK
+
+
 def digest() -> dict[str, str]:
     """What a process on another tier computes."""
     found = {}

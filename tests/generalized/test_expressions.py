@@ -24,7 +24,7 @@ FUNCTIONS: dict[str, tuple[list[float], Any, Any]] = {
     "sqrt": ([1e-9, 0.3, 1.0, 3.0, 1e20], sp.sqrt, np.sqrt),
     "sinh": ([-5.0, 1e-9, 0.3, 20.0], sp.sinh, np.sinh),
     "cosh": ([-5.0, 1e-9, 0.3, 20.0], sp.cosh, np.cosh),
-    "tanh": ([-5.0, 1e-9, 0.3, 20.0], sp.tanh, np.tanh),
+    "tanh": ([-300.0, -40.0, -5.0, 1e-9, 0.3, 20.0], sp.tanh, np.tanh),
     "asin": ([-0.9, 1e-9, 0.3, 0.999], sp.asin, np.arcsin),
     "acos": ([-0.9, 1e-9, 0.3, 0.999], sp.acos, np.arccos),
     "atan": ([-9.0, 1e-9, 0.3, 1e9], sp.atan, np.arctan),
@@ -44,7 +44,8 @@ def test_functions_and_their_derivatives(name: str) -> None:
     by_symbols = system(symbolic(x))
     by_function = vv.Lagrangian(lambda q, v, _: v[0] ** 2 / 2 - numeric(q[0]), ["x"], position=[0.5])
     for place in places:
-        with mpmath.workdps(40):
+        # 1 − tanh² takes as many digits as its place is far out.
+        with mpmath.workdps(320):
             exact = mpmath.mpf(place)
             value = sp.lambdify(x, symbolic(x), "mpmath")(exact)
             slope = sp.lambdify(x, symbolic(x).diff(x), "mpmath")(exact)
@@ -53,10 +54,20 @@ def test_functions_and_their_derivatives(name: str) -> None:
             function = symbolic(x) if one is by_symbols else lambda q, _v, _t: numeric(q[0])
             found = one.at(position=[place]).evaluate(function)[0]
             assert found == pytest.approx(float(value), rel=4 * EPSILON, abs=0.0)
-            # Where a slope changes fast, the rounding of the place tells; that of tanh is 1 − tanh², to ε.
+            # Where a slope changes fast, the rounding of the place tells.
             lost = 1.0 + abs(float(bend / slope) * place) if slope else 1.0
             force = -rates(one, 0.0, [place], [0.0])[0]
-            assert force == pytest.approx(float(slope), rel=16 * EPSILON * lost, abs=EPSILON if name == "tanh" else 0.0)
+            assert force == pytest.approx(float(slope), rel=16 * EPSILON * lost, abs=0.0)
+
+
+@pytest.mark.parametrize("place", [-800.0, -356.0, -19.0, 0.0, 1e-8, 0.6, 5.0, 40.0, 350.0, 711.0, 1e5])
+def test_a_wall_of_tanh_is_felt_where_it_is_flat(place: float) -> None:
+    """The force is −sech²; 1 − tanh² has none of its digits beyond 19."""
+    wall = system(sp.tanh(x)).at(position=[place])
+    with mpmath.workdps(800):
+        fall = 1 / mpmath.cosh(mpmath.mpf(place)) ** 2
+    force = rates(wall, 0.0, [place], [0.0])[0]
+    assert force == pytest.approx(-float(fall), rel=2 * EPSILON, abs=5e-324)
 
 
 @pytest.mark.parametrize(

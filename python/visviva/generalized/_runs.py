@@ -46,7 +46,7 @@ class Runs(States):
             "max_step": None if max_step is None else number("max_step", max_step),
             "max_steps": 100_000_000,
             "outputs": outputs,
-            "section": None,
+            "sections": [],
         }
         return asked, outputs
 
@@ -118,8 +118,8 @@ class Runs(States):
         References
         ----------
         Gauss's methods: E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration*, 2nd ed., sections II.1.3
-        and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, (1.5.4), (2.2.17) and
-        (3.2.3); with constraints section 3.5 there, and section VII.1 of the former. The matrix exponential: C. Moler &
+        and VIII.6. Variational integrators: J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, section 1.5, parts
+        2 and 3; constraints in part 3 there, and section VII.1 of the former. The matrix exponential: C. Moler &
         C. Van Loan, SIAM Review 45 (2003) 3.
 
         Examples

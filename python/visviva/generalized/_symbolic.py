@@ -250,6 +250,8 @@ def trees(
                 made.append(of[0] / of[1])
             case "power":
                 made.append(sp.Pow(*of))
+            case "sech_squared":
+                made.append(sp.sech(*of) ** 2)
             case _:
                 made.append(getattr(sp, operation)(*of))
     return [made[root] for root in roots]

@@ -154,7 +154,7 @@ class Variations:
 
         References
         ----------
-        J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, (1.3.1), (1.3.3) and, with forces, (3.2.2).
+        J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, section 1.3 and, with forces, part 3.
 
         Examples
         --------

@@ -50,9 +50,15 @@ impl Graph {
                 let reciprocal = self.divide(one, value);
                 self.scale(0.5, reciprocal)
             }
-            Function::Tan | Function::Tanh => {
+            Function::Tan => {
                 let square = self.multiply(value, value);
-                self.sum(1.0, &[(if function == Function::Tan { 1.0 } else { -1.0 }, square)])
+                self.sum(1.0, &[(1.0, square)])
+            }
+            Function::Tanh => self.call(Function::SechSquared, a),
+            Function::SechSquared => {
+                let tangent = self.call(Function::Tanh, a);
+                let product = self.multiply(tangent, value);
+                self.scale(-2.0, product)
             }
             Function::Sinh => self.call(Function::Cosh, a),
             Function::Cosh => self.call(Function::Sinh, a),

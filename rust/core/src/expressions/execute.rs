@@ -294,6 +294,7 @@ fn call<S: functions::Functions>(word: u16, x: S) -> S {
     const ASINH: u16 = word::CALL + Function::Asinh as u16;
     const ACOSH: u16 = word::CALL + Function::Acosh as u16;
     const ATANH: u16 = word::CALL + Function::Atanh as u16;
+    const SECH_SQUARED: u16 = word::CALL + Function::SechSquared as u16;
     match word {
         TAN => functions::tan(x),
         EXP => x.exp(),
@@ -307,6 +308,7 @@ fn call<S: functions::Functions>(word: u16, x: S) -> S {
         ASINH => functions::asinh(x),
         ACOSH => functions::acosh(x),
         ATANH => functions::atanh(x),
+        SECH_SQUARED => functions::sech_squared(x),
         // Sine and cosine come in pairs.
         _ => S::splat(f64::NAN),
     }
@@ -366,12 +368,19 @@ fn one_body<V: Vector8>(code: &Code, part: Part, registers: &mut [f64]) {
     execute::<f64, 1>(code, part, registers);
 }
 
+#[inline(always)]
+fn blocks_body<V: Vector8 + Scalar, const K: usize>(code: &Code, part: Part, registers: &mut [Lanes]) {
+    execute::<V, K>(code, part, V::view_mut(registers));
+}
+
 tiered! {
     fn called[][](word: u16, x: Lanes) -> Lanes = called_body;
     fn raised[][](exponent: f64, x: Lanes) -> Lanes = raised_body;
     fn angle[][](y: Lanes, x: Lanes) -> Lanes = angle_body;
     /// Runs a part of the code for eight states.
     pub fn lanes[][](code: &Code, part: Part, registers: &mut [Lanes]) = lanes_body;
+    /// Runs a part of the code for `K` times eight states.
+    pub fn blocks[const K: usize][K](code: &Code, part: Part, registers: &mut [Lanes]) = blocks_body;
     /// Runs a part of the code for one state, with the processor's fused operations.
     pub fn one[][](code: &Code, part: Part, registers: &mut [f64]) = one_body;
 }

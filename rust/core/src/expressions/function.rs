@@ -36,6 +36,8 @@ pub enum Function {
     Acosh,
     /// Inverse hyperbolic tangent.
     Atanh,
+    /// The square of the hyperbolic secant, the derivative of tanh: 1 − tanh² keeps no digit of it where tanh is near 1.
+    SechSquared,
 }
 
 /// What a change of the argument's sign does to a function.
@@ -51,7 +53,7 @@ pub enum Parity {
 
 impl Function {
     /// All of them, in the order of their numbers.
-    pub const ALL: [Self; 15] = [
+    pub const ALL: [Self; 16] = [
         Self::Sin,
         Self::Cos,
         Self::Tan,
@@ -67,6 +69,7 @@ impl Function {
         Self::Asinh,
         Self::Acosh,
         Self::Atanh,
+        Self::SechSquared,
     ];
 
     /// Its name, as the Python side says it.
@@ -87,6 +90,7 @@ impl Function {
             Self::Asinh => "asinh",
             Self::Acosh => "acosh",
             Self::Atanh => "atanh",
+            Self::SechSquared => "sech_squared",
         }
     }
 
@@ -98,7 +102,7 @@ impl Function {
     /// Its symmetry.
     pub const fn parity(self) -> Parity {
         match self {
-            Self::Cos | Self::Cosh => Parity::Even,
+            Self::Cos | Self::Cosh | Self::SechSquared => Parity::Even,
             Self::Sin
             | Self::Tan
             | Self::Sinh

@@ -1,4 +1,4 @@
-//! A code with its registers: what a run holds for one trajectory, or for eight.
+//! A code with its registers: what a run holds for one trajectory, for eight, or for several stages of eight.
 
 use super::code::Code;
 use super::execute::{self, Part, room};
@@ -85,5 +85,51 @@ impl<S: Width> Machine<S> {
         for (index, result) in results.iter_mut().enumerate() {
             *result = self.output(index);
         }
+    }
+}
+
+/// A code with `K` times eight of each register, whose preamble is done.
+#[derive(Clone, Debug)]
+pub struct Blocks<const K: usize> {
+    code: Arc<Code>,
+    registers: Vec<Lanes>,
+}
+
+impl<const K: usize> Blocks<K> {
+    /// For these parameters.
+    pub fn new(code: Arc<Code>, parameters: &[Lanes]) -> Self {
+        let registers = vec![Lanes::zero(); room::<K>(&code)];
+        let mut blocks = Self { code, registers };
+        blocks.set_parameters(parameters);
+        blocks
+    }
+
+    /// For other parameters from now on.
+    pub fn set_parameters(&mut self, parameters: &[Lanes]) {
+        let Self { code, registers } = self;
+        let first = code.variables() + 1;
+        for (register, &value) in registers[first * K..].chunks_mut(K).zip(parameters) {
+            register.fill(value);
+        }
+        execute::blocks::<K>(code, Part::Preamble, registers);
+    }
+
+    /// The code and all registers, `K` times eight numbers each, for those who run it themselves.
+    pub fn parts(&mut self) -> (&Code, &mut [Lanes]) {
+        (&self.code, &mut self.registers)
+    }
+
+    /// Runs the body at the same states and times in all blocks.
+    pub fn run(&mut self, t: Lanes, state: &[Lanes]) {
+        let numbers = state.iter().chain(core::iter::once(&t));
+        for (register, &value) in self.registers.chunks_mut(K).zip(numbers) {
+            register.fill(value);
+        }
+        execute::blocks::<K>(&self.code, Part::Body, &mut self.registers);
+    }
+
+    /// A result of the first block.
+    pub fn output(&self, index: usize) -> Lanes {
+        self.registers[usize::from(self.code.outputs[index]) * K]
     }
 }

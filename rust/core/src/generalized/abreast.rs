@@ -5,6 +5,7 @@
 //! Methods with equal steps go from node to node together, and take up copies eight at a time.
 
 use super::fixed::FixedSteps;
+use super::gauss::GaussEight;
 use super::model::Model;
 use super::motion::Motion;
 use super::run::{Integrator, Request, Solution, norm, too_many_steps};
@@ -22,14 +23,45 @@ use crate::ode::trial::{Cost, Trial};
 use crate::ode::{Method, Scheme};
 use crate::parallel::Ticker;
 
+/// The largest linear system with which stages that fill all lanes go side by side: dearer equations gain less by what four
+/// blocks of them share than trajectories lose that wait for the slowest of eight.
+const LARGEST_SYSTEM: usize = 1;
+
 /// Whether a run goes side by side: outputs are read at given times, and no state is put elsewhere on the way.
 pub fn together(model: &Model, request: &Request) -> bool {
-    matches!(request.integrator, Integrator::Table(_))
+    let lanes_are_trajectories = match request.integrator {
+        Integrator::Table(_) => true,
+        Integrator::Gauss(method) => {
+            method.leaves_lanes() || model.systems.iter().all(|system| system.right.len() <= LARGEST_SYSTEM)
+        }
+        _ => false,
+    };
+    lanes_are_trajectories
         && request.outputs.is_some()
-        && request.section.is_none()
+        && request.sections.is_empty()
         && model.projection.is_none()
         && request.span.0 != request.span.1
 }
+
+/// Trials of eight trajectories, and what some of them tell of each.
+pub trait SideBySide: Trial<Lanes> {
+    /// With other parameters from now on, where it has its own.
+    fn set_parameters(&mut self, _: &[Lanes]) {}
+
+    /// Evaluations of a lane since this was last asked, beyond those of the system and of [`cost`](Trial::cost).
+    fn taken(&mut self, _: usize) -> u64 {
+        0
+    }
+
+    /// Why a lane cannot go on, told once.
+    fn lost(&mut self, _: usize) -> Option<String> {
+        None
+    }
+}
+
+impl SideBySide for EmbeddedStep<Lanes> {}
+impl SideBySide for TaylorStep<Lanes> {}
+impl SideBySide for FixedSteps<Lanes> {}
 
 /// A trajectory in its lane.
 struct Slot {
@@ -50,7 +82,7 @@ struct Abreast<'a> {
     request: &'a Request,
     outputs: &'a [f64],
     system: Motion<Lanes>,
-    trial: Box<dyn Trial<Lanes>>,
+    trial: Box<dyn SideBySide>,
     cost: Cost,
     /// Whether all lanes are on the same steps.
     in_step: bool,
@@ -117,19 +149,30 @@ impl<'a> Abreast<'a> {
             Form::FirstOrder(_) => State::first_order(y0),
             Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
         };
-        let max_step = Lanes::splat(request.longest_step(model));
-        let Integrator::Table(method) = request.integrator else {
-            return Err(Error::Internal(
-                "points of a step and trajectories cannot both be the lanes".to_owned(),
-            ));
+        let max_step = request.longest_step(model);
+        let (trial, in_step): (Box<dyn SideBySide>, bool) = match request.integrator {
+            Integrator::Gauss(method) => {
+                let of = (model.code.clone(), &*parameters, model.form);
+                let eight = GaussEight::new(method, of, &state, (request.gauss_steps(), max_step), t0);
+                (Box::new(eight), false)
+            }
+            Integrator::Table(method) => {
+                let max_step = Lanes::splat(max_step);
+                let in_step = !matches!(method.scheme, Scheme::Embedded(_) | Scheme::Taylor(_));
+                (trial(method, request, &mut system, &state, max_step)?, in_step)
+            }
+            _ => {
+                return Err(Error::Internal(
+                    "points of a step and trajectories cannot both be the lanes".to_owned(),
+                ));
+            }
         };
-        let trial = trial(method, request, &mut system, &state, max_step)?;
         Ok(Self {
             request,
             outputs: request.outputs.as_deref().unwrap_or_default(),
             cost: trial.cost(),
             trial,
-            in_step: !matches!(method.scheme, Scheme::Embedded(_) | Scheme::Taylor(_)),
+            in_step,
             norm: norm(request, system.form().len()),
             system,
             clock: Clock::new(Lanes::splat(end - t0)),
@@ -177,6 +220,7 @@ impl<'a> Abreast<'a> {
         }
         if fresh.any() {
             self.system.set_parameters(&self.parameters);
+            self.trial.set_parameters(&self.parameters);
             self.clock.restart(fresh, Lanes::splat(end - t0));
         }
         fresh
@@ -243,11 +287,16 @@ impl<'a> Abreast<'a> {
             let finite = nothing.0[lane] == 0.0;
             let (h, elapsed) = (self.clock.h.0[lane], self.clock.elapsed.0[lane]);
             let (cost, in_step, now) = (self.cost, self.in_step, self.system.evaluations());
+            let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
             let Some(slot) = &mut self.slots[lane] else { continue };
             let Slot { solution, smallest, .. } = slot;
-            solution.evaluations += cost.tried;
+            solution.evaluations += cost.tried + taken;
             if in_step {
                 solution.evaluations = now - slot.before;
+            }
+            if lost.is_some() {
+                self.end(lane, Ending::StepTooSmall, lost, ticker);
+                continue;
             }
             if !outcome.accepted.lane(lane) {
                 if h.is_nan() || h.abs() < *smallest {
@@ -312,11 +361,17 @@ impl<'a> Abreast<'a> {
             }
             trial.at(outcome, system, state, theta, there, ticker)?;
             let (in_step, now) = (self.in_step, self.system.evaluations());
-            for (lane, slot) in self.slots.iter_mut().enumerate().filter(|(lane, _)| between.lane(*lane)) {
-                let Some(slot) = slot else { continue };
-                slot.write(outputs[slot.next_output], &self.between, lane);
+            for lane in (0..WIDTH).filter(|&lane| between.lane(lane)) {
+                let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
+                let Some(slot) = &mut self.slots[lane] else { continue };
+                slot.solution.evaluations += taken;
                 if in_step {
                     slot.solution.evaluations = now - slot.before;
+                }
+                if lost.is_some() {
+                    self.end(lane, Ending::StepTooSmall, lost, ticker);
+                } else {
+                    slot.write(outputs[slot.next_output], &self.between, lane);
                 }
             }
         }
@@ -355,7 +410,7 @@ fn trial(
     system: &mut Motion<Lanes>,
     state: &State<Lanes>,
     max_step: Lanes,
-) -> Result<Box<dyn Trial<Lanes>>> {
+) -> Result<Box<dyn SideBySide>> {
     Ok(match &method.scheme {
         Scheme::Embedded(tableau) => {
             let rule = Rule::new(tableau.error_exponent, max_step);

@@ -7,6 +7,7 @@ use crate::expressions::assembler::compile;
 use crate::expressions::program::{LinearSystem, Output};
 use crate::expressions::{Code, Graph, Id, Series};
 use crate::ode::system::{Form, Needs};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 /// Of which kind the function is that says all.
@@ -124,6 +125,46 @@ impl Model {
     pub fn function(&self, expressions: &[Id]) -> Result<Code> {
         let outputs: Vec<Output> = expressions.iter().copied().map(Output::Node).collect();
         compile(&self.source.graph, (self.numbers(), self.source.parameters), &[], &outputs)
+    }
+
+    /// An expression of a state as code: its value; how fast it changes at equal rates of the second half; and where it looks at
+    /// velocities of which accelerations are the rates, its slopes along them and those rates.
+    ///
+    /// # Errors
+    /// Expressions that are too large.
+    pub fn along(&mut self, expression: Id) -> Result<Code> {
+        let (first, second) = self.source.halves();
+        let graph = &mut self.source.graph;
+        let (time, one) = (graph.time(), graph.constant(1.0));
+        let mut motion: HashMap<Id, Id> = HashMap::from([(time, one)]);
+        let node = |rate: &Output| match rate {
+            Output::Node(id) => Some(*id),
+            Output::Unknown(_) => None,
+        };
+        let (mut slopes, mut rates) = (vec![], vec![]);
+        match self.form {
+            Form::FirstOrder(_) => {
+                for (&number, rate) in first.iter().chain(&second).zip(&self.rates) {
+                    let _ = node(rate).and_then(|rate| motion.insert(number, rate));
+                }
+            }
+            Form::SecondOrder(_) => {
+                motion.extend(first.iter().copied().zip(second.iter().copied()));
+                let along = graph.gradient(expression, &second);
+                for (slope, &rate) in along.into_iter().zip(&self.rates) {
+                    if !graph.is_zero(slope) {
+                        slopes.push(Output::Node(slope));
+                        rates.push(rate);
+                    }
+                }
+            }
+        }
+        let moved = graph.tangent(&[expression], &motion);
+        let mut outputs: Vec<Output> = core::iter::once(expression).chain(moved).map(Output::Node).collect();
+        outputs.extend(slopes);
+        let systems: &[LinearSystem] = if rates.is_empty() { &[] } else { &self.systems };
+        outputs.extend(rates);
+        compile(&self.source.graph, (self.numbers, self.source.parameters), systems, &outputs)
     }
 
     /// Its equations as recurrences of Taylor coefficients.

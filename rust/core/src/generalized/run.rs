@@ -59,8 +59,8 @@ pub struct Request {
     pub outputs: Option<Vec<f64>>,
     /// Whether steps are held where energy is conserved.
     pub held: bool,
-    /// A function of the state whose zeros are wanted.
-    pub section: Option<Section>,
+    /// Functions of the state whose zeros are wanted.
+    pub sections: Vec<Section>,
     /// The equations as recurrences, if the method is made of them.
     pub series: Option<Arc<Series>>,
 }
@@ -68,22 +68,36 @@ pub struct Request {
 /// Zeros of an expression on the way.
 #[derive(Clone, Debug)]
 pub struct Section {
-    /// The expression.
+    /// The expression and its rate, as [`Model::along`] gives them.
     pub code: Arc<Code>,
     /// Upwards if positive, downwards if negative, else both.
     pub direction: f64,
 }
 
-/// A section at work.
+/// Sections at work.
 struct Crossings {
-    machine: Machine<f64>,
+    machines: Vec<Machine<f64>>,
+}
+
+impl Crossings {
+    fn at(&mut self, which: usize, t: f64, y: &[f64]) -> &Machine<f64> {
+        let machine = &mut self.machines[which];
+        machine.state().copy_from_slice(y);
+        machine.run(t);
+        machine
+    }
 }
 
 impl Events for Crossings {
-    fn value(&mut self, _: usize, t: f64, y: &[f64]) -> Result<f64> {
-        let mut found = [0.0];
-        self.machine.evaluate(t, y, &mut found);
-        Ok(found[0])
+    fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64> {
+        Ok(self.at(which, t, y).output(0))
+    }
+
+    fn rate(&mut self, which: usize, t: f64, y: &[f64]) -> Option<f64> {
+        let machine = self.at(which, t, y);
+        let terms = (machine.code().outputs() - 2) / 2;
+        let of_rates = (0..terms).map(|i| machine.output(2 + i) * machine.output(2 + terms + i));
+        Some(of_rates.fold(machine.output(1), |sum, term| sum + term))
     }
 }
 
@@ -106,8 +120,8 @@ pub struct Solution {
     pub evaluations: u64,
     /// The longest step.
     pub h: f64,
-    /// The zeros of the section, if there is one.
-    pub crossings: Zeros,
+    /// The zeros of the sections, one after another.
+    pub crossings: Vec<Zeros>,
 }
 
 /// δ of Gauss's methods for a relative tolerance: the error goes about as its square.
@@ -141,6 +155,14 @@ impl Request {
         if model.needs().time && longest < asked { longest } else { asked }
     }
 
+    /// The steps of a collocation method.
+    pub(super) fn gauss_steps(&self) -> Steps {
+        match self.dt {
+            Some(dt) => Steps::Equal(dt),
+            None => Steps::Chosen { delta: delta(self.rtol), held: self.held },
+        }
+    }
+
     /// The step of a method that has a fixed one, with the sign of time.
     pub(super) fn fixed_step(&self, method: &str) -> Result<f64> {
         let missing = || Error::invalid("dt", format!("{method} needs a step dt"));
@@ -160,7 +182,7 @@ impl Solution {
             steps: 0,
             evaluations: 0,
             h: 0.0,
-            crossings: Zeros::default(),
+            crossings: vec![],
         }
     }
 }
@@ -183,19 +205,18 @@ pub fn solve(
     };
     let norm = norm(request, y0.len());
     let max_step = request.longest_step(model);
-    let mut crossings = request
-        .section
-        .as_ref()
-        .map(|section| Crossings { machine: Machine::new(section.code.clone(), parameters) });
+    let machines = request.sections.iter().map(|section| Machine::new(section.code.clone(), parameters));
+    let mut crossings = Crossings { machines: machines.collect() };
     let conditions =
-        request.section.iter().map(|section| Condition { direction: section.direction, last: None });
+        request.sections.iter().map(|section| Condition { direction: section.direction, last: None });
     let watch = Watch::new(conditions.collect());
-    let events = crossings.as_mut().map(|crossings| crossings as &mut dyn Events);
+    let events = (!request.sections.is_empty()).then_some(&mut crossings as &mut dyn Events);
     let mut table = Table::new(request.outputs.as_deref(), false, events, watch);
     if t0 == end {
         table.still(request.span, y0)?;
         let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
-        return Ok(Solution { reached: end, t, y, ..Solution::at(t0) });
+        let crossings = table.into_zeros();
+        return Ok(Solution { reached: end, t, y, crossings, ..Solution::at(t0) });
     }
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
     let mut recorder = Counted { table, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
@@ -205,11 +226,8 @@ pub fn solve(
         Integrator::Gauss(method) => {
             let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             let machine = Machine::new(model.code.clone(), &lanes);
-            let steps = match request.dt {
-                Some(dt) => Steps::Equal(dt),
-                None => Steps::Chosen { delta: delta(request.rtol), held: request.held },
-            };
-            let trial = GaussStep::new(method, (machine, model.form), drive.state, (steps, max_step), t0);
+            let steps = (request.gauss_steps(), max_step);
+            let trial = GaussStep::new(method, (machine, model.form), drive.state, steps, t0);
             drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
         }
         Integrator::Linear(ref linear) => return linear.solve(request, (y0, parameters), drive.ticker),
@@ -259,7 +277,7 @@ pub fn solve(
         steps,
         evaluations,
         h: last,
-        crossings: table.into_zeros().pop().unwrap_or_default(),
+        crossings: table.into_zeros(),
     })
 }
 

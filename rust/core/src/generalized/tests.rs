@@ -64,7 +64,7 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         max_steps: u64::MAX,
         outputs: Some(vec![end]),
         held: true,
-        section: None,
+        sections: vec![],
         series: None,
     };
     let control = Control::default();

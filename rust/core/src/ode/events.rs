@@ -1,5 +1,6 @@
 //! Events: zeros of functions of time and state on the way of a run, found where a function changes its sign from one node to
-//! the next, and located on the interpolant to round-off.
+//! the next, and located on the interpolant to round-off. Where it is known how fast a function changes, one that turns back
+//! between two nodes is seen, too: its turning point is such a zero.
 
 use super::run::Step;
 use crate::error::Result;
@@ -20,6 +21,12 @@ pub trait Events {
     /// # Errors
     /// Those of the function.
     fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64>;
+
+    /// How fast it changes along the motion, if that is known.
+    fn rate(&mut self, which: usize, t: f64, y: &[f64]) -> Option<f64> {
+        let _ = (which, t, y);
+        None
+    }
 }
 
 /// The zeros of one function.
@@ -36,6 +43,7 @@ pub struct Zeros {
 pub struct Watch {
     conditions: Vec<Condition>,
     values: Vec<f64>,
+    rates: Vec<Option<f64>>,
     /// What was found, function after function.
     pub zeros: Vec<Zeros>,
 }
@@ -44,7 +52,8 @@ impl Watch {
     /// For functions with these conditions.
     pub fn new(conditions: Vec<Condition>) -> Self {
         let zeros = vec![Zeros::default(); conditions.len()];
-        Self { values: vec![f64::NAN; conditions.len()], conditions, zeros }
+        let (values, rates) = (vec![f64::NAN; conditions.len()], vec![None; conditions.len()]);
+        Self { values, rates, conditions, zeros }
     }
 
     /// Takes the values at the start of the run.
@@ -54,6 +63,7 @@ impl Watch {
     pub fn start(&mut self, events: &mut dyn Events, t: f64, y: &[f64]) -> Result<()> {
         for (which, value) in self.values.iter_mut().enumerate() {
             *value = events.value(which, t, y)?;
+            self.rates[which] = events.rate(which, t, y);
         }
         Ok(())
     }
@@ -67,9 +77,22 @@ impl Watch {
         for which in 0..self.conditions.len() {
             let before = self.values[which];
             let after = events.value(which, step.to, step.end())?;
-            self.values[which] = after;
-            let (up, down) = (before <= 0.0 && after >= 0.0, before >= 0.0 && after <= 0.0);
+            let rate = events.rate(which, step.to, step.end());
+            let rates = self.rates[which].zip(rate);
+            (self.values[which], self.rates[which]) = (after, rate);
             let direction = self.conditions[which].direction;
+            if let Some((from, to)) = rates.filter(|&(from, to)| before * from < 0.0 && after * to > 0.0)
+                && before * after > 0.0
+            {
+                let between = turned(events, which, step, [before, after], [from, to])?;
+                for (zero, up) in between.into_iter().flatten() {
+                    if direction == 0.0 || (direction > 0.0) == up {
+                        found.push((zero, which));
+                    }
+                }
+                continue;
+            }
+            let (up, down) = (before <= 0.0 && after >= 0.0, before >= 0.0 && after <= 0.0);
             // A zero at a node belongs to the step before it, which has told of it.
             let told = before == 0.0 && self.zeros[which].t.last() == Some(&step.from);
             if told || !((up && direction >= 0.0) || (down && direction <= 0.0)) {
@@ -94,6 +117,39 @@ impl Watch {
         }
         Ok(None)
     }
+}
+
+/// The zeros on either side of the place where a function turns back, and whether it passes them upwards; none if it does not
+/// reach zero.
+fn turned(
+    events: &mut dyn Events,
+    which: usize,
+    step: &mut Step<'_, '_>,
+    values: [f64; 2],
+    rates: [f64; 2],
+) -> Result<[Option<(f64, bool)>; 2]> {
+    let turn = zero([(step.from, rates[0]), (step.to, rates[1])], |t| {
+        let y = step.at(t)?;
+        Ok(events.rate(which, t, y).unwrap_or(f64::NAN))
+    })?;
+    let there = events.value(which, turn, step.at(turn)?)?;
+    if there * values[0] > 0.0 || there.is_nan() {
+        return Ok([None; 2]);
+    }
+    let up = values[0] < 0.0;
+    if there == 0.0 {
+        return Ok([Some((turn, up)), None]);
+    }
+    let (from, to) = (step.from, step.to);
+    let mut side = |ends| {
+        zero(ends, |t| {
+            let y = step.at(t)?;
+            events.value(which, t, y)
+        })
+    };
+    let first = side([(from, values[0]), (turn, there)])?;
+    let second = side([(turn, there), (to, values[1])])?;
+    Ok([Some((first, up)), Some((second, !up))])
 }
 
 /// More are never needed: each halves the interval at least every third time.

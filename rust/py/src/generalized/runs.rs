@@ -31,8 +31,8 @@ pub(super) struct Asked<'py> {
     max_step: Option<f64>,
     max_steps: u64,
     outputs: Option<Array<'py>>,
-    /// Nodes, a root among them, and a direction: whose zeros are wanted.
-    section: Option<(Vec<NodeParts>, u32, f64)>,
+    /// Nodes, a root among them, and a direction, of each: whose zeros are wanted.
+    sections: Vec<(Vec<NodeParts>, u32, f64)>,
 }
 
 impl Asked<'_> {
@@ -56,17 +56,17 @@ impl Asked<'_> {
     pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
         let integrator = self.integrator(of).map_err(|error| raised(py, error))?;
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
-        let section = self.section.as_ref().map(|(nodes, root, direction)| {
+        let sections = self.sections.iter().map(|(nodes, root, direction)| {
             let mut model = of.copy();
             let ids = added(&mut model.source.graph, nodes)?;
-            let code = Arc::new(model.function(&[chosen(&ids, *root)?])?);
+            let code = Arc::new(model.along(chosen(&ids, *root)?)?);
             Ok(Section { code, direction: *direction })
         });
-        let section = section.transpose().map_err(|error| raised(py, error))?;
+        let sections = sections.collect::<Result<_>>().map_err(|error| raised(py, error))?;
         let series = matches!(integrator, Integrator::Table(Method { scheme: Scheme::Taylor(_), .. }));
         let series = series.then(|| of.model.series()).transpose().map_err(|error| raised(py, error))?;
         Ok(Request {
-            section,
+            sections,
             series,
             integrator,
             span: self.span,
@@ -87,10 +87,10 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
     let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
     let y: Vec<f64> = solutions.iter().flat_map(|solution| solution.y.iter().copied()).collect();
     let rows = t.len();
-    let crossings: Vec<usize> = solutions.iter().map(|solution| solution.crossings.t.len()).collect();
-    let at: Vec<f64> = solutions.iter().flat_map(|solution| solution.crossings.t.iter().copied()).collect();
-    let there: Vec<f64> =
-        solutions.iter().flat_map(|solution| solution.crossings.y.iter().copied()).collect();
+    let zeros = || solutions.iter().flat_map(|solution| &solution.crossings);
+    let crossings: Vec<usize> = zeros().map(|zeros| zeros.t.len()).collect();
+    let at: Vec<f64> = zeros().flat_map(|zeros| zeros.t.iter().copied()).collect();
+    let there: Vec<f64> = zeros().flat_map(|zeros| zeros.y.iter().copied()).collect();
     let found = at.len();
     result.set_item("crossings", crossings)?;
     result.set_item("crossing_times", moved(py, at, &[found])?)?;

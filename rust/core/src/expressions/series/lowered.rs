@@ -152,11 +152,20 @@ impl Lowering {
             Function::Sqrt => self.root_into(to, of),
             Function::Exp => self.integral(function, of, to, to),
             // Their rates hang on themselves, and come after them.
-            Function::Tan | Function::Tanh => {
-                let (rate, sign) = (self.room(), if function == Function::Tan { 1.0 } else { -1.0 });
+            Function::Tan => {
+                let rate = self.room();
                 self.integral(function, of, to, rate);
-                let products = [vec![(sign, to, to)], vec![], vec![]];
+                let products = [vec![(1.0, to, to)], vec![], vec![]];
                 self.push(Recurrence::Sum { to: rate, constant: 1.0, terms: Default::default(), products });
+            }
+            // (sech²)' = −2 tanh · sech², and tanh' = sech².
+            Function::Tanh | Function::SechSquared => {
+                let (other, rate) = (self.room(), self.room());
+                let (tangent, slope) = if function == Function::Tanh { (to, other) } else { (other, to) };
+                self.integral(Function::Tanh, of, tangent, slope);
+                self.integral(Function::SechSquared, of, slope, rate);
+                let products = [vec![(-2.0, tangent, slope)], vec![], vec![]];
+                self.push(Recurrence::Sum { to: rate, constant: 0.0, terms: Default::default(), products });
             }
             Function::Sinh | Function::Cosh => {
                 let (other, rate) = (self.room(), [Function::Cosh, Function::Sinh]);

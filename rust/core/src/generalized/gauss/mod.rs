@@ -2,21 +2,28 @@
 //!
 //! The one idea: with up to eight stages, the lanes are the stages ([`step`]), so an implicit method costs hardly more for a
 //! step than an explicit one for a stage. How smooth the motion is, is told by how far the polynomial of a step leads astray
-//! in the next one; where energy is conserved steps are chosen at the start and then held ([`trial`]).
+//! in the next one; where energy is conserved steps are chosen at the start and then held ([`pace`]). Of an ensemble the lanes are
+//! trajectories ([`eight`]), each with the operations that it has alone.
 
+mod columns;
+mod eight;
+mod pace;
 mod step;
 mod tables;
 mod trial;
 
 use crate::numerics::lanes::{Lanes, WIDTH};
-pub use trial::{GaussStep, Steps};
+pub use eight::GaussEight;
+pub use pace::Steps;
+pub use trial::GaussStep;
 
 /// A collocation method: row `j` of a matrix holds what stage `j` contributes to each of the stages.
 #[derive(Debug)]
 pub struct Table {
     pub(super) stages: usize,
-    /// Nodes.
+    /// Nodes, and what they leave out: without it all steps would err to one side, and energies drift.
     c: Lanes,
+    c_rest: Lanes,
     a: [Lanes; WIDTH],
     /// The square of `a`.
     a2: [Lanes; WIDTH],
@@ -46,6 +53,13 @@ pub static METHODS: [Method; 3] = [
     Method { name: "gauss8", order: 8, table: &tables::GAUSS8 },
     Method { name: "gauss16", order: 16, table: &tables::GAUSS16 },
 ];
+
+impl Method {
+    /// Whether its stages are fewer than the lanes.
+    pub fn leaves_lanes(&self) -> bool {
+        self.table.stages < WIDTH
+    }
+}
 
 /// The method of that name.
 pub fn method(name: &str) -> Option<&'static Method> {

@@ -14,17 +14,17 @@ use crate::ode::system::Form;
 use crate::tiered;
 
 /// Iterations after which stages are given up.
-const MOST_ITERATIONS: u32 = 60;
+pub(super) const MOST_ITERATIONS: u32 = 60;
 /// Below this, in units of how much a step changes a number, changes that no longer fall are round-off.
 const ROUND_OFF: f64 = 1e-13;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
 /// What is left of a size a step later: a motion that stops at its turning points is no slow one.
-const FADING: f64 = 0.95;
+pub(super) const FADING: f64 = 0.95;
 /// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
 const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
-const LEAST_SCALE: f64 = 1e-8;
+pub(super) const LEAST_SCALE: f64 = 1e-8;
 
 /// What the stages of a step hold.
 #[derive(Clone, Debug)]
@@ -59,6 +59,40 @@ impl Stages {
 pub(super) struct Iterated {
     pub(super) converged: bool,
     pub(super) evaluations: u32,
+}
+
+/// How stages changed, iteration after iteration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Changes {
+    last: f64,
+    least: f64,
+    in_vain: u32,
+}
+
+impl Default for Changes {
+    fn default() -> Self {
+        Self { last: f64::INFINITY, least: f64::INFINITY, in_vain: 0 }
+    }
+}
+
+impl Changes {
+    /// Whether the stages have converged, or never will; nothing while that is open.
+    #[inline(always)]
+    pub(super) fn judged(&mut self, iteration: u32, change: f64) -> Option<bool> {
+        // The first change is from the numbers of another step, and tells nothing.
+        if iteration == 0 {
+            return None;
+        }
+        let stands = change >= self.last;
+        self.in_vain = if change < self.least { 0 } else { self.in_vain + 1 };
+        self.least = if change < self.least { change } else { self.least };
+        self.last = change;
+        let for_long = self.in_vain == NO_LONGER_FALLING;
+        if change == 0.0 || (stands && change < ROUND_OFF) || (for_long && change < STAGNATION) {
+            return Some(true);
+        }
+        (!change.is_finite() || for_long).then_some(false)
+    }
 }
 
 /// A step on its way.
@@ -125,8 +159,10 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
     let (y, rest) = state.all();
     let (h, h2) = (V::splat(*h), V::splat(*h * *h));
     let passed = V::load(table.c) * h;
+    // Rounded alone, the way to a stage would err alike in every step, and the energy drift with their number.
+    let passed_rest = V::load(table.c_rest).multiply_add(h, V::load(table.c).multiply_add(h, -passed));
     registers[code.variables()] = (passed + V::splat(*t)).store();
-    let (mut last, mut least, mut in_vain) = (f64::INFINITY, f64::INFINITY, 0);
+    let mut changes = Changes::default();
     for iteration in 0..MOST_ITERATIONS {
         let mut change = V::zero();
         for i in 0..evaluated {
@@ -138,28 +174,16 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             stages.numbers[i] = number.store();
             registers[from] = number.store();
             if second_order {
-                let drift = passed.multiply_add(V::splat(y[from]), V::splat(rest[i]));
+                let v = V::splat(y[from]);
+                let drift = passed.multiply_add(v, passed_rest.multiply_add(v, V::splat(rest[i])));
                 let place = combined::<V>(&table.a2, rates).multiply_add(h2, drift) + V::splat(y[i]);
                 registers[i] = place.store();
             }
         }
         let change = largest(change.store());
-        if iteration > 0 {
-            let stands = change >= last;
-            in_vain = if change < least { 0 } else { in_vain + 1 };
-            least = if change < least { change } else { least };
-            if change == 0.0
-                || (stands && change < ROUND_OFF)
-                || (in_vain == NO_LONGER_FALLING && change < STAGNATION)
-            {
-                return Iterated { converged: true, evaluations: iteration };
-            }
-            if !change.is_finite() || in_vain == NO_LONGER_FALLING {
-                return Iterated { converged: false, evaluations: iteration };
-            }
+        if let Some(converged) = changes.judged(iteration, change) {
+            return Iterated { converged, evaluations: iteration };
         }
-        // The first change is from the numbers of another step, and tells nothing.
-        last = if iteration > 0 { change } else { f64::INFINITY };
         execute::execute::<V, 1>(code, Part::Body, V::view_mut(registers));
         for i in 0..evaluated {
             stages.rates[i] = registers[usize::from(outputs[i])];
@@ -199,8 +223,10 @@ fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
                 // h v is kept whole: rounded, it would err at every step to the same side of a slow motion.
                 let drift = y[v] * *h;
                 let lost = y[v].mul_add(*h, -drift);
-                let small = weighted(&table.b2, rates).mul_add(*h * *h, rest[v].mul_add(*h, rest[i] + lost));
-                put(i, drift + small);
+                // So is h², of which the same holds.
+                let (h2, moved) = (*h * *h, weighted(&table.b2, rates));
+                let small = moved.mul_add(h.mul_add(*h, -h2), rest[v].mul_add(*h, rest[i] + lost));
+                put(i, drift + moved.mul_add(h2, small));
             }
         }
     }

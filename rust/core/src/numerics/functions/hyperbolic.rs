@@ -92,6 +92,24 @@ pub fn sinh_cosh<S: Functions>(x: S) -> (S, S) {
     (S::select(tiny, x, S::select(number, signed, x)), S::select(number, cosh, x))
 }
 
+/// 1/cosh² x, which is 1 − tanh² x without its cancellation.
+#[inline(always)]
+pub fn sech_squared<S: Functions>(x: S) -> S {
+    let size = x.abs().min(S::splat(FAR));
+    let (e, e_low, n) = exponential(-(size + size));
+    // Below 2⁻¹⁰⁰⁰ it adds nothing to one.
+    let scale = n.max(S::splat(-1000.0)).power_of_two();
+    // 4 e⁻²ˣ/(1 + e⁻²ˣ)²
+    let (one, low) = two_sum(S::one(), e * scale);
+    let (one, low) = fast_sum(one, low + e_low * scale);
+    let below = one * one;
+    let below_low = one.multiply_add(one, -below) + S::splat(2.0) * (one * low);
+    let four = S::splat(4.0);
+    let (q, q_low) = super::quotient((four * e, four * e_low), (below, below_low));
+    // Below 2⁻¹¹⁰⁰ it is zero.
+    S::select(x.less_equal(x), scaled(q + q_low, n.max(S::splat(-1100.0))), x)
+}
+
 /// tanh x.
 #[inline(always)]
 pub fn tanh<S: Functions>(x: S) -> S {

@@ -9,7 +9,7 @@ mod inverse;
 mod logarithm;
 mod trigonometric;
 
-pub use hyperbolic::{sinh_cosh, tanh};
+pub use hyperbolic::{sech_squared, sinh_cosh, tanh};
 pub use inverse::{acos, acosh, asin, asinh, atan, atan2, atanh};
 pub use logarithm::ln;
 pub use trigonometric::{sin_cos, tan};

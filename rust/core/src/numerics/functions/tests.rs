@@ -26,6 +26,7 @@ fn lanes_body<V: Vector8 + Functions>(which: usize, x: Lanes) -> Lanes {
         12 => atanh(x),
         13 => atan2(x, V::splat(-0.7)),
         14 => atan2(V::splat(1e-9), x),
+        15 => sech_squared(x),
         _ => power(x, 1.37),
     }
     .store()
@@ -34,7 +35,7 @@ tiered! {
     fn tier[][](which: usize, x: Lanes) -> Lanes = lanes_body;
 }
 
-const ALL: [Function; 16] = [
+const ALL: [Function; 17] = [
     |x| sin_cos(x).0,
     |x| sin_cos(x).1,
     tan,
@@ -50,6 +51,7 @@ const ALL: [Function; 16] = [
     atanh,
     |x| atan2(x, -0.7),
     |x| atan2(1e-9, x),
+    sech_squared,
     |x| power(x, 1.37),
 ];
 

@@ -11,10 +11,10 @@
 
 mod coefficients;
 
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::element::View;
 use crate::numerics::real::{Mask, Real};
-use crate::rigid::motion::vectors::{cross, dot};
+use crate::rigid::motion::vectors::{by_exactly, cross, dot};
 use coefficients::{OFFSETS, SLOPES, Term};
 
 /// Powers of h² in the series of order 10.
@@ -71,11 +71,18 @@ pub struct MoserVeselov<S> {
     ratios_low: [S; 3],
     /// Those less one.
     excesses: [S; 3],
-    /// Of the next axis' excess, less that of the one after.
+    /// Of the next axis' excess, less that of the one after, and what that leaves out.
     differences: [S; 3],
+    differences_low: [S; 3],
     /// Of each product of powers of C and g, by degree and then by the power of g; 0 beyond the order.
     slopes: [S; PRODUCTS],
     offsets: [S; PRODUCTS],
+}
+
+/// A product, and what its rounding leaves out.
+#[inline(always)]
+fn exact_product<S: Real>(a: S, b: S) -> (S, S) {
+    by_exactly(a, (b, S::zero()))
 }
 
 #[inline(always)]
@@ -139,7 +146,7 @@ impl<S: Real> MoserVeselov<S> {
         let largest = moments[0].max(moments[1]).max(moments[2]);
         let inverse = one / largest;
         let (mut ratios, mut ratios_low) = ([one; 3], [one; 3]);
-        let (mut excesses, mut differences) = ([one; 3], [one; 3]);
+        let (mut excesses, mut differences, mut differences_low) = ([one; 3], [one; 3], [one; 3]);
         for at in 0..3 {
             ratios[at] = largest / moments[at];
             ratios_low[at] = ratios[at].multiply_subtract_from(moments[at], largest) / moments[at];
@@ -147,7 +154,14 @@ impl<S: Real> MoserVeselov<S> {
         }
         for at in 0..3 {
             let (next, last) = ((at + 1) % 3, (at + 2) % 3);
-            differences[at] = ratios[next] * ((moments[last] - moments[next]) / moments[last]);
+            let (apart, apart_low) = two_sum(moments[last], -moments[next]);
+            differences[at] = ratios[next] * (apart / moments[last]);
+            // Of largest · apart = differences · moments[next] · moments[last].
+            let (both, both_low) = exact_product(moments[next], moments[last]);
+            let (wanted, wanted_low) = exact_product(largest, apart);
+            let (found, found_low) = exact_product(differences[at], both);
+            let low = (wanted_low - found_low) + (largest * apart_low - differences[at] * both_low);
+            differences_low[at] = ((wanted - found) + low) / both;
         }
         let total = (excesses[0] + excesses[1]) + excesses[2];
         let product = dot(excesses, [excesses[1], excesses[2], excesses[0]]);
@@ -158,6 +172,7 @@ impl<S: Real> MoserVeselov<S> {
             ratios_low,
             excesses,
             differences,
+            differences_low,
             slopes: polynomials(&SLOPES, count, [total, product]),
             offsets: polynomials(&OFFSETS, count, [total, product]),
         }
@@ -172,6 +187,7 @@ impl<S: Real> MoserVeselov<S> {
             ratios_low: loaded(&self.ratios_low),
             excesses: loaded(&self.excesses),
             differences: loaded(&self.differences),
+            differences_low: loaded(&self.differences_low),
             slopes: loaded(&self.slopes),
             offsets: loaded(&self.offsets),
         }
@@ -184,9 +200,11 @@ impl<S: Real> MoserVeselov<S> {
     #[inline(always)]
     pub fn turn(&self, momentum: &[S; 3], h: S) -> ([S; 4], S::Mask) {
         let (one, half) = (S::one(), S::splat(0.5));
-        let mut u = [S::zero(); 3];
+        // With what is left out: products with round numbers are not rounded at random, and the energy would drift.
+        let factor = by_exactly(h, (self.inverse[0], self.inverse[1]));
+        let (mut u, mut u_low) = ([S::zero(); 3], [S::zero(); 3]);
         for at in 0..3 {
-            u[at] = momentum[at].multiply_add(self.inverse[0], momentum[at] * self.inverse[1]) * h;
+            (u[at], u_low[at]) = by_exactly(momentum[at], factor);
         }
         let square = dot(u, u);
         let excess = dot(self.excesses, [u[0] * u[0], u[1] * u[1], u[2] * u[2]]);
@@ -195,23 +213,25 @@ impl<S: Real> MoserVeselov<S> {
         // 1/J as the body's and a change, which is small: the body's are not rounded to a modified number.
         let mut change = [S::zero(); 3];
         let mut inverse = [S::zero(); 3];
-        let mut across = [S::zero(); 3];
+        let (mut across, mut across_low) = ([S::zero(); 3], [S::zero(); 3]);
         let mut v = [S::zero(); 3];
         let mut angle = [S::zero(); 3];
         for at in 0..3 {
             change[at] = slope.multiply_add(self.excesses[at], offset + self.ratios_low[at]);
             inverse[at] = self.ratios[at] + change[at];
-            across[at] = slope.multiply_add(self.differences[at], self.differences[at]);
+            let more = slope * self.differences[at];
+            across[at] = self.differences[at] + more;
+            across_low[at] = (self.differences[at] - across[at]) + more + self.differences_low[at];
             v[at] = u[at] * half;
             angle[at] = self.ratios[at] * u[at];
         }
 
-        let mut p = guess(&inverse, &across, &v);
+        let (mut p, mut p_low) = (guess(&inverse, &across, &v), [S::zero(); 3]);
         let mut done = S::Mask::splat(false);
         for _ in 0..ITERATIONS {
             let mut e = [S::zero(); 3];
             for at in 0..3 {
-                e[at] = inverse[at] * p[at];
+                e[at] = self.ratios[at].multiply_add(p[at], change[at] * p[at]);
             }
             let size = dot(e, e);
             let w = (one - size).sqrt();
@@ -223,6 +243,7 @@ impl<S: Real> MoserVeselov<S> {
             let mut back = [S::zero(); 3];
             for at in 0..3 {
                 let near = less.multiply_add(p[at], v[at] - p[at]);
+                let near = across_low[at].multiply_subtract_from(products[at], near);
                 rest[at] = across[at].multiply_subtract_from(products[at], near);
                 back[at] = (inverse[at] * e[at]) * per_w;
             }
@@ -249,7 +270,9 @@ impl<S: Real> MoserVeselov<S> {
             let step = [dot(rest, normal) * per, -(dot(third, aside) * per), dot(second, aside) * per];
             let mut moved = [S::zero(); 3];
             for at in 0..3 {
-                p[at] = S::select(done, p[at], p[at] + step[at]);
+                let (to, low) = two_sum(p[at], step[at]);
+                p_low[at] = S::select(done, p_low[at], low);
+                p[at] = S::select(done, p[at], to);
                 moved[at] = inverse[at] * step[at];
             }
             done = done.or(dot(moved, moved).less_equal(square_of_tolerance::<S>() * size));
@@ -259,7 +282,9 @@ impl<S: Real> MoserVeselov<S> {
         }
         let mut e = [S::zero(); 3];
         for at in 0..3 {
-            e[at] = self.ratios[at].multiply_add(p[at], change[at] * p[at]);
+            let p_low = half.multiply_add(u_low[at], p_low[at]);
+            let low = change[at].multiply_add(p[at], self.ratios[at] * p_low);
+            e[at] = self.ratios[at].multiply_add(p[at], low);
         }
         let size = dot(e, e);
         let w = (one - size).sqrt();

@@ -4,7 +4,7 @@
 
 use super::bodies::{Arrangement, LaneBody, Symmetric};
 use super::turn::{self, Inverses};
-use super::vectors::{cross, times_plus, turned, turned_back};
+use super::vectors::{cross, times_plus, turned, turned_back, turned_back_by_all};
 use crate::numerics::element::{Element, PairMut, Pass, Scaled, View};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
@@ -117,7 +117,7 @@ impl Pass<Lanes> for KickDrift<'_> {
                 [q[at], q[at + 1], q[at + 2], q[at + 3]],
                 [rest[at], rest[at + 1], rest[at + 2], rest[at + 3]],
             );
-            let momentum = turned_back(from, [v[at], v[at + 1], v[at + 2]]);
+            let momentum = turned_back_by_all(from, left, [v[at], v[at + 1], v[at + 2]]);
             let (turn, too_far) = turn_of::<V>(of, momentum, drift.0, series);
             let (mut to, mut left_now) = turn::oriented(from, left, turn);
             if too_far.any() {
@@ -201,11 +201,9 @@ fn turn_far(arrangement: &Arrangement, state: &mut State<Lanes>, h: &Lanes, far:
             let pick = |of: &[Lanes; 3]| [0, 1, 2].map(|c| of[c].0[lane]);
             let from: [f64; 4] = core::array::from_fn(|c| q[at + c].0[lane]);
             let left: [f64; 4] = core::array::from_fn(|c| rest[at + c].0[lane]);
-            let own = turned_back(from, [0, 1, 2].map(|c| v[at + c].0[lane]));
+            let own = turned_back_by_all(from, left, [0, 1, 2].map(|c| v[at + c].0[lane]));
             let turn = turn::far(pick(&of.moments), pick(&of.inverse), own, h.0[lane]);
             let (to, left) = turn::oriented(from, left, turn);
-            // A far turn is of length 1 to some roundings only.
-            let (to, left) = turn::oriented(to, left, [0.0; 4]);
             for c in 0..4 {
                 q[at + c].0[lane] = to[c];
                 rest[at + c].0[lane] = left[c];

@@ -10,8 +10,8 @@
 
 use super::super::free::FreeRotation;
 use super::super::quaternion::IDENTITY;
-use super::vectors::{cross, dot, joined, largest, product, times};
-use crate::numerics::double_double::DoubleDouble;
+use super::vectors::{by_exactly, cross, dot, joined, largest, product, times};
+use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::real::{Mask, Real};
 
 /// The highest order of a series.
@@ -211,14 +211,24 @@ pub fn asymmetric<S: Real>(body: &Inverses<S>, momentum: [S; 3], h: S, room: &mu
     (turn, far)
 }
 
+/// Rounded factors times a number, with what this leaves out.
+#[inline(always)]
+fn timed<S: Real>((high, low): Rounded<S>, x: S) -> Rounded<S> {
+    let (mut whole, mut left) = (high, low);
+    for c in 0..3 {
+        (whole[c], left[c]) = by_exactly(x, (high[c], low[c]));
+    }
+    (whole, left)
+}
+
 /// Half the angular velocity of a momentum, times the time.
 #[inline(always)]
-fn half_rates<S: Real>(half: S, (inverse, rest): Rounded<S>, momentum: [S; 3]) -> [S; 3] {
-    let mut rates = momentum;
+fn half_rates<S: Real>((factor, rest): Rounded<S>, momentum: [S; 3]) -> Rounded<S> {
+    let (mut rates, mut left) = (momentum, momentum);
     for c in 0..3 {
-        rates[c] = half * by(momentum[c], (inverse[c], rest[c]));
+        (rates[c], left[c]) = by_exactly(momentum[c], (factor[c], rest[c]));
     }
-    rates
+    (rates, left)
 }
 
 /// The turn in a part of the time that is short, and the momentum after it.
@@ -228,13 +238,12 @@ fn short<S: Real>(body: &Inverses<S>, momentum: &mut [S; 3], h: S, room: &mut [S
     let half = h * S::splat(0.5);
     let rows = room.as_chunks_mut::<{ ORDER + 1 }>().0;
     let [m0, m1, m2, r0, r1, r2, q0, q1, q2, q3] = rows else { return [S::splat(f64::NAN); 4] };
-    let turns = times(differences.0, h);
-    let mut rest = turns;
-    for c in 0..3 {
-        rest[c] = differences.0[c].multiply_add(h, -turns[c]) + differences.1[c] * h;
-    }
+    let (turns, rest) = timed(differences, h);
+    let factors = timed(inverse, half);
     [m0[0], m1[0], m2[0]] = *momentum;
-    let first = half_rates(half, inverse, *momentum);
+    // What is left out of the first terms: of two of the turn, and one of the momentum.
+    let (first, mut left) = half_rates(factors, *momentum);
+    let mut momentum_left = first;
     [r0[0], r1[0], r2[0]] = first;
     [q0[0], q1[0], q2[0], q3[0]] = [S::zero(), S::zero(), S::zero(), S::one()];
     let least = largest(first) * S::splat(NOTHING);
@@ -263,14 +272,23 @@ fn short<S: Real>(body: &Inverses<S>, momentum: &mut [S; 3], h: S, room: &mut [S
         order += 1;
         let per = (S::splat(RECIPROCALS[order].0), S::splat(RECIPROCALS[order].1));
         let mut size = S::zero();
+        let mut products_left = products;
         for c in 0..3 {
-            products[c] = S::select(ended, S::zero(), by(by(products[c], (turns[c], rest[c])), per));
+            let (product, left) = by_exactly(products[c], (turns[c], rest[c]));
+            products[c] = S::select(ended, S::zero(), by(product + left, per));
+            products_left[c] = (product - products[c]) + left;
         }
         for c in 0..4 {
             turning[c] = S::select(ended, S::zero(), by(turning[c], per));
             size = size.max(turning[c].abs());
         }
-        let rates = half_rates(half, inverse, products);
+        let (rates, rates_left) = half_rates(factors, products);
+        if order == 1 {
+            momentum_left = products_left;
+            for c in 0..3 {
+                left[c] += S::splat(0.5) * products_left[c].multiply_add(factors.0[c], rates_left[c]);
+            }
+        }
         size = size.max(largest(rates));
         [m0[order], m1[order], m2[order]] = products;
         [r0[order], r1[order], r2[order]] = rates;
@@ -286,14 +304,16 @@ fn short<S: Real>(body: &Inverses<S>, momentum: &mut [S; 3], h: S, room: &mut [S
     // From the smallest on.
     let mut turn = [S::zero(); 4];
     let mut after = [S::zero(); 3];
-    while order > 0 {
+    while order > 1 {
         turn = [turn[0] + q0[order], turn[1] + q1[order], turn[2] + q2[order], turn[3] + q3[order]];
         after = [after[0] + m0[order], after[1] + m1[order], after[2] + m2[order]];
         order -= 1;
     }
     for c in 0..3 {
-        momentum[c] += after[c];
+        momentum[c] += [m0[1], m1[1], m2[1]][c] + (momentum_left[c] + after[c]);
+        turn[c] = first[c] + (left[c] + turn[c]);
     }
+    turn[3] += q3[1];
     turn
 }
 
@@ -309,26 +329,39 @@ pub fn far(moments: [f64; 3], inverse: [f64; 3], momentum: [f64; 3], h: f64) -> 
     }
 }
 
-/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1 by what it lacked of that before and
-/// what the turn has too much. The momentum is in space, and does not depend on it.
+/// An orientation after a turn, `q + q∘turn` with what it leaves out, drawn to length 1. The momentum is in space, and does not
+/// depend on it.
 #[inline(always)]
 pub fn oriented<S: Real>(q: [S; 4], rest: [S; 4], turn: [S; 4]) -> ([S; 4], [S; 4]) {
-    let square = q[0].multiply_add(q[0], q[1].multiply_add(q[1], q[2].multiply_add(q[2], q[3] * q[3])));
-    let twice =
-        q[0].multiply_add(rest[0], q[1].multiply_add(rest[1], q[2].multiply_add(rest[2], q[3] * rest[3])));
-    let [x, y, z, w] = turn;
-    let over = x.multiply_add(x, y.multiply_add(y, z.multiply_add(z, w * (S::splat(2.0) + w))));
-    let missing = S::splat(0.5) * (((S::one() - square) - (twice + twice)) - over);
     let (change, small) = (product(q, turn), product(rest, turn));
     let (mut to, mut left) = (q, rest);
     for c in 0..4 {
-        // Along the new orientation: along the old one it would lengthen what has turned by more than half.
-        let drawn = (q[c] + change[c]).multiply_add(missing, small[c] + rest[c]);
-        let increment = change[c] + drawn;
-        to[c] = q[c] + increment;
-        left[c] = increment - (to[c] - q[c]);
+        // A component near zero is smaller than what it is changed by.
+        let (increment, low) = two_sum(change[c], small[c] + rest[c]);
+        let rounded;
+        (to[c], rounded) = two_sum(q[c], increment);
+        left[c] = rounded + low;
+    }
+    let missing = S::splat(0.5) * short_of_one(to, left);
+    for c in 0..4 {
+        left[c] = to[c].multiply_add(missing, left[c]);
     }
     (to, left)
+}
+
+/// 1 − |q + rest|² of nearly unit quaternions, to the digits of the rest: what is left of a rounded sum of squares would be as
+/// large as what is looked for, and always to one side.
+#[inline(always)]
+fn short_of_one<S: Real>(q: [S; 4], rest: [S; 4]) -> S {
+    let squares = q.map(|part| part * part);
+    let (first, first_lost) = two_sum(squares[0], squares[1]);
+    let (last, last_lost) = two_sum(squares[2], squares[3]);
+    let (sum, lost) = two_sum(first, last);
+    let mut low = lost + (first_lost + last_lost);
+    for c in 0..4 {
+        low += q[c].multiply_add(q[c], -squares[c]) + (rest[c] + rest[c]) * q[c];
+    }
+    (S::one() - sum) - low
 }
 
 /// dexp⁻¹ of a rotation vector, up to the terms that a method of order four sees: ω − u × ω/2 + u × (u × ω)/12.

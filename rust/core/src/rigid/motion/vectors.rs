@@ -1,6 +1,15 @@
 //! Vectors and quaternions (x, y, z, w) over any scalar, for what runs in lanes.
 
+use crate::numerics::double_double::two_sum;
 use crate::numerics::real::Real;
+
+/// A product with a rounded factor, and what its rounding leaves out. Times and moments are round numbers more often than not,
+/// and the errors of such products no noise about zero: in every step the same, they would move the energy.
+#[inline(always)]
+pub fn by_exactly<S: Real>(x: S, (high, low): (S, S)) -> (S, S) {
+    let whole = x * high;
+    (whole, x.multiply_add(high, -whole) + x * low)
+}
 
 /// The vector product.
 #[inline(always)]
@@ -46,6 +55,35 @@ pub fn turned<S: Real>(q: [S; 4], v: [S; 3]) -> [S; 3] {
 #[inline(always)]
 pub fn turned_back<S: Real>(q: [S; 4], v: [S; 3]) -> [S; 3] {
     by_axis([q[0], q[1], q[2]], -q[3], v)
+}
+
+/// The vector turned back by a quaternion and what it leaves out, with the errors of products with the vector, which may be
+/// the same round numbers in every step. A rounded quaternion is not of length 1, and would add to each vector some of the
+/// one that it comes from.
+#[inline(always)]
+pub fn turned_back_by_all<S: Real>(q: [S; 4], rest: [S; 4], v: [S; 3]) -> [S; 3] {
+    let (u, of_rest) = ([q[0], q[1], q[2]], [rest[0], rest[1], rest[2]]);
+    let mut inner = v;
+    let mut inner_rest = times_plus(v, -rest[3], cross(of_rest, v));
+    for c in 0..3 {
+        let (next, last) = ((c + 1) % 3, (c + 2) % 3);
+        let terms = [u[next] * v[last], -(u[last] * v[next]), -(q[3] * v[c])];
+        let lost = u[next].multiply_add(v[last], -terms[0])
+            - (u[last].multiply_add(v[next], terms[1]) + q[3].multiply_add(v[c], terms[2]));
+        let (first, first_lost) = two_sum(terms[0], terms[1]);
+        let (sum, sum_lost) = two_sum(first, terms[2]);
+        inner[c] = sum;
+        inner_rest[c] += (first_lost + sum_lost) + lost;
+    }
+    let (turn, by_inner, by_rest) = (cross(u, inner), cross(u, inner_rest), cross(of_rest, inner));
+    let mut all = v;
+    for c in 0..3 {
+        // Of two rounded numbers many sums are halfway between two others, and go to one side where v is always the same.
+        let (sum, lost) = two_sum(v[c], turn[c] + turn[c]);
+        let rest = by_inner[c] + by_rest[c];
+        all[c] = sum + (lost + (rest + rest));
+    }
+    all
 }
 
 /// v + 2u × (u × v + w v).

@@ -1,0 +1,308 @@
+//! One step of a collocation method, for eight trajectories: a lane is a trajectory, and a block of registers is a stage.
+//!
+//! The one idea: every lane does the operations that [`step`](super::step) does for one trajectory, in their order, and what
+//! has converged stands still under a mask while the others go on, so a copy has the bits that it has alone. Stages go through
+//! the code four at a time, which share what is interpreted.
+
+use super::Table;
+use super::step::{Changes, FADING, LEAST_SCALE, MOST_ITERATIONS};
+use crate::expressions::execute::{self, Part, Scalar};
+use crate::expressions::machine::Blocks;
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::numerics::real::Mask;
+use crate::ode::state::State;
+use crate::ode::system::Form;
+use crate::tiered;
+
+/// Stages that go through the code at once.
+pub(super) const AT_ONCE: usize = 4;
+
+/// A number at all stages.
+pub(super) type Row = [Lanes; WIDTH];
+
+/// A number at all stages, where it is nothing.
+pub(super) const NOTHING: Row = [Lanes([0.0; WIDTH]); WIDTH];
+
+/// What the stages of eight steps hold.
+#[derive(Clone, Debug)]
+pub(super) struct Columns {
+    /// Right-hand sides (accelerations, of the second order).
+    pub(super) rates: Vec<Row>,
+    /// Where they began.
+    pub(super) guess: Vec<Row>,
+    /// The numbers that are iterated (velocities, of the second order), and the coordinates of the second order.
+    numbers: Vec<Row>,
+    places: Vec<Row>,
+    /// What a number is measured by, inverted.
+    pub(super) scales: Vec<Lanes>,
+    /// How large numbers were and how far they went, lately.
+    pub(super) sizes: Vec<Lanes>,
+}
+
+impl Columns {
+    pub(super) fn new(evaluated: usize) -> Self {
+        let (rows, row) = (vec![NOTHING; evaluated], vec![Lanes([0.0; WIDTH]); evaluated]);
+        Self {
+            rates: rows.clone(),
+            guess: rows.clone(),
+            numbers: rows.clone(),
+            places: rows,
+            scales: row.clone(),
+            sizes: row,
+        }
+    }
+}
+
+/// What came of an iteration.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Settled {
+    pub(super) converged: Bits,
+    pub(super) evaluations: [u32; WIDTH],
+}
+
+/// Steps on their way.
+pub(super) struct Work<'a> {
+    pub(super) table: &'static Table,
+    pub(super) form: Form,
+    pub(super) machine: &'a mut Blocks<AT_ONCE>,
+    pub(super) state: &'a State<Lanes>,
+    pub(super) columns: &'a mut Columns,
+    /// Their beginnings, as the system counts time, and their lengths.
+    pub(super) t: Lanes,
+    pub(super) h: Lanes,
+    /// The lanes that take one.
+    pub(super) running: Bits,
+}
+
+impl Table {
+    /// The stages, and with fewer than lanes the start of the step, which one trajectory has in all lanes that are left.
+    fn columns(&self) -> usize {
+        if self.stages < WIDTH { self.stages + 1 } else { WIDTH }
+    }
+}
+
+/// Σ over the stages `j` of `weight · values[j]`, in the order of [`combined`](super::step::combined). A macro and no function of
+/// a closure, which would be compiled without the tier's instructions.
+macro_rules! combined {
+    ($columns:expr, $values:expr, $j:ident => $weight:expr) => {{
+        let (half, columns) = (WIDTH / 2, $columns);
+        let (mut even, mut odd) = (V::zero(), V::zero());
+        for $j in 0..columns.min(half) {
+            even = V::load($values[$j]).multiply_add($weight, even);
+        }
+        for $j in half..columns {
+            odd = V::load($values[$j]).multiply_add($weight, odd);
+        }
+        even + odd
+    }};
+}
+
+/// The larger of two numbers that are none below zero; a NaN counts as infinite.
+#[inline(always)]
+fn larger<V: Vector8>(x: V, most: V) -> V {
+    let number = V::select(x.less_equal(x), x, V::splat(f64::INFINITY));
+    V::select(x.less_equal(most), most, number)
+}
+
+/// Sets what changes are measured by, in the lanes that run.
+#[inline(always)]
+fn set_scales<V: Vector8>(columns: &mut Columns, count: usize, y: &[Lanes], h: V, running: Bits) {
+    let mut most = V::zero();
+    for ((size, rates), y) in columns.sizes.iter_mut().zip(&columns.rates).zip(y) {
+        let mut largest = V::zero();
+        for &rate in &rates[..count] {
+            largest = larger(V::load(rate).abs(), largest);
+        }
+        let now = V::load(*y).abs() + (h * largest).abs();
+        let before = V::load(*size);
+        let after = now.max(V::splat(FADING) * before);
+        *size = V::select(running, after, before).store();
+        most = after.max(most);
+    }
+    let least = V::splat(LEAST_SCALE) * most;
+    for (scale, &size) in columns.scales.iter_mut().zip(&columns.sizes) {
+        let size = V::load(size).max(least);
+        *scale = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
+    }
+}
+
+/// Iterates the stages from `columns.rates` on until nothing changes in any lane.
+#[inline(always)]
+fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
+    let Work { table, form, machine, state, columns, t, h, running } = work;
+    let (code, registers) = machine.parts();
+    let (variables, outputs, count) = (code.variables(), code.output_registers(), table.columns());
+    let evaluated = form.evaluated();
+    let second_order = matches!(form, Form::SecondOrder(_));
+    let (y, rest) = state.all();
+    let (h, t) = (V::load(*h), V::load(*t));
+    let h2 = h * h;
+    let mut settled = Settled { converged: Bits::splat(false), evaluations: [MOST_ITERATIONS; WIDTH] };
+    let mut changes = [Changes::default(); WIDTH];
+    let mut active = *running;
+    for iteration in 0..MOST_ITERATIONS {
+        let mut most = V::zero();
+        for k in 0..count {
+            let mut change = V::zero();
+            let c = V::splat(table.c.0[k]);
+            let passed = c * h;
+            let passed_rest = V::splat(table.c_rest.0[k]).multiply_add(h, c.multiply_add(h, -passed));
+            for i in 0..evaluated {
+                let from = if second_order { evaluated + i } else { i };
+                let (row, y_from) = (&columns.rates[i], V::load(y[from]));
+                let sum = combined!(count, row, j => V::splat(table.a[j].0[k]));
+                let number = sum.multiply_add(h, V::load(rest[from])) + y_from;
+                let before = V::load(columns.numbers[i][k]);
+                change = change.max((number - before).abs() * V::load(columns.scales[i]));
+                columns.numbers[i][k] = number.store();
+                if second_order {
+                    let left_out = passed_rest.multiply_add(y_from, V::load(rest[i]));
+                    let drift = passed.multiply_add(y_from, left_out);
+                    let sum = combined!(count, row, j => V::splat(table.a2[j].0[k]));
+                    columns.places[i][k] = (sum.multiply_add(h2, drift) + V::load(y[i])).store();
+                }
+            }
+            most = larger(change, most);
+        }
+        let most = most.store();
+        let open = active;
+        for lane in (0..WIDTH).filter(|&lane| open.lane(lane)) {
+            if let Some(converged) = changes[lane].judged(iteration, most.0[lane]) {
+                let lane_alone = Bits(1 << lane);
+                settled.evaluations[lane] = iteration;
+                active = active.and(lane_alone.not());
+                settled.converged =
+                    if converged { settled.converged.or(lane_alone) } else { settled.converged };
+            }
+        }
+        if !active.any() {
+            break;
+        }
+        for first in (0..count).step_by(AT_ONCE) {
+            // What begins is the same in every iteration, and has no weight.
+            if iteration > 0 && first >= table.stages {
+                break;
+            }
+            for block in 0..AT_ONCE {
+                let k = (first + block).min(count - 1);
+                registers[variables * AT_ONCE + block] = (V::splat(table.c.0[k]) * h + t).store();
+                for i in 0..evaluated {
+                    let from = if second_order { evaluated + i } else { i };
+                    registers[from * AT_ONCE + block] = columns.numbers[i][k];
+                    if second_order {
+                        registers[i * AT_ONCE + block] = columns.places[i][k];
+                    }
+                }
+            }
+            execute::execute::<V, AT_ONCE>(code, Part::Body, V::view_mut(registers));
+            for (row, &output) in columns.rates.iter_mut().zip(outputs) {
+                for block in 0..AT_ONCE.min(count - first) {
+                    let found = V::load(registers[usize::from(output) * AT_ONCE + block]);
+                    let rate = &mut row[first + block];
+                    *rate = V::select(active, found, V::load(*rate)).store();
+                }
+            }
+        }
+        if iteration == 0 {
+            let y = if second_order { &y[evaluated..] } else { y };
+            set_scales(columns, count, y, h, *running);
+        }
+    }
+    settled
+}
+
+/// The weighted sum of the stages, in the order of [`Lanes::horizontal_sum`].
+#[inline(always)]
+fn weighted<V: Vector8>(weights: &[Lanes; 2], row: &Row, last: usize) -> V {
+    let mut terms = [V::zero(); WIDTH];
+    for (j, term) in terms.iter_mut().enumerate() {
+        let rate = V::load(row[j.min(last)]);
+        *term = V::splat(weights[0].0[j]).multiply_add(rate, V::splat(weights[1].0[j]) * rate);
+    }
+    let [a, b, c, d, e, f, g, h] = terms;
+    ((a + e) + (c + g)) + ((b + f) + (d + h))
+}
+
+/// Writes the states at the end of the steps.
+#[inline(always)]
+fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<Lanes>) {
+    let Work { table, form, state, columns, h, .. } = work;
+    let (evaluated, last) = (form.evaluated(), table.columns() - 1);
+    let (y, rest) = state.all();
+    let (next, next_rest) = next.all_mut();
+    let h = V::load(*h);
+    let mut put = |index: usize, change: V| {
+        let y = V::load(y[index]);
+        let sum = y + change;
+        let moved = sum - y;
+        next_rest[index] = ((y - (sum - moved)) + (change - moved)).store();
+        next[index] = sum.store();
+    };
+    for i in 0..evaluated {
+        let row = &columns.rates[i];
+        match form {
+            Form::FirstOrder(_) => {
+                put(i, weighted::<V>(&table.b, row, last).multiply_add(h, V::load(rest[i])))
+            }
+            Form::SecondOrder(_) => {
+                let v = evaluated + i;
+                let (y, rest_v) = (V::load(y[v]), V::load(rest[v]));
+                put(v, weighted::<V>(&table.b, row, last).multiply_add(h, rest_v));
+                let drift = y * h;
+                let lost = y.multiply_add(h, -drift);
+                let rest_q = rest_v.multiply_add(h, V::load(rest[i]) + lost);
+                let (h2, moved) = (h * h, weighted::<V>(&table.b2, row, last));
+                let small = moved.multiply_add(h.multiply_add(h, -h2), rest_q);
+                put(i, drift + moved.multiply_add(h2, small));
+            }
+        }
+    }
+}
+
+/// Where the polynomial through the stages leads, to the stages of the next steps.
+#[inline(always)]
+fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) {
+    for (to, row) in to.iter_mut().zip(rates) {
+        for place in 0..stages {
+            to[place] = combined!(stages, row, j => V::splat(weights[j].0[place])).store();
+        }
+    }
+}
+
+/// Where the polynomial through the stages leads, to these fractions of the step, in the lanes of the mask.
+#[inline(always)]
+fn led_to_body<V: Vector8>(table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) {
+    let stages = table.stages;
+    for place in 0..stages {
+        let x = V::load(fractions[place]);
+        let mut weights = [V::zero(); WIDTH];
+        for (k, weight) in weights.iter_mut().enumerate().take(stages) {
+            *weight = V::splat(table.weights.0[k]);
+            for j in (0..stages).filter(|&j| j != k) {
+                *weight = *weight * (x - V::splat(table.c.0[j]));
+            }
+        }
+        for (to, row) in to.iter_mut().zip(rates) {
+            let led = combined!(stages, row, j => weights[j]);
+            to[place] = V::select(lanes, led, V::load(to[place])).store();
+        }
+    }
+}
+
+/// The farthest that the stages are from where they began, in every lane.
+#[inline(always)]
+fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
+    let mut most = V::zero();
+    for (&rate, &guess) in rates.iter().zip(guess).take(stages) {
+        most = larger((V::load(rate) - V::load(guess)).abs(), most);
+    }
+    most.store()
+}
+
+tiered! {
+    pub(super) fn iterate[][](work: &mut Work<'_>) -> Settled = iterate_body;
+    pub(super) fn advance[][](work: &Work<'_>, next: &mut State<Lanes>) -> () = advance_body;
+    pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
+    pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
+    pub(super) fn astray[][](rates: &Row, guess: &Row, stages: usize) -> Lanes = astray_body;
+}

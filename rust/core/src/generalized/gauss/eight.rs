@@ -1,0 +1,263 @@
+//! Gauss's methods as trials of eight trajectories, each with steps of its own.
+//!
+//! The one idea: a lane that starts, is refused or ends is a bit of a mask; whatever is decided of its step, its own [`Pace`]
+//! decides, as it does for one trajectory ([`trial`](super::trial)).
+
+use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
+use super::columns::{advance, astray, iterate, led, led_to};
+use super::pace::{Pace, Steps, first_step};
+use super::trial::{NO_SHADOW, no_convergence};
+use super::{Method, Table};
+use crate::error::Result;
+use crate::expressions::Code;
+use crate::expressions::machine::Blocks;
+use crate::generalized::abreast::SideBySide;
+use crate::numerics::lanes::{Bits, Lanes, WIDTH};
+use crate::numerics::real::{Mask, Real};
+use crate::ode::norm::Norm;
+use crate::ode::state::State;
+use crate::ode::step_control::{Clock, Controlled, Rule, Settled};
+use crate::ode::system::{Form, System};
+use crate::ode::trial::{Cost, Trial};
+use crate::parallel::Ticker;
+use std::sync::Arc;
+
+/// A collocation method at work on eight trajectories.
+pub struct GaussEight {
+    table: &'static Table,
+    form: Form,
+    machine: Blocks<AT_ONCE>,
+    columns: Columns,
+    /// Rates of the last kept steps, and their lengths.
+    before: Vec<Row>,
+    length: Lanes,
+    length_tried: Lanes,
+    /// Those of shadow steps.
+    shadow: Columns,
+    next: State<Lanes>,
+    steps: Steps,
+    longest: f64,
+    /// Where the system's time stands at the start.
+    t0: f64,
+    paces: [Pace; WIDTH],
+    /// Evaluations of all stages that nobody was told of.
+    taken: [u64; WIDTH],
+    /// Why lanes cannot go on.
+    lost: [Option<String>; WIDTH],
+}
+
+impl GaussEight {
+    /// At work on states like `state`; the code gives the rates of the first order, the accelerations of the second.
+    pub fn new(
+        method: &'static Method,
+        (code, parameters, form): (Arc<Code>, &[Lanes], Form),
+        state: &State<Lanes>,
+        (steps, longest): (Steps, f64),
+        t0: f64,
+    ) -> Self {
+        let evaluated = form.evaluated();
+        Self {
+            table: method.table,
+            form,
+            machine: Blocks::new(code, parameters),
+            columns: Columns::new(evaluated),
+            before: vec![NOTHING; evaluated],
+            length: Lanes::zero(),
+            length_tried: Lanes::zero(),
+            shadow: Columns::new(evaluated),
+            next: state.clone(),
+            steps,
+            longest,
+            t0,
+            paces: [Pace::default(); WIDTH],
+            taken: [0; WIDTH],
+            lost: [const { None }; WIDTH],
+        }
+    }
+
+    /// Lanes of which something holds.
+    fn lanes(&self, holds: impl Fn(usize, &Pace) -> bool) -> Bits {
+        let lanes = self.paces.iter().enumerate().filter(|(lane, pace)| holds(*lane, pace));
+        lanes.fold(Bits(0), |mask, (lane, _)| mask.or(Bits(1 << lane)))
+    }
+
+    /// Stages that begin where the last steps lead, or at their ends.
+    fn guess(&mut self, h: Lanes, running: Bits) {
+        let first = self.lanes(|_, pace| pace.kept == 0).and(running);
+        let equal = self.lanes(|lane, _| h.0[lane] == self.length.0[lane]);
+        let other = running.and(first.not()).and(equal.not());
+        led(&self.table.ahead, self.table.stages, &self.before, &mut self.columns.guess);
+        if other.any() {
+            let ratio = h / self.length;
+            let fractions = self.table.c.0.map(|c| Lanes::one() + Lanes::splat(c) * ratio);
+            led_to(self.table, &fractions, other, &self.before, &mut self.columns.guess);
+        }
+        if first.any() {
+            for guess in self.columns.guess.iter_mut().flatten() {
+                *guess = Lanes::select(first, Lanes::zero(), *guess);
+            }
+        }
+        self.columns.rates.copy_from_slice(&self.columns.guess);
+    }
+
+    /// How far the polynomials of the steps before lead astray; in a first step, how much its last term adds.
+    fn smoothness(&self, h: Lanes, running: Bits) -> Lanes {
+        let mut most = Lanes::zero();
+        let Columns { rates, guess, scales, .. } = &self.columns;
+        for ((rates, guess), &scale) in rates.iter().zip(guess).zip(scales) {
+            let mut away = astray(rates, guess, self.table.stages);
+            for (lane, pace) in self.paces.iter().enumerate() {
+                if running.lane(lane) && pace.kept == 0 {
+                    away.0[lane] = self.table.leading(|k| rates[k].0[lane]);
+                }
+            }
+            most = (away * h.abs() * scale).max(most);
+        }
+        most
+    }
+
+    fn count(&mut self, iterated: &Iterated, lanes: Bits) {
+        for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
+            self.taken[lane] += u64::from(iterated.evaluations[lane]);
+        }
+    }
+}
+
+impl SideBySide for GaussEight {
+    fn set_parameters(&mut self, parameters: &[Lanes]) {
+        self.machine.set_parameters(parameters);
+    }
+
+    fn taken(&mut self, lane: usize) -> u64 {
+        core::mem::take(&mut self.taken[lane])
+    }
+
+    fn lost(&mut self, lane: usize) -> Option<String> {
+        self.lost[lane].take()
+    }
+}
+
+impl Trial<Lanes> for GaussEight {
+    fn start(
+        &mut self,
+        fresh: Bits,
+        _: &mut dyn System<Lanes>,
+        state: &State<Lanes>,
+        clock: &mut Clock<Lanes>,
+        _: &Norm<Lanes>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        for size in self.columns.sizes.iter_mut().chain(&mut self.shadow.sizes) {
+            *size = Lanes::select(fresh, Lanes::zero(), *size);
+        }
+        if matches!(self.steps, Steps::Chosen { .. }) {
+            self.machine.run(Lanes::splat(self.t0) + clock.elapsed, state.all().0);
+        }
+        for lane in (0..WIDTH).filter(|&lane| fresh.lane(lane)) {
+            self.paces[lane] = Pace::default();
+            (self.taken[lane], self.lost[lane]) = (0, None);
+            let span = clock.end.0[lane] - clock.elapsed.0[lane];
+            clock.h.0[lane] = match self.steps {
+                Steps::Equal(h) => h.copysign(span),
+                Steps::Chosen { .. } => {
+                    self.taken[lane] = 1;
+                    let y = |i: usize| state.all().0[i].0[lane];
+                    let rate = |i: usize| self.machine.output(i).0[lane];
+                    first_step(self.form, (y, rate), (span, self.longest))
+                }
+            };
+        }
+        Ok(())
+    }
+
+    fn attempt(
+        &mut self,
+        running: Bits,
+        _: &mut dyn System<Lanes>,
+        state: &State<Lanes>,
+        clock: &mut Clock<Lanes>,
+        _: &Norm<Lanes>,
+        _: &mut Ticker<'_>,
+    ) -> Result<Settled<Lanes>> {
+        let h = Lanes::next_step(clock, running);
+        let planned = clock.h;
+        self.guess(h, running);
+        let t = Lanes::splat(self.t0) + clock.elapsed;
+        let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.columns);
+        let mut work = Work { table, form, machine, state, columns, t, h, running };
+        let iterated = iterate(&mut work);
+        advance(&work, &mut self.next);
+        self.count(&iterated, running);
+        let smoothness = self.smoothness(h, running);
+        let mut errors = Lanes::zero();
+        for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
+            let (pace, converged) = (&mut self.paces[lane], iterated.converged.lane(lane));
+            pace.converged = converged;
+            pace.delta = if converged { smoothness.0[lane] } else { f64::INFINITY };
+            if pace.refuses(self.steps) {
+                errors.0[lane] = 4.0;
+                if matches!(self.steps, Steps::Equal(_)) {
+                    self.lost[lane] = Some(no_convergence(h.0[lane]));
+                }
+            }
+        }
+        let outcome = Lanes::settle(clock, running, errors, &Rule::new(1, Lanes::splat(f64::INFINITY)));
+        self.length_tried = h;
+        for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
+            let (pace, h) = (&mut self.paces[lane], h.0[lane]);
+            clock.h.0[lane] = if errors.0[lane] > 0.0 {
+                pace.instead_of(h, self.steps, self.table)
+            } else if outcome.finished.lane(lane) {
+                planned.0[lane]
+            } else {
+                pace.after(h, (self.steps, self.longest), self.table)
+            };
+        }
+        Ok(outcome)
+    }
+
+    fn next(&self) -> &State<Lanes> {
+        &self.next
+    }
+
+    /// Of lanes whose fraction is zero nothing is asked.
+    fn at(
+        &mut self,
+        outcome: &Settled<Lanes>,
+        _: &mut dyn System<Lanes>,
+        state: &State<Lanes>,
+        theta: Lanes,
+        into: &mut State<Lanes>,
+        _: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let asked = Lanes::zero().less(theta);
+        let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
+        led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.rates);
+        let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.shadow);
+        let (t, h) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta);
+        let mut work = Work { table, form, machine, state, columns, t, h, running: asked };
+        let iterated = iterate(&mut work);
+        advance(&work, into);
+        self.count(&iterated, asked);
+        for lane in (0..WIDTH).filter(|&lane| asked.and(iterated.converged.not()).lane(lane)) {
+            self.lost[lane] = Some(NO_SHADOW.to_owned());
+        }
+        Ok(())
+    }
+
+    fn keep(&mut self, accepted: Bits, state: &mut State<Lanes>) {
+        state.take_over(&self.next, accepted);
+        for (before, rate) in self.before.iter_mut().flatten().zip(self.columns.rates.iter().flatten()) {
+            *before = Lanes::select(accepted, *rate, *before);
+        }
+        self.length = Lanes::select(accepted, self.length_tried, self.length);
+        for (lane, pace) in self.paces.iter_mut().enumerate() {
+            pace.kept += u64::from(accepted.lane(lane));
+        }
+    }
+
+    fn cost(&self) -> Cost {
+        // What stages take is told by their own count.
+        Cost::default()
+    }
+}

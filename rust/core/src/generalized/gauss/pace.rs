@@ -1,0 +1,131 @@
+//! How long the steps of a collocation method are.
+//!
+//! The one idea: δ, how far the polynomial of a step leads astray in the next one, goes with the ninth power of the step (of
+//! order 16) while the error goes with the seventeenth, so a δ far above the tolerance means a step as good as exact. Where
+//! energy is conserved, the step that the first few agree on is held, since equal steps are what keeps energies; it is given
+//! up where δ leaves a wide band. One trajectory alone and each of eight side by side have a pace of their own.
+
+use super::Table;
+use crate::numerics::elementary::{self, Exponential};
+use crate::numerics::real::Real;
+use crate::ode::system::Form;
+
+/// A step is taken again when δ is this many times what it should be.
+const BAND: f64 = 30.0;
+/// Steps change where they would change by more than from here …
+const SHORTER: f64 = 0.85;
+/// … to here.
+const LONGER: f64 = 1.2;
+/// Steps after which one is held, where energy is conserved.
+const STEPS_BEFORE_HOLDING: u64 = 10;
+/// The first step, as a fraction of the time in which numbers change by as much as they are.
+const FIRST: f64 = 0.05;
+
+/// How steps are chosen.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Steps {
+    /// All alike.
+    Equal(f64),
+    /// So that δ is about this; held after the first ones, or not.
+    Chosen {
+        /// What δ is to be.
+        delta: f64,
+        /// Whether a step is held.
+        held: bool,
+    },
+}
+
+/// Where the steps of a trajectory stand.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Pace {
+    /// Steps that were kept.
+    pub(super) kept: u64,
+    /// δ of the step that was tried; infinite where its stages did not converge.
+    pub(super) delta: f64,
+    /// Whether they did.
+    pub(super) converged: bool,
+    /// Whether steps are held.
+    holding: bool,
+}
+
+impl Pace {
+    /// Whether the step that was tried is taken again.
+    pub(super) fn refuses(&self, steps: Steps) -> bool {
+        match steps {
+            Steps::Equal(_) => !self.converged,
+            Steps::Chosen { delta, .. } => !self.converged || self.delta > BAND * delta,
+        }
+    }
+
+    /// What the next step is multiplied with to bring δ to what it should be.
+    fn factor(&self, target: f64, table: &Table) -> f64 {
+        if self.delta <= 0.0 {
+            return f64::INFINITY;
+        }
+        let order = (table.stages + 1) as f64;
+        Exponential::exp(elementary::ln(target / self.delta) / order)
+    }
+
+    /// The next step after one of length `h` that is kept.
+    pub(super) fn after(&mut self, h: f64, (steps, longest): (Steps, f64), table: &Table) -> f64 {
+        let Steps::Chosen { delta: target, held } = steps else { return h };
+        self.holding &= self.delta <= BAND * target;
+        if self.holding {
+            return h;
+        }
+        let factor = self.factor(target, table);
+        let fast = if self.kept < 4 { 4.0 } else { 1.5 };
+        let next = if (SHORTER..=LONGER).contains(&factor) {
+            h
+        } else {
+            h * Real::min(Real::max(factor, 0.3), fast)
+        };
+        self.holding = held && self.kept == STEPS_BEFORE_HOLDING;
+        if next.abs() > longest { longest.copysign(next) } else { next }
+    }
+
+    /// The step to be tried in the place of one of length `h` that is not kept.
+    pub(super) fn instead_of(&mut self, h: f64, steps: Steps, table: &Table) -> f64 {
+        self.holding = false;
+        match steps {
+            Steps::Chosen { delta, .. } if self.converged => h * Real::max(self.factor(delta, table), 0.2),
+            _ => h * 0.4,
+        }
+    }
+}
+
+/// The first step over a span, of a state and its rates (its accelerations, of the second order).
+pub(super) fn first_step(
+    form: Form,
+    (y, rate): (impl Fn(usize) -> f64, impl Fn(usize) -> f64),
+    (span, longest): (f64, f64),
+) -> f64 {
+    let evaluated = form.evaluated();
+    let mut least = f64::INFINITY;
+    for i in 0..evaluated {
+        let rate = rate(i).abs();
+        let time = match form {
+            Form::FirstOrder(_) => y(i).abs() / rate,
+            // Of a motion from rest and of one under way.
+            Form::SecondOrder(_) => {
+                let (rest, way) = ((y(i).abs() / rate).sqrt(), y(evaluated + i).abs() / rate);
+                if rest > way { rest } else { way }
+            }
+        };
+        if time > 0.0 && time < least {
+            least = time;
+        }
+    }
+    let first = Real::min(Real::min(FIRST * least, span.abs()), longest);
+    (if first > 0.0 { first } else { Real::min(1e-3, span.abs()) }).copysign(span)
+}
+
+impl Table {
+    /// The leading term of the polynomial through the stages, at the farthest stage of a next step.
+    pub(super) fn leading(&self, rates: impl Fn(usize) -> f64) -> f64 {
+        let leading: f64 = (0..self.stages).map(|k| self.weights.0[k] * rates(k)).sum();
+        let farthest = 1.0 + self.c.0[self.stages - 1];
+        let product: f64 = (0..self.stages - 1).map(|k| farthest - self.c.0[k]).product();
+        (leading * product).abs()
+    }
+}
