@@ -172,6 +172,7 @@ def monte_carlo(
             NDArray[np.uint64],
             int,
             tuple[NDArray[np.float64], tuple[float, float]] | None,
+            NDArray[np.uint64] | None,
         ]
     ],
 ]: ...
@@ -229,6 +230,8 @@ def monte_carlo_expected(
     beam: dict[str, Any],
     tallies: list[list[tuple[str, int | tuple[str, int, float | None, float | None] | NDArray[np.float64]]]],
 ) -> list[NDArray[np.float64]]: ...
+def strata_weights(edges: list[float], fractions: list[float]) -> list[float]: ...
+def strata_edges(strata: int, smallest: float, b_max: float) -> list[float]: ...
 def scattering_events(
     *,
     beam: dict[str, Any],

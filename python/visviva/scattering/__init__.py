@@ -31,6 +31,7 @@ from visviva.scattering._events import scattering_events
 from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
+from visviva.scattering._importance import LargeAngles, Strata
 from visviva.scattering._kinematics import (
     cm_angle,
     cm_angle_from_recoil,
@@ -65,6 +66,7 @@ __all__ = [
     "Glory",
     "Ion",
     "JointTally",
+    "LargeAngles",
     "Material",
     "Moderation",
     "MonteCarlo",
@@ -72,6 +74,7 @@ __all__ = [
     "Rainbow",
     "Spectrum",
     "Spread",
+    "Strata",
     "Tally",
     "capture_cross_section",
     "cm_angle",

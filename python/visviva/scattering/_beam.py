@@ -11,6 +11,7 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from visviva.potentials import Potential
+    from visviva.scattering._importance import Strata
 
 __all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
 
@@ -175,6 +176,8 @@ class Beam:
         Of the energies about each one given, and of the directions about the axis.
     spot : float or None
         Standard deviation of the places, in each of two dimensions; None where the disc is filled evenly.
+    importance : Strata or None
+        Rings of impact parameters with parts of the events of their own; None where events fill the disc evenly.
     """
 
     potential: Potential
@@ -186,11 +189,12 @@ class Beam:
     energy_spread: Spread | None = None
     divergence: Spread | None = None
     spot: float | None = None
+    importance: Strata | None = None
 
 
 def described(beam: Beam) -> dict[str, Any]:
     """A beam in the words of the core."""
-    energy = beam.beam_energy
+    energy, strata = beam.beam_energy, beam.importance
     lines = (energy.energy, energy.weight) if isinstance(energy, Spectrum) else ((energy,), (1.0,))
     return {
         "potential": beam.potential._to_core(),
@@ -201,6 +205,7 @@ def described(beam: Beam) -> dict[str, Any]:
         "energy_spread": _pair(beam.energy_spread),
         "divergence": _pair(beam.divergence),
         "spot": beam.spot,
+        "importance": None if strata is None else (list(strata.edges), list(strata.fractions)),
     }
 
 

@@ -82,10 +82,13 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     expected = tally.expected() * scale if known else np.full(scale.shape, np.nan)
     # Where nothing can come the interval of no count would say that something might.
     shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)
-    low, high = (np.append(end * shown, np.nan) for end in poisson_interval(tally.counts))
-    axes.fill_between(
-        edges, low, high, step="post", alpha=0.35, linewidth=0.0, color=BLUE, label="central 68 % of Poisson"
-    )
+    if tally.by_stratum is None:
+        ends, band = poisson_interval(tally.counts), "central 68 % of Poisson"
+    else:
+        error = np.sqrt(tally.variances())
+        ends, band = (tally.values() - error, tally.values() + error), "one standard deviation"
+    low, high = (np.append(end * shown, np.nan) for end in ends)
+    axes.fill_between(edges, low, high, step="post", alpha=0.35, linewidth=0.0, color=BLUE, label=band)
     axes.stairs(tally.values() * scale, edges, linewidth=1.0, color=BLUE, label=f"{tally.n_events} events")
     if known:
         axes.stairs(expected, edges, linewidth=1.0, color=VERMILION, linestyle="--", label="theory")

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva._progress import Progress, Report
+    from visviva.scattering._importance import LargeAngles, Strata
 
 __all__ = ["scattering_events"]
 
@@ -39,13 +40,14 @@ def scattering_events(
     energy_spread: float | Spread | None = None,
     divergence: float | Spread | None = None,
     spot: float | None = None,
+    importance: Strata | LargeAngles | None = None,
     to: str | PathLike[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """The very events that `monte_carlo` counts, one by one.
 
     Parameters
     ----------
-    potential, beam_energy, masses, b_max, seed, threads, progress, energy_spread, divergence, spot
+    potential, beam_energy, masses, b_max, seed, threads, progress, energy_spread, divergence, spot, importance
         As of `monte_carlo`.
     n_events, first_event : int
         Which events.
@@ -59,7 +61,8 @@ def scattering_events(
         Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
         ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
         folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
-        ``"impact_parameter"``. Empty with `to`: the columns are those of the file.
+        ``"impact_parameter"``. With `importance` also ``"weight"``: how many events of the run without one stands for.
+        Empty with `to`: the columns are those of the file.
 
     Raises
     ------
@@ -79,7 +82,7 @@ def scattering_events(
     """
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance)
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
@@ -91,7 +94,7 @@ def scattering_events(
 
 
 _QUANTITIES = (
-    *("beam_energy", "incidence", "deflection"),
+    *("weight", "beam_energy", "incidence", "deflection"),
     *("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"),
 )
 # Events written at a time: 24 MB, and a table is built again for each.
@@ -101,6 +104,8 @@ _GROUP = 1 << 18
 def _columns(request: dict[str, Any], first: int, count: int, report: Report | None) -> dict[str, NDArray[Any]]:
     component, values = _core.scattering_events(**request, n_events=count, first_event=first, progress=report)
     columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
+    if request["beam"]["importance"] is None:
+        del columns["weight"]
     return {"event": np.arange(first, first + count, dtype=np.uint64), "component": component, **columns}
 
 

@@ -15,6 +15,7 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
+from visviva.scattering._importance import LargeAngles, Strata, resolved
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._spread import spread
 from visviva.scattering._tally import JointTally, Tally
@@ -48,6 +49,7 @@ def monte_carlo(
     energy_spread: float | Spread | None = None,
     divergence: float | Spread | None = None,
     spot: float | None = None,
+    importance: Strata | LargeAngles | None = None,
 ) -> MonteCarlo:
     """Scatter a beam off one centre and count every event.
 
@@ -110,6 +112,11 @@ def monte_carlo(
         Standard deviation, in each of two dimensions, of the places at which projectiles come, about the centre and cut
         at ``b_max``; by default the disc is filled evenly (of another radius: that is ``b_max``). There is no cross
         section of a beam that does not fill the disc evenly.
+    importance : Strata or LargeAngles, optional
+        Where events are wanted: rings of impact parameters with parts of the events of their own (`Strata`), or a part
+        of them for all that is deflected by more than some angle (`LargeAngles`). Draw number 0 is mapped to b² ring by
+        ring. Counts are whole numbers as ever, kept ring by ring; ``values()``, ``variances()`` and cross sections
+        weight them, so that their means are those of the run without. Not beside `spot`.
 
     Returns
     -------
@@ -142,7 +149,7 @@ def monte_carlo(
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
     asked = asked_for(tally, bins)
-    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot)
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
 
 
@@ -154,8 +161,9 @@ def _beam(
     energy_spread: object,
     divergence: object,
     spot: object,
+    importance: object,
 ) -> Beam:
-    return Beam(
+    beam = Beam(
         potential,
         _energy(beam_energy),
         _pair(masses),
@@ -165,6 +173,7 @@ def _beam(
         divergence=as_spread("divergence", divergence),
         spot=None if spot is None else positive("spot", spot),
     )
+    return replace(beam, importance=resolved(importance, beam))
 
 
 def again(result: MonteCarlo, n_events: int, threads: int | None, progress: Progress, executor: Any) -> MonteCarlo:
@@ -227,9 +236,10 @@ def _run(
 
 
 def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:
-    names, edges, flow, captured, single = column
+    names, edges, flow, captured, single, by_stratum = column
     if single is None:
-        return JointTally(tuple(names), tuple(edges), flow, captured, beam, events)
+        return JointTally(tuple(names), tuple(edges), flow, captured, beam, events, by_stratum)
     reachable, covered = single
     under, over = int(flow[0]), int(flow[-1])
-    return Tally(names[0], edges[0], flow[1:-1].copy(), under, over, reachable, covered, beam, events, captured)
+    counts = flow[1:-1].copy()
+    return Tally(names[0], edges[0], counts, under, over, reachable, covered, beam, events, captured, by_stratum)

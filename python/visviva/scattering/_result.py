@@ -14,6 +14,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
+from visviva.scattering._importance import Strata
 from visviva.scattering._tally import JointTally, OfEvents, Tally, is_zero
 
 if TYPE_CHECKING:
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MonteCarlo"]
 
-# Version 2 knows beams that differ in energy, direction and place.
-_FORMAT, _VERSION = "visviva scattering", 2
+# Version 2 knows beams that differ in energy, direction and place, version 3 strata.
+_FORMAT, _VERSION = "visviva scattering", 3
 
 
 @known_keywords
@@ -193,6 +194,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             "energy_spread": beam.energy_spread and [beam.energy_spread.shape, beam.energy_spread.width],
             "divergence": beam.divergence and [beam.divergence.shape, beam.divergence.width],
             "spot": beam.spot,
+            "importance": beam.importance and [beam.importance.edges, beam.importance.fractions],
             "smallest_angle": beam.smallest_angle,
             "tables": beam.tables,
             "events": self.events,
@@ -205,6 +207,8 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             else:
                 arrays[f"{index}/flow"] = tally.flow
                 arrays |= {f"{index}/edges{axis}": edges for axis, edges in enumerate(tally.edges)}
+            if tally.by_stratum is not None:
+                arrays[f"{index}/by_stratum"] = tally.by_stratum
         text = json.dumps(header, default=lambda value: value.tolist()).encode()
         with open(path, "wb") as file:
             np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
@@ -261,7 +265,7 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
     header = json.loads(arrays["header"].tobytes())
     if header["format"] != _FORMAT or header["version"] > _VERSION:
         raise ValueError(f"it holds a {header['format']!r} of version {header['version']}")
-    lines = header["spectrum"]
+    lines, strata = header["spectrum"], header.get("importance")
     beam = Beam(
         potential_from_core(header["potential"]),
         header["beam_energy"] if lines is None else Spectrum(*lines),
@@ -272,27 +276,32 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
         _spread(header.get("energy_spread")),
         _spread(header.get("divergence")),
         header.get("spot"),
+        None if strata is None else Strata(*strata),
     )
     events = tuple((seed, first, end) for seed, first, end in header["events"])
     tallies: list[Tally | JointTally] = []
     tally: Tally | JointTally
     for index, told in enumerate(header["tallies"]):
+        by_stratum = None if strata is None else arrays[f"{index}/by_stratum"]
         if isinstance(told["name"], str):
             edges, counts, reachable = (arrays[f"{index}/{name}"] for name in ("edges", "counts", "reachable"))
             covered = (told["covered"][0], told["covered"][1])
             flows = (told["underflow"], told["overflow"])
-            tally = Tally(told["name"], edges, counts, *flows, reachable, covered, beam, events, told["captured"])
-            total = int(counts.sum()) + sum(flows) + tally.captured
+            captured = told["captured"]
+            tally = Tally(told["name"], edges, counts, *flows, reachable, covered, beam, events, captured, by_stratum)
+            slots = np.concatenate([[flows[0]], counts, [flows[1], captured]])
             if len(edges) != len(counts) + 1 or len(reachable) != len(counts):
                 raise ValueError("its edges and counts do not fit")
         else:
             several = tuple(arrays[f"{index}/edges{axis}"] for axis in range(len(told["name"])))
             flow = arrays[f"{index}/flow"]
-            tally = JointTally(tuple(told["name"]), several, flow, told["captured"], beam, events)
-            total = int(flow.sum()) + tally.captured
+            tally = JointTally(tuple(told["name"]), several, flow, told["captured"], beam, events, by_stratum)
+            slots = np.append(flow, told["captured"])
             if flow.shape != tuple(len(edges) + 1 for edges in several):
                 raise ValueError("its edges and counts do not fit")
-        if total != tally.n_events:
+        if by_stratum is not None and (by_stratum.sum(0) != slots).any():
+            raise ValueError("its counts and those of its strata do not fit")
+        if (total := sum(slots.tolist())) != tally.n_events:
             raise ValueError(f"its counts are those of {total} events, not of {tally.n_events}")
         tallies.append(tally)
     return MonteCarlo(beam, events, tuple(tallies))

@@ -13,6 +13,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, described
 from visviva.scattering._counts import plot_tally, poisson_interval
+from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -52,8 +53,8 @@ class OfEvents:
 
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
-        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "tables")
-        for name in names:
+        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "importance")
+        for name in (*names, "tables"):
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
@@ -93,6 +94,8 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         Events in all: the sum of ``counts``, ``underflow``, ``overflow`` and ``captured``.
     b_max : float
         Radius of the disc of impact parameters.
+    by_stratum : ndarray of uint64, shape (S, B + 3), or None
+        With `importance` the events of each stratum: below the first edge, in the bins, above the last, and captured.
     """
 
     name: str
@@ -105,23 +108,25 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     beam: Beam
     events: tuple[tuple[int, int, int], ...]
     captured: int = 0
+    by_stratum: NDArray[np.uint64] | None = None
 
     def __post_init__(self) -> None:
-        for array in (self.edges, self.counts, self.reachable):
-            array.setflags(write=False)
+        read_only(self.edges, self.counts, self.reachable, self.by_stratum)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
         self.__post_init__()  # a pickle does not keep that arrays are read-only
 
     def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³."""
-        return self.counts.astype(np.float64)
+        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
+        return weighted(self, 1, self.counts, (slice(1, -2),))
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the counts, n·(1 − n/N), binomial: the number N of events is fixed."""
-        counts = self.values()
-        return counts * (1.0 - counts / self.n_events)
+        """Variances of the values, n·(1 − n/N), binomial: the number N of events is fixed.
+
+        With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all weights are 1.
+        """
+        return variances(self.values(), weighted(self, 2, self.counts, (slice(1, -2),)), self.n_events)
 
     def poisson_interval(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The exact central 68.27 % intervals of the means that counts come from.
@@ -131,6 +136,11 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         tuple of ndarray, shape (B,)
             Lower ends μ with P(N ≥ n; μ) = 15.87 %, 0 where nothing was counted; upper ends, P(N ≤ n; μ) = 15.87 %:
             about n ± √n where counts are large, [0, 1.84] where there is none.
+
+        Raises
+        ------
+        InvalidInput
+            With `importance`, of which events differ in weight: see `variances`.
 
         References
         ----------
@@ -146,10 +156,12 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         >>> sorted(low.round(3).tolist()), sorted(high.round(3).tolist())
         ([0.0, 0.173], [1.841, 3.3])
         """
+        if self.by_stratum is not None:
+            raise InvalidInput("importance", "expected events of one weight, got strata; variances() has their errors")
         return poisson_interval(self.counts)
 
     def expected(self) -> NDArray[np.float64]:
-        """Counts that the deflection function leads to on the average: of each bin the area of its impact parameters.
+        """What ``values()`` are on the average, by the deflection function: of each bin the area of its places.
 
         Found from the function by which events are counted (of V = k/r the closed form, of any other potential its
         certified table), all branches and energies together.
@@ -178,8 +190,8 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
 
-        The bands are those of `poisson_interval`, not √n. Where the disc does not reach, the simulation and `expected`
-        lack the same.
+        The bands are those of `poisson_interval`, not √n; with `importance` one standard deviation. Where the disc does
+        not reach, the simulation and `expected` lack the same.
 
         Parameters
         ----------
@@ -244,7 +256,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
     def to_hist(self) -> Any:
-        """As a ``hist.Hist``, what is below and above too.
+        """As a ``hist.Hist``, what is below and above too; with `importance` of ``Weight`` storage, of variance Σ w² n.
 
         Raises
         ------
@@ -252,10 +264,12 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
             Without the package hist.
         """
         flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
-        return _to_hist((self.name,), (self.edges,), flow)
+        return to_hist(self, (self.name,), (self.edges,), flow)
 
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
+
+        With `importance` ``values`` and ``variances``, too.
 
         Returns
         -------
@@ -280,13 +294,13 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         from visviva.scattering._exported import intervals
 
         frame: DataFrame = needed("pandas", "to_pandas").DataFrame(
-            {"counts": self.counts, "reachable": self.reachable}, index=intervals(self.name, self.edges)
+            self._columns(), index=intervals(self.name, self.edges)
         )
         frame.attrs.update(self._about())
         return frame
 
     def to_xarray(self) -> Dataset:
-        """As an ``xarray.Dataset`` of ``counts`` and ``reachable`` over the middles of the bins.
+        """As an ``xarray.Dataset`` of the columns of `to_pandas` over the middles of the bins.
 
         Returns
         -------
@@ -310,7 +324,10 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         """
         from visviva.scattering._exported import dataset
 
-        return dataset({self.name: self.edges}, {"counts": self.counts, "reachable": self.reachable}, self._about())
+        return dataset({self.name: self.edges}, self._columns(), self._about())
+
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return {"counts": self.counts, "reachable": self.reachable, **weighted_columns(self)}
 
     def _about(self) -> dict[str, int]:
         return {name: getattr(self, name) for name in ("underflow", "overflow", "captured", "n_events")}
@@ -320,7 +337,7 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
             return NotImplemented
         numbers = ("name", "underflow", "overflow", "captured", "beam", "events")
         return all(getattr(self, name) == getattr(other, name) for name in numbers) and all(
-            np.array_equal(getattr(self, name), getattr(other, name)) for name in ("edges", "counts")
+            same(getattr(self, name), getattr(other, name)) for name in ("edges", "counts", "by_stratum")
         )
 
     def __add__(self, other: Tally) -> Tally:
@@ -335,19 +352,12 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
             overflow=self.overflow + other.overflow,
             captured=self.captured + other.captured,
             events=self._merged_events(other),
+            by_stratum=added(self.by_stratum, other.by_stratum),
         )
 
     def __radd__(self, other: int) -> Tally:
         """Begin a `sum`."""
         return self if is_zero(other) else NotImplemented
-
-
-def _to_hist(names: tuple[str, ...], edges: tuple[NDArray[np.float64], ...], flow: NDArray[np.uint64]) -> Any:
-    hist = needed("hist", "to_hist")
-    axes = [hist.axis.Variable(values, name=name) for name, values in zip(names, edges, strict=True)]
-    filled = hist.Hist(*axes, storage=hist.storage.Int64())
-    filled.view(flow=True)[...] = flow
-    return filled
 
 
 @known_keywords
@@ -369,6 +379,8 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         What was scattered by what.
     events : tuple
         Which events: sorted (seed, first, end) with end excluded.
+    by_stratum : ndarray of uint64, shape (S, (B₁ + 2)·(B₂ + 2) + 1), or None
+        With `importance` the events of each stratum: those of ``flow``, row by row, and captured.
     """
 
     name: tuple[str, ...]
@@ -377,10 +389,10 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
     captured: int
     beam: Beam
     events: tuple[tuple[int, int, int], ...]
+    by_stratum: NDArray[np.uint64] | None = None
 
     def __post_init__(self) -> None:
-        for array in (*self.edges, self.flow):
-            array.setflags(write=False)
+        read_only(*self.edges, self.flow, self.by_stratum)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -392,13 +404,15 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         return self.flow[1:-1, 1:-1]
 
     def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³."""
-        return self.counts.astype(np.float64)
+        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
+        return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the counts, n·(1 − n/N), binomial."""
-        counts = self.values()
-        return counts * (1.0 - counts / self.n_events)
+        """Variances of the values: as `Tally.variances`."""
+        return variances(self.values(), self._weighted(2), self.n_events)
+
+    def _weighted(self, power: int) -> NDArray[np.float64]:
+        return weighted(self, power, self.flow)[1:-1, 1:-1]
 
     def to_hist(self) -> Any:
         """As a ``hist.Hist`` with both axes, what is below and above too.
@@ -408,10 +422,10 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         ImportError
             Without the package hist.
         """
-        return _to_hist(self.name, self.edges, self.flow)
+        return to_hist(self, self.name, self.edges, self.flow)
 
     def to_pandas(self) -> DataFrame:
-        """As a ``pandas.DataFrame`` of counts: rows are bins of the first quantity, columns of the second.
+        """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
 
         Returns
         -------
@@ -434,7 +448,8 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         from visviva.scattering._exported import intervals
 
         rows, columns = map(intervals, self.name, self.edges)
-        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(self.counts, index=rows, columns=columns)
+        values = self.counts if self.by_stratum is None else self.values()
+        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(values, index=rows, columns=columns)
         frame.attrs.update(captured=self.captured, n_events=self.n_events)
         return frame
 
@@ -444,7 +459,7 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         Returns
         -------
         xarray.Dataset
-            As that of `Tally.to_xarray`, with two axes.
+            As that of `Tally.to_xarray`, with two axes; with `importance` ``values`` and ``variances``, too.
 
         Raises
         ------
@@ -462,7 +477,8 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         from visviva.scattering._exported import dataset
 
         told = {"captured": self.captured, "n_events": self.n_events}
-        return dataset(dict(zip(self.name, self.edges, strict=True)), {"counts": self.counts}, told)
+        columns = {"counts": self.counts, **weighted_columns(self)}
+        return dataset(dict(zip(self.name, self.edges, strict=True)), columns, told)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, JointTally):
@@ -472,6 +488,7 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
             all(getattr(self, name) == getattr(other, name) for name in numbers)
             and all(np.array_equal(a, b) for a, b in zip(self.edges, other.edges, strict=True))
             and np.array_equal(self.flow, other.flow)
+            and same(self.by_stratum, other.by_stratum)
         )
 
     def __add__(self, other: JointTally) -> JointTally:
@@ -484,6 +501,7 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
             flow=self.flow + other.flow,
             captured=self.captured + other.captured,
             events=self._merged_events(other),
+            by_stratum=added(self.by_stratum, other.by_stratum),
         )
 
     def __radd__(self, other: int) -> JointTally:

@@ -91,7 +91,9 @@ mod _core {
     #[pymodule_export]
     use crate::scattering::kinematics::{kinematics, moderation, special_energy};
     #[pymodule_export]
-    use crate::scattering::monte_carlo::{monte_carlo, monte_carlo_expected, scattering_events};
+    use crate::scattering::monte_carlo::{
+        monte_carlo, monte_carlo_expected, scattering_events, strata_edges, strata_weights,
+    };
     #[pymodule_export]
     use crate::scene::{Planned, acceleration, columns, conserved, conserves, plan, run};
     #[pymodule_export]

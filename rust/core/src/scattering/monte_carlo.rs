@@ -17,12 +17,14 @@ mod listed;
 mod mixture;
 mod profile;
 mod quantity;
+mod strata;
 
 pub use beam::Beam;
 pub use listed::{Event, events};
 pub use mixture::{Mixture, Tally};
 pub use profile::{Profile, Spread};
 pub use quantity::Quantity;
+pub use strata::Strata;
 
 use super::histogram::{Lookup, Steps};
 use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
@@ -48,7 +50,8 @@ const CHUNKS_PER_THREAD: u64 = 32;
 pub struct Counted {
     /// How many events, from the first on and without a gap: all of them unless the run was cancelled.
     pub events: u64,
-    /// One histogram per tally: its slots, see [`Tally::slots`].
+    /// One histogram per tally: its slots, see [`Tally::slots`]; of a mixture with strata one for each of them, one after
+    /// the other.
     pub counts: Vec<Vec<u64>>,
 }
 
@@ -68,6 +71,20 @@ fn end_of(first_event: u64, n_events: u64) -> Result<u64> {
     })
 }
 
+/// Refuses more histograms than memory is meant for.
+fn check_size(mixture: &Mixture, tallies: &[Tally]) -> Result<()> {
+    let strata = mixture.histograms();
+    match tallies.iter().map(Tally::slots).max() {
+        Some(slots) if strata > 1 && slots.saturating_mul(strata) > MOST_SLOTS => Err(Error::invalid(
+            "importance",
+            format!(
+                "expected at most 2**24 bins of all strata together, got {strata} strata of {slots} bins"
+            ),
+        )),
+        _ => Ok(()),
+    }
+}
+
 /// Runs the events `first_event..first_event + n_events` and gives one histogram per tally.
 ///
 /// The counts are the same for any number of threads, on any machine; those of adjacent ranges add up
@@ -85,8 +102,9 @@ pub fn monte_carlo(
     ticker: &mut Ticker<'_>,
 ) -> Result<Counted> {
     let end = end_of(first_event, n_events)?;
+    check_size(mixture, tallies)?;
     let program = Program::new(mixture, tallies, threads, ticker)?;
-    let counts = tallies.iter().map(|tally| vec![0; tally.slots()]).collect();
+    let counts = tallies.iter().map(|tally| vec![0; tally.slots() * mixture.histograms()]).collect();
     let mut counted = Counted { events: 0, counts };
     let most_per_round = MOST_PER_CHUNK * CHUNKS_PER_THREAD * threads as u64;
     let mut first = first_event;
@@ -137,14 +155,23 @@ pub fn expected(
             ));
         }
     }
+    check_size(mixture, tallies)?;
     let steps = steps(mixture, tallies, threads, ticker)?;
+    let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
     let of_tally = |(tally, steps): (&Tally, &Vec<Steps>)| {
+        let mut drawn = vec![0.0; tally.slots() * weights.len()];
+        steps.iter().zip(mixture.parts()).for_each(|(steps, part)| steps.collect_parts(part, &mut drawn));
         let mut slots = vec![0.0; tally.slots()];
-        steps.iter().zip(mixture.parts()).for_each(|(steps, part)| steps.collect_parts(part, &mut slots));
+        for (histogram, weight) in drawn.chunks(tally.slots()).zip(&weights) {
+            slots.iter_mut().zip(histogram).for_each(|(slot, part)| *slot += weight * part);
+        }
         slots
     };
     Ok(tallies.iter().zip(&steps).map(of_tally).collect())
 }
+
+/// Bins of a tally in all strata, at most.
+const MOST_SLOTS: usize = 1 << 24;
 
 /// Draws of a batch, sixteen events to each.
 type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
@@ -192,8 +219,9 @@ impl<'a> Program<'a> {
             Self::Steps(_, steps) => {
                 steps.iter().map(|steps| steps.iter().map(Steps::counters).collect()).collect()
             }
-            Self::Drawn(_, tallies) => {
-                tallies.iter().map(|tally| vec![vec![[0; Steps::BANKS]; tally.slots()]]).collect()
+            Self::Drawn(mixture, tallies) => {
+                let strata = mixture.histograms();
+                tallies.iter().map(|tally| vec![vec![[0; Steps::BANKS]; tally.slots() * strata]]).collect()
             }
         }
     }

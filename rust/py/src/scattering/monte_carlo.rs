@@ -11,14 +11,22 @@ use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Mixture, Profile, Quantity, Spread, Tally, events, expected, monte_carlo as simulate,
+    Beam, Mixture, Profile, Quantity, Spread, Strata, Tally, events, expected, monte_carlo as simulate,
 };
 use visviva_core::{Error, Result};
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
-/// Names, edges, counts with what is below and above, captured, and of a single one how much of each bin is reachable.
-type Counts<'py> =
-    (Vec<String>, Vec<Column<'py>>, Bound<'py, PyArrayDyn<u64>>, u64, Option<(Column<'py>, (f64, f64))>);
+type Integers<'py> = Bound<'py, PyArrayDyn<u64>>;
+/// Names, edges, counts with what is below and above, captured, of a single one how much of each bin is reachable, and
+/// with strata the counts of each, captured ones at the end.
+type Counts<'py> = (
+    Vec<String>,
+    Vec<Column<'py>>,
+    Integers<'py>,
+    u64,
+    Option<(Column<'py>, (f64, f64))>,
+    Option<Integers<'py>>,
+);
 /// Of each table: hash, bytes, error, and the part of the disc that is not resolved.
 type Tables = Vec<(u64, usize, f64, f64)>;
 /// How many events, whether Ctrl-C ended them, the smallest deflection, the tables, and the tallies.
@@ -56,6 +64,7 @@ pub(crate) struct Described<'py> {
     energy_spread: Option<(String, f64)>,
     divergence: Option<(String, f64)>,
     spot: Option<f64>,
+    importance: Option<(Vec<f64>, Vec<f64>)>,
 }
 
 /// What the work is given of one.
@@ -66,6 +75,7 @@ struct Taken {
     masses: (f64, f64),
     b_max: f64,
     profile: Profile,
+    strata: Option<Strata>,
 }
 
 impl Described<'_> {
@@ -76,16 +86,18 @@ impl Described<'_> {
                 .transpose()
                 .map_err(|error| raised(py, error))
         };
-        let Self { energies, weights, masses, b_max, energy_spread, divergence, spot, .. } = self;
+        let Self { energies, weights, masses, b_max, energy_spread, divergence, spot, importance, .. } = self;
         let energy_spread = spread("energy_spread", energy_spread)?;
         let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
-        Ok(Taken { potential, energies, weights, masses, b_max, profile })
+        let strata = importance.map(|(edges, fractions)| Strata::new(&edges, &fractions)).transpose();
+        let strata = strata.map_err(|error| raised(py, error))?;
+        Ok(Taken { potential, energies, weights, masses, b_max, profile, strata })
     }
 }
 
 impl Taken {
     fn mixture(&self, threads: usize, ticker: &mut Ticker<'_>) -> Result<Mixture> {
-        Mixture::of_energies(
+        let mixture = Mixture::of_energies(
             &self.potential,
             (&self.energies, &self.weights),
             self.masses,
@@ -93,7 +105,8 @@ impl Taken {
             self.profile,
             threads,
             ticker,
-        )
+        )?;
+        self.strata.iter().try_fold(mixture, |mixture, strata| mixture.stratified(strata.clone()))
     }
 }
 
@@ -144,7 +157,12 @@ pub(crate) fn monte_carlo<'py>(
     })?
     .partial(py)?;
     let mut results = Vec::with_capacity(tallies.len());
-    for (tally, mut slots) in tallies.iter().zip(counted.counts) {
+    for (tally, counts) in tallies.iter().zip(counted.counts) {
+        let mut slots = vec![0; tally.slots()];
+        for histogram in counts.chunks(tally.slots()) {
+            slots.iter_mut().zip(histogram).for_each(|(slot, count)| *slot += count);
+        }
+        let by_stratum = mixture.strata().map(|strata| moved(py, counts, &[strata.count(), tally.slots()]));
         let names = tally.axes().iter().map(|(quantity, _)| quantity.name().to_owned()).collect();
         let shape: Vec<usize> = tally.axes().iter().map(|(_, edges)| edges.bins() + 2).collect();
         let captured = slots.pop().unwrap_or(0);
@@ -160,7 +178,7 @@ pub(crate) fn monte_carlo<'py>(
             }
             _ => None,
         };
-        results.push((names, edges, moved(py, slots, &shape)?, captured, single));
+        results.push((names, edges, moved(py, slots, &shape)?, captured, single, by_stratum.transpose()?));
     }
     let tables = mixture.beams().flat_map(Beam::tables);
     let tables =
@@ -192,7 +210,20 @@ pub(crate) fn monte_carlo_expected<'py>(
         .collect()
 }
 
-/// The events of a range: their components; energy before, direction, ψ, and all quantities, event after event.
+/// What an event of each stratum stands for: edges of impact parameters and fractions of the events.
+#[pyfunction]
+pub(crate) fn strata_weights(py: Python<'_>, edges: Vec<f64>, fractions: Vec<f64>) -> PyResult<Vec<f64>> {
+    Strata::new(&edges, &fractions).map(|strata| strata.weights()).map_err(|error| raised(py, error))
+}
+
+/// Impact parameters from one to another in equal ratios, the ends exactly as given.
+#[pyfunction]
+pub(crate) fn strata_edges(py: Python<'_>, strata: usize, smallest: f64, b_max: f64) -> PyResult<Vec<f64>> {
+    let edges = Spacing::Logarithmic.edges("smallest", false, strata, smallest, b_max);
+    edges.map(|edges| edges.values().to_vec()).map_err(|error| raised(py, error))
+}
+
+/// The events of a range: their components; weight, energy before, direction, ψ, and all quantities, event after event.
 #[pyfunction]
 #[pyo3(signature = (*, beam, n_events, seed, first_event, threads, progress))]
 pub(crate) fn scattering_events<'py>(
@@ -216,12 +247,13 @@ pub(crate) fn scattering_events<'py>(
             found
                 .iter()
                 .flat_map(|event| {
-                    [event.beam_energy, event.incidence, event.deflection].into_iter().chain(event.values)
+                    let before = [event.weight, event.beam_energy, event.incidence, event.deflection];
+                    before.into_iter().chain(event.values)
                 })
                 .collect::<Vec<f64>>(),
         ))
     })?
     .whole(py)?;
     let count = components.len();
-    Ok((moved(py, components, &[count])?, moved(py, values, &[count, 3 + Quantity::ALL.len()])?))
+    Ok((moved(py, components, &[count])?, moved(py, values, &[count, 4 + Quantity::ALL.len()])?))
 }

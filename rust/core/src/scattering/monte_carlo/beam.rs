@@ -7,6 +7,7 @@ mod turning;
 use super::draws::{Draws, PLACE};
 use super::profile::{Direction, Profile};
 use super::quantity::Quantity;
+use super::strata::Strata;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::Ticker;
 use crate::potentials::Potential;
@@ -40,6 +41,8 @@ pub(super) struct Arrival {
     pub(super) energy: f64,
     /// b²/b_max².
     pub(super) share: f64,
+    /// Its stratum of the disc: 0 where there are none.
+    pub(super) stratum: usize,
     pub(super) direction: Direction,
 }
 
@@ -51,6 +54,7 @@ pub struct Beam {
     pub(super) b_max: f64,
     target: Target,
     pub(in crate::scattering) profile: Profile,
+    strata: Option<Arc<Strata>>,
 }
 
 impl Beam {
@@ -95,7 +99,7 @@ impl Beam {
             }
             Target::Tables(Arc::new(tables), beyond)
         };
-        Ok(Self { collision, energy, b_max, target, profile })
+        Ok(Self { collision, energy, b_max, target, profile, strata: None })
     }
     /// On V = k/r.
     ///
@@ -129,6 +133,7 @@ impl Beam {
             b_max,
             target: Target::Coulomb { reach, attracts: k < 0.0 },
             profile: Profile::default(),
+            strata: None,
         })
     }
     /// Of the projectile, in the laboratory.
@@ -139,21 +144,58 @@ impl Beam {
     pub fn highest(&self) -> f64 {
         self.profile.energies(self.energy)[1]
     }
-    /// b²/b_max² within which is that part of the projectiles.
-    pub(super) fn share(&self, part: f64) -> f64 {
-        self.profile.share(self.b_max, part)
+    /// The same beam with events in each stratum of the disc as it says.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `importance` that ends elsewhere than the disc, or that a spot leaves no place.
+    pub(super) fn stratified(self, strata: &Arc<Strata>) -> Result<Self> {
+        if self.profile.spot.is_some() {
+            let message =
+                "expected none beside a spot, which says itself where projectiles come; leave either out";
+            return Err(Error::invalid("importance", message));
+        }
+        if strata.b_max() != self.b_max {
+            let (end, b_max) = (number(strata.b_max()), number(self.b_max));
+            return Err(Error::invalid(
+                "importance",
+                format!("expected strata that end at b_max = {b_max}, got some that end at {end}"),
+            ));
+        }
+        Ok(Self { strata: Some(strata.clone()), ..self })
+    }
+    /// Its strata, if it has any.
+    pub(super) fn strata(&self) -> Option<&Strata> {
+        self.strata.as_deref()
+    }
+    /// b²/b_max² of a draw of the place.
+    pub(super) fn share(&self, draw: u64) -> f64 {
+        self.strata()
+            .map_or_else(|| self.profile.share(self.b_max, draw as f64 * UNIT), |strata| strata.share(draw))
+    }
+    /// The draw of the place at that b²/b_max².
+    pub(super) fn draw(&self, share: f64) -> u64 {
+        self.strata().map_or_else(
+            || (self.profile.part(self.b_max, share) * UNIT.recip()) as u64,
+            |strata| strata.draw(share),
+        )
+    }
+    /// The stratum of a draw of the place.
+    pub(super) fn stratum(&self, draw: u64) -> usize {
+        self.strata().map_or(0, |strata| strata.stratum(draw))
     }
     /// How an event comes.
     pub(super) fn arrival(&self, draws: Draws) -> Arrival {
+        let place = draws.bits(PLACE);
         Arrival {
             energy: self.profile.energy(self.energy, draws),
-            share: self.share(draws.uniform(PLACE)),
+            share: self.share(place),
+            stratum: self.stratum(place),
             direction: self.profile.direction(draws),
         }
     }
     /// One of the middle energy along the axis.
     fn straight(&self, share: f64) -> Arrival {
-        Arrival { energy: self.energy, share, direction: Direction { tilt: 0.0, azimuth: 0.0 } }
+        Arrival { energy: self.energy, share, stratum: 0, direction: Direction { tilt: 0.0, azimuth: 0.0 } }
     }
     /// ψ of an event: signed and not folded; nothing if captured.
     pub(super) fn deflection(&self, arrival: &Arrival) -> Option<f64> {

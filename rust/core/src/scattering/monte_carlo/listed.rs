@@ -1,7 +1,7 @@
 //! Events one by one, for whoever wants more than counts: the very events that are counted.
 
 use super::draws::{COMPONENT, Draws};
-use super::{Mixture, Quantity, end_of};
+use super::{Mixture, Quantity, Strata, end_of};
 use crate::Result;
 use crate::parallel::Ticker;
 
@@ -16,6 +16,8 @@ pub struct Event {
     pub deflection: f64,
     /// Of the projectile before, in the laboratory.
     pub beam_energy: f64,
+    /// How many events of the plain disc it stands for: 1 without strata.
+    pub weight: f64,
     /// Between its direction and the axis of the beam.
     pub incidence: f64,
 }
@@ -32,6 +34,7 @@ pub fn events(
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Event>> {
     let end = end_of(first_event, n_events)?;
+    let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
     let mut events = Vec::new();
     for event in first_event..end {
         ticker.tick()?;
@@ -49,6 +52,7 @@ pub fn events(
             values,
             deflection: beam.deflection(&arrival).unwrap_or(f64::NAN),
             beam_energy: arrival.energy,
+            weight: weights.get(arrival.stratum).copied().unwrap_or(f64::NAN),
             incidence: arrival.direction.tilt,
         });
     }

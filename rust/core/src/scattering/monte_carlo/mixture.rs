@@ -3,6 +3,7 @@
 use super::beam::{Arrival, Beam, UNIT};
 use super::profile::Profile;
 use super::quantity::Quantity;
+use super::strata::Strata;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
@@ -68,6 +69,23 @@ impl Mixture {
             })?
         };
         Self::new(beams, weights)
+    }
+    /// The same beams with events in each stratum of the disc as it says.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `importance` that ends elsewhere than the disc, or beside a spot.
+    pub fn stratified(self, strata: Strata) -> Result<Self> {
+        let strata = Arc::new(strata);
+        let of_component = |(start, beam): (u64, Beam)| Ok((start, beam.stratified(&strata)?));
+        Ok(Self { components: self.components.into_iter().map(of_component).collect::<Result<_>>()? })
+    }
+    /// The strata of its events, if there are any.
+    pub fn strata(&self) -> Option<&Strata> {
+        self.beams().find_map(Beam::strata)
+    }
+    /// How many histograms there are of each tally: one for each stratum.
+    pub(super) fn histograms(&self) -> usize {
+        self.strata().map_or(1, Strata::count)
     }
     /// The beams, in order.
     pub fn beams(&self) -> impl Iterator<Item = &Beam> {
@@ -156,20 +174,21 @@ impl Tally {
         }
         slot
     }
-    /// The slot of an event of several draws.
+    /// The slot of an event of several draws, in the histogram of its stratum: histograms follow each other.
     pub(super) fn slot_of(&self, beam: &Beam, arrival: &Arrival, half: Option<HalfAngle>) -> usize {
-        self.slot(|quantity| beam.value_at(quantity, arrival, half))
+        arrival.stratum * self.slots() + self.slot(|quantity| beam.value_at(quantity, arrival, half))
     }
     /// The step function of the draw that it is.
     pub(super) fn steps(&self, beam: &Beam, ticker: &mut Ticker<'_>) -> Result<Steps> {
         let mut turns: Vec<u64> =
             self.axes.iter().flat_map(|(quantity, _)| beam.turning_draws(*quantity)).collect();
+        turns.extend(beam.strata().into_iter().flat_map(Strata::boundaries));
         turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
         turns.sort_unstable();
         turns.dedup();
         let slot = |draw: u64| {
-            let share = beam.share(draw as f64 * UNIT);
-            self.slot(|quantity| beam.value(quantity, share))
+            let share = beam.share(draw);
+            beam.stratum(draw) * self.slots() + self.slot(|quantity| beam.value(quantity, share))
         };
         Steps::new(&turns, slot, ticker)
     }

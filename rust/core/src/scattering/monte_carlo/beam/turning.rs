@@ -1,8 +1,9 @@
 //! Where a quantity turns: the draws between which it only rises or only falls, as bisection needs them.
 
-use super::{Beam, Target, UNIT};
+use super::{Beam, Target};
 use crate::scattering::event_table::EventTable;
 use crate::scattering::monte_carlo::quantity::Quantity;
+use crate::scattering::monte_carlo::strata::Strata;
 
 /// Points of a piece of a table among which turning points are looked for.
 const TRIED: u64 = 8;
@@ -20,7 +21,7 @@ impl Beam {
                 .flatten()
                 .map(|t| (t / reach) * (t / reach))
                 .filter(|share| *share < 1.0)
-                .map(|share| (self.profile.part(self.b_max, share) * UNIT.recip()) as u64)
+                .map(|share| self.draw(share))
                 .into_iter()
                 .collect(),
             Target::Table(..) if quantity == Quantity::ImpactParameter => Vec::new(),
@@ -31,9 +32,11 @@ impl Beam {
     }
     /// Those of a table: the ends of its pieces, and within a piece where what is tried rises and falls.
     fn turns(&self, quantity: Quantity, table: &EventTable) -> Vec<u64> {
-        let at = |draw: u64| self.value(quantity, self.share(draw as f64 * UNIT));
-        let draw = |part: &f64| (self.profile.part(self.b_max, part * part) / UNIT) as u64;
-        let draws: Vec<u64> = table.starts().iter().map(draw).collect();
+        let at = |draw: u64| self.value(quantity, self.share(draw));
+        let mut draws: Vec<u64> = table.starts().iter().map(|part| self.draw(part * part)).collect();
+        // What is tried is to be near in each stratum, however few draws a piece has in one of them.
+        draws.extend(self.strata().into_iter().flat_map(Strata::boundaries));
+        draws.sort_unstable();
         let mut turns = draws.clone();
         for pair in draws.windows(2).filter(|pair| pair[1] - pair[0] > TRIED) {
             let width = pair[1] - pair[0];
