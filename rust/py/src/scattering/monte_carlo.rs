@@ -213,14 +213,17 @@ pub(crate) fn monte_carlo_expected<'py>(
 /// What an event of each stratum stands for: edges of impact parameters and fractions of the events.
 #[pyfunction]
 pub(crate) fn strata_weights(py: Python<'_>, edges: Vec<f64>, fractions: Vec<f64>) -> PyResult<Vec<f64>> {
-    Strata::new(&edges, &fractions).map(|strata| strata.weights()).map_err(|error| raised(py, error))
+    compute(py, 0, None, |_| Strata::new(&edges, &fractions).map(|strata| strata.weights()))?.whole(py)
 }
 
 /// Impact parameters from one to another in equal ratios, the ends exactly as given.
 #[pyfunction]
 pub(crate) fn strata_edges(py: Python<'_>, strata: usize, smallest: f64, b_max: f64) -> PyResult<Vec<f64>> {
-    let edges = Spacing::Logarithmic.edges("smallest", false, strata, smallest, b_max);
-    edges.map(|edges| edges.values().to_vec()).map_err(|error| raised(py, error))
+    compute(py, 0, None, |_| {
+        let edges = Spacing::Logarithmic.edges("smallest", false, strata, smallest, b_max)?;
+        Ok(edges.values().to_vec())
+    })?
+    .whole(py)
 }
 
 /// The events of a range: their components; weight, energy before, direction, ψ, and all quantities, event after event.
