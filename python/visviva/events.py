@@ -1,4 +1,4 @@
-"""Events: what is looked for on the way of a run, and the table of what was found.
+"""Events: what is looked for on the way of a run; the table of what was found is in `_event_table.py`.
 
 `distance`, `plane`, `apsis` and `energy` are compiled; any other function of time, positions and velocities may be
 given as it is, or by `function` with a direction and an end. Events are located on the solution between the steps and
@@ -10,15 +10,14 @@ step and turns, it is followed down, so that two zeros in one step are found.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
-from visviva._exported import Columns, Exported, chosen_columns
-from visviva._html import Sheet, Shown, first_rows
+from visviva._event_table import EventTable
 from visviva._keywords import known_keywords
 from visviva._names import body_index
 from visviva.errors import InvalidInput
@@ -322,95 +321,6 @@ def from_description(kept: dict[str, Any]) -> Event:
             return _made("function", name=str(kept["name"]), **how)
         case kind:
             raise InvalidInput("events", f"expected an event that visviva knows, got the kind {kind!r}")
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class EventTable(Exported, Shown):
-    """The events of a run, in the order of the motion; of an ensemble, copy after copy.
-
-    Attributes
-    ----------
-    which : ndarray of int64, shape (K,)
-        Index in the ``events`` that were asked for.
-    t : ndarray, shape (K,)
-    position, velocity : ndarray, shape (K, N, 3)
-        The state there. Bodies that are integrated apart from those that the event looks at are NaN: non-interacting
-        ones, and massless ones beside an adaptive method.
-    member : ndarray of int64, shape (K,)
-        The copy of an ensemble; 0 of a single run.
-    definitions : tuple of Event
-        What was looked for, by `which`. Of a function its name alone, as of what is saved.
-
-    Indexing with a slice or an array gives a smaller table; `of` that of one event.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> scene = vv.problems.kepler(e=0.5).scene
-    >>> table = scene.run(t=20.0, events=[vv.events.apsis(1, 0), vv.events.distance(0, 1, below=0.8)]).events
-    >>> table.which.tolist(), table.of(1).t.shape, table.position.shape
-    ([0, 1, 0, 0, 1, 0, 0, 1, 0], (3,), (9, 2, 3))
-    """
-
-    which: NDArray[np.int64]
-    t: NDArray[np.float64]
-    position: NDArray[np.float64]
-    velocity: NDArray[np.float64]
-    member: NDArray[np.int64]
-    definitions: tuple[Event, ...]
-
-    _row_axes = ("event",)
-
-    @classmethod
-    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> EventTable:
-        for array in found.values():
-            array.setflags(write=False)
-        return cls(**found, definitions=definitions)
-
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
-        known = [name for name in self.__slots__ if name != "definitions"]
-        of = {
-            name: (("event", *["body", "component"][: 2 * (getattr(self, name).ndim == 3)]), getattr(self, name))
-            for name in chosen_columns(columns, known, known)
-        }
-        return Columns({"event": np.arange(len(self)), "body": np.arange(self.position.shape[1])}, of)
-
-    def __len__(self) -> int:
-        return len(self.t)
-
-    def __repr__(self) -> str:
-        return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
-
-    def _sheet(self) -> Sheet:
-        def row(at: int) -> tuple[str, ...]:
-            which = int(self.which[at])
-            kind = self.definitions[which].kind if which < len(self.definitions) else ""
-            return (str(at), f"{self.t[at]:.6g}", f"{which} {kind}".rstrip(), str(self.member[at]))
-
-        rows, note = first_rows(len(self), row)
-        return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
-
-    def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
-        if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
-            raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
-        columns = {name: getattr(self, name)[chosen] for name in self.__slots__ if name != "definitions"}
-        return EventTable._from_core(columns, self.definitions)
-
-    def __iter__(self) -> Iterator[Any]:
-        raise TypeError("an EventTable is read by its columns: which, t, position, velocity, member")
-
-    def of(self, which: int) -> EventTable:
-        """The lines of one event.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> scene = vv.problems.kepler(e=0.5).scene
-        >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0, direction=1)]).events.of(0))
-        3
-        """
-        return self[self.which == whole_number("which", which)]
 
 
 def __dir__() -> list[str]:

@@ -32,6 +32,7 @@ from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
 from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
 from visviva.scattering._importance import LargeAngles, Strata
+from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._kinematics import (
     cm_angle,
     cm_angle_from_recoil,
@@ -50,7 +51,7 @@ from visviva.scattering._rutherford import (
     rutherford_impact_parameter,
 )
 from visviva.scattering._structure import Glory, Orbit, Rainbow, glories, impact_parameter, orbiting, rainbows
-from visviva.scattering._tally import CrossSection, JointTally, Tally
+from visviva.scattering._tally import CrossSection, Tally
 
 __all__ = [
     "Beam",

@@ -10,7 +10,7 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.scattering._tally import _merged, is_zero
+from visviva.scattering._of_events import is_zero, merged
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -290,7 +290,7 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
             raise InvalidInput("other", f"expected one of {self.bombardment}, got one of {other.bombardment}")
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        events = _merged((*self.events, *other.events))
+        events = merged((*self.events, *other.events))
         tallies = tuple(self[name]._joined(other[name]) for name in self)
         return replace(self, events=events, sums=self.sums + other.sums, tallies=tallies)
 

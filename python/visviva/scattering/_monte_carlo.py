@@ -16,9 +16,10 @@ from visviva.potentials import Potential
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._importance import LargeAngles, Strata, resolved
+from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._spread import spread
-from visviva.scattering._tally import JointTally, Tally
+from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

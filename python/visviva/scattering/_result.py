@@ -15,7 +15,9 @@ from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._importance import Strata
-from visviva.scattering._tally import JointTally, OfEvents, Tally, is_zero
+from visviva.scattering._joint_tally import JointTally
+from visviva.scattering._of_events import OfEvents, is_zero
+from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -1,4 +1,4 @@
-"""What a scattering Monte Carlo gives: integer histograms of a beam's events, which add up without a gap."""
+"""The integer histogram of one quantity of a beam's events, its cross section and its picture."""
 
 from __future__ import annotations
 
@@ -11,8 +11,9 @@ from visviva import _core
 from visviva._exported import needed
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.scattering._beam import Beam, described
+from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
+from visviva.scattering._of_events import OfEvents, is_zero
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
@@ -21,7 +22,9 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-__all__ = ["CrossSection", "JointTally", "OfEvents", "Tally", "is_zero"]
+    from visviva.scattering._beam import Beam
+
+__all__ = ["CrossSection", "Tally"]
 
 _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
@@ -33,32 +36,6 @@ class CrossSection(NamedTuple):
     """Area per steradian for angles, else area per unit of the quantity."""
     error: NDArray[np.float64]
     """One standard deviation of the count, as an area likewise."""
-
-
-class OfEvents:
-    """What a result and each of its tallies know: the beam and which of its events."""
-
-    beam: Beam
-    events: tuple[tuple[int, int, int], ...]
-
-    @property
-    def n_events(self) -> int:
-        """Events in all."""
-        return sum(end - first for _, first, end in self.events)
-
-    @property
-    def b_max(self) -> float:
-        """Radius of the disc of impact parameters."""
-        return self.beam.b_max
-
-    def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
-        """Refuse another beam and events that are in both."""
-        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "importance")
-        for name in (*names, "tables"):
-            mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
-            if mine != theirs:
-                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
-        return _merged((*self.events, *other.events))
 
 
 @known_keywords
@@ -358,172 +335,3 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
     def __radd__(self, other: int) -> Tally:
         """Begin a `sum`."""
         return self if is_zero(other) else NotImplemented
-
-
-@known_keywords
-@dataclass(frozen=True, eq=False)
-class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
-    """A histogram of two quantities together.
-
-    Attributes
-    ----------
-    name : tuple of str
-        The quantities.
-    edges : tuple of ndarray
-        Strictly increasing, of each quantity.
-    flow : ndarray of uint64, shape (B₁ + 2, B₂ + 2)
-        Events: along each axis below the first edge, the bins, and above the last edge.
-    captured : int
-        Events that fell into the center.
-    beam : Beam
-        What was scattered by what.
-    events : tuple
-        Which events: sorted (seed, first, end) with end excluded.
-    by_stratum : ndarray of uint64, shape (S, (B₁ + 2)·(B₂ + 2) + 1), or None
-        With `importance` the events of each stratum: those of ``flow``, row by row, and captured.
-    """
-
-    name: tuple[str, ...]
-    edges: tuple[NDArray[np.float64], ...]
-    flow: NDArray[np.uint64]
-    captured: int
-    beam: Beam
-    events: tuple[tuple[int, int, int], ...]
-    by_stratum: NDArray[np.uint64] | None = None
-
-    def __post_init__(self) -> None:
-        read_only(*self.edges, self.flow, self.by_stratum)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # a pickle does not keep that arrays are read-only
-
-    @property
-    def counts(self) -> NDArray[np.uint64]:
-        """Events in the bins, shape (B₁, B₂)."""
-        return self.flow[1:-1, 1:-1]
-
-    def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
-        return self._weighted(1)
-
-    def variances(self) -> NDArray[np.float64]:
-        """Variances of the values: as `Tally.variances`."""
-        return variances(self.values(), self._weighted(2), self.n_events)
-
-    def _weighted(self, power: int) -> NDArray[np.float64]:
-        return weighted(self, power, self.flow)[1:-1, 1:-1]
-
-    def to_hist(self) -> Any:
-        """As a ``hist.Hist`` with both axes, what is below and above too.
-
-        Raises
-        ------
-        ImportError
-            Without the package hist.
-        """
-        return to_hist(self, self.name, self.edges, self.flow)
-
-    def to_pandas(self) -> DataFrame:
-        """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
-
-        Returns
-        -------
-        pandas.DataFrame
-            Bins are intervals, closed on the left.
-
-        Raises
-        ------
-        ImportError
-            Without the package pandas: ``pip install 'visviva[pandas]'``.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
-        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> run["lab_angle", "energy"].to_pandas().shape
-        (10, 10)
-        """
-        from visviva.scattering._exported import intervals
-
-        rows, columns = map(intervals, self.name, self.edges)
-        values = self.counts if self.by_stratum is None else self.values()
-        frame: DataFrame = needed("pandas", "to_pandas").DataFrame(values, index=rows, columns=columns)
-        frame.attrs.update(captured=self.captured, n_events=self.n_events)
-        return frame
-
-    def to_xarray(self) -> Dataset:
-        """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins of both quantities.
-
-        Returns
-        -------
-        xarray.Dataset
-            As that of `Tally.to_xarray`, with two axes; with `importance` ``values`` and ``variances``, too.
-
-        Raises
-        ------
-        ImportError
-            Without the package xarray: ``pip install 'visviva[xarray]'``.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
-        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> dict(run["lab_angle", "energy"].to_xarray().sizes)
-        {'lab_angle': 10, 'energy': 10}
-        """
-        from visviva.scattering._exported import dataset
-
-        told = {"captured": self.captured, "n_events": self.n_events}
-        columns = {"counts": self.counts, **weighted_columns(self)}
-        return dataset(dict(zip(self.name, self.edges, strict=True)), columns, told)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, JointTally):
-            return NotImplemented
-        numbers = ("name", "captured", "beam", "events")
-        return (
-            all(getattr(self, name) == getattr(other, name) for name in numbers)
-            and all(np.array_equal(a, b) for a, b in zip(self.edges, other.edges, strict=True))
-            and np.array_equal(self.flow, other.flow)
-            and same(self.by_stratum, other.by_stratum)
-        )
-
-    def __add__(self, other: JointTally) -> JointTally:
-        if not isinstance(other, JointTally):
-            return NotImplemented
-        if self.name != other.name or not all(map(np.array_equal, self.edges, other.edges)):
-            raise InvalidInput("other", f"expected a tally of {self.name} with the same edges, got one of {other.name}")
-        return replace(
-            self,
-            flow=self.flow + other.flow,
-            captured=self.captured + other.captured,
-            events=self._merged_events(other),
-            by_stratum=added(self.by_stratum, other.by_stratum),
-        )
-
-    def __radd__(self, other: int) -> JointTally:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented
-
-
-def is_zero(value: object) -> bool:
-    return type(value) is int and value == 0
-
-
-def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
-    """Sort and join ranges of events; an event that is in two would count twice."""
-    joined: list[tuple[int, int, int]] = []
-    for seed, first, end in sorted(ranges):
-        if joined and joined[-1][0] == seed and first <= joined[-1][2]:
-            before = joined.pop()
-            if first < before[2]:
-                raise InvalidInput(
-                    "other", f"expected events that are not counted yet, but event {first} of seed {seed} is in both"
-                )
-            joined.append((seed, before[1], end))
-        else:
-            joined.append((seed, first, end))
-    return tuple(joined)

@@ -11,7 +11,8 @@ from visviva._exported import needed
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
-    from visviva.scattering._tally import JointTally, Tally
+    from visviva.scattering._joint_tally import JointTally
+    from visviva.scattering._tally import Tally
 
 __all__ = ["added", "read_only", "same", "to_hist", "variances", "weighted", "weighted_columns"]
 

@@ -4,7 +4,10 @@
 //! lane does what [`solve`](super::run::solve) does for one, operation by operation, so a copy has the bits that it has alone.
 //! Methods with equal steps go from node to node together, and take up copies eight at a time.
 
-use super::fixed::FixedSteps;
+mod side_by_side;
+
+pub use side_by_side::SideBySide;
+
 use super::gauss::GaussEight;
 use super::model::Model;
 use super::motion::Motion;
@@ -12,16 +15,15 @@ use super::run::{Integrator, Request, Solution, norm, too_many_steps};
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
-use crate::ode::embedded::EmbeddedStep;
+use crate::ode::Scheme;
 use crate::ode::norm::Norm;
 use crate::ode::run::{Ending, smallest_step};
 use crate::ode::state::State;
-use crate::ode::step_control::{Clock, Rule, Settled};
+use crate::ode::step_control::{Clock, Settled};
 use crate::ode::system::{Form, System};
-use crate::ode::taylor::TaylorStep;
-use crate::ode::trial::{Cost, Trial};
-use crate::ode::{Method, Scheme};
+use crate::ode::trial::Cost;
 use crate::parallel::Ticker;
+use side_by_side::trial;
 
 /// The largest linear system with which stages that fill all lanes go side by side: dearer equations gain less by what four
 /// blocks of them share than trajectories lose that wait for the slowest of eight.
@@ -42,26 +44,6 @@ pub fn together(model: &Model, request: &Request) -> bool {
         && model.projection.is_none()
         && request.span.0 != request.span.1
 }
-
-/// Trials of eight trajectories, and what some of them tell of each.
-pub trait SideBySide: Trial<Lanes> {
-    /// With other parameters from now on, where it has its own.
-    fn set_parameters(&mut self, _: &[Lanes]) {}
-
-    /// Evaluations of a lane since this was last asked, beyond those of the system and of [`cost`](Trial::cost).
-    fn taken(&mut self, _: usize) -> u64 {
-        0
-    }
-
-    /// Why a lane cannot go on, told once.
-    fn lost(&mut self, _: usize) -> Option<String> {
-        None
-    }
-}
-
-impl SideBySide for EmbeddedStep<Lanes> {}
-impl SideBySide for TaylorStep<Lanes> {}
-impl SideBySide for FixedSteps<Lanes> {}
 
 /// A trajectory in its lane.
 struct Slot {
@@ -401,22 +383,4 @@ impl Slot {
         self.solution.y.extend(state.all().0.iter().map(|y| y.0[lane]));
         self.next_output += 1;
     }
-}
-
-/// The method for eight trajectories.
-fn trial(
-    method: &'static Method,
-    request: &Request,
-    system: &mut Motion<Lanes>,
-    state: &State<Lanes>,
-    max_step: Lanes,
-) -> Result<Box<dyn SideBySide>> {
-    Ok(match &method.scheme {
-        Scheme::Embedded(tableau) => {
-            let rule = Rule::new(tableau.error_exponent, max_step);
-            Box::new(EmbeddedStep::with_rule(tableau, system, state, rule))
-        }
-        Scheme::Taylor(orders) => Box::new(TaylorStep::new(*orders, system, state, max_step)),
-        _ => Box::new(FixedSteps::new(method, request.fixed_step(method.name)?, system, state)?),
-    })
 }

@@ -1,0 +1,59 @@
+"""Which events a result is of, so that results add up without a gap and nothing is counted twice."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from visviva.errors import InvalidInput
+
+if TYPE_CHECKING:
+    from visviva.scattering._beam import Beam
+
+__all__ = ["OfEvents", "is_zero", "merged"]
+
+
+class OfEvents:
+    """What a result and each of its tallies know: the beam and which of its events."""
+
+    beam: Beam
+    events: tuple[tuple[int, int, int], ...]
+
+    @property
+    def n_events(self) -> int:
+        """Events in all."""
+        return sum(end - first for _, first, end in self.events)
+
+    @property
+    def b_max(self) -> float:
+        """Radius of the disc of impact parameters."""
+        return self.beam.b_max
+
+    def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
+        """Refuse another beam and events that are in both."""
+        names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "importance")
+        for name in (*names, "tables"):
+            mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
+            if mine != theirs:
+                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
+        return merged((*self.events, *other.events))
+
+
+def is_zero(value: object) -> bool:
+    """Whether it is the 0 with which `sum` begins."""
+    return type(value) is int and value == 0
+
+
+def merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+    """Sort and join ranges of events; an event that is in two would count twice."""
+    joined: list[tuple[int, int, int]] = []
+    for seed, first, end in sorted(ranges):
+        if joined and joined[-1][0] == seed and first <= joined[-1][2]:
+            before = joined.pop()
+            if first < before[2]:
+                raise InvalidInput(
+                    "other", f"expected events that are not counted yet, but event {first} of seed {seed} is in both"
+                )
+            joined.append((seed, before[1], end))
+        else:
+            joined.append((seed, first, end))
+    return tuple(joined)
