@@ -65,8 +65,10 @@ class Exported:
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         """Columns and axes; the first axis of a table is that of its rows."""
 
-    # How many leading axes are rows of a DataFrame: copy and time of an ensemble.
-    _row_axes: tuple[str, ...] = ("time",)
+    @property
+    def _row_axes(self) -> tuple[str, ...]:
+        """The leading axes that are rows of a DataFrame: copy and time of an ensemble."""
+        return ("time",)
 
     def to_xarray(self, columns: str | Sequence[str] | None = None) -> Dataset:
         """As an ``xarray.Dataset``: a variable for each column, over named axes with their labels.
@@ -80,7 +82,8 @@ class Exported:
         -------
         xarray.Dataset
             Axes are ``time``, ``copy``, ``body`` (names, if the bodies have some), ``component``, ``quaternion``,
-            ``coordinate`` and so on, as far as there are such. Numbers are views of the result's, which are read-only.
+            ``coordinate``, ``orbit`` and so on, as far as there are such. Numbers are views of the result's, which are
+            read-only.
 
         Raises
         ------
@@ -109,7 +112,7 @@ class Exported:
         return made
 
     def to_pandas(self, columns: str | Sequence[str] | None = None) -> DataFrame:
-        """As a ``pandas.DataFrame`` with a row for each time, of an ensemble for each copy and time.
+        """As a ``pandas.DataFrame`` with a row for each time, of elements each orbit, of ensembles each copy and time.
 
         Parameters
         ----------
