@@ -1,7 +1,7 @@
-"""Results as they are wanted elsewhere: an xarray Dataset, a pandas DataFrame.
+"""Results as they are wanted elsewhere: an xarray Dataset, a pandas DataFrame, a Parquet file.
 
-The one idea: a result says its axes and its columns once (`Columns`); both forms follow from that. xarray and pandas
-are imported when they are asked for, so that nobody else pays for them.
+The one idea: a result says its axes and its columns once (`Columns`); all forms follow from that. The packages are
+imported when they are asked for, so that nobody else pays for them.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from os import PathLike
 
     from numpy.typing import NDArray
     from pandas import DataFrame
@@ -57,7 +58,7 @@ class Columns:
 
 @known_keywords
 class Exported:
-    """Base of what can be handed to xarray and pandas."""
+    """Base of what can be handed to xarray and pandas, and written to Parquet."""
 
     __slots__ = ()
 
@@ -162,6 +163,46 @@ class Exported:
         frame.columns = module.MultiIndex.from_tuples(padded) if levels > 1 else [key[0] for key in keys]
         return frame
 
+    def to_parquet(self, path: str | PathLike[str], columns: str | Sequence[str] | None = None) -> None:
+        """Write a Parquet file with the rows of `to_pandas`, a group of them at a time.
+
+        Beside the result itself it takes the memory of one group of rows (16 MB). `EnsembleScene.run_to_parquet` does
+        not hold the result either.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, exactly as named; one that exists is replaced.
+        columns : str or sequence of str, optional
+            As of `to_xarray`.
+
+        Raises
+        ------
+        ImportError
+            Without the package pyarrow: ``pip install 'visviva[parquet]'``.
+        visviva.InvalidInput
+            As `to_xarray`, and for what is no path.
+
+        Notes
+        -----
+        First come the axes of the rows (``copy``, ``time``), then the columns, with a name for each number:
+        ``position_Jupiter_x``, or ``position_0_x`` of bodies without names. Of an ensemble every row has the ``status``
+        of its copy. Method and status are in the metadata of the schema.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, pyarrow.parquet, visviva as vv
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "planets.parquet"
+        >>> vv.datasets.outer_solar_system().scene.run(t=[0.0, 100.0]).to_parquet(path, "position")
+        >>> table = pyarrow.parquet.read_table(path, columns=["time", "position_Jupiter_x"])
+        >>> table["position_Jupiter_x"].to_numpy().round(3).tolist()[0]
+        -3.502
+        """
+        from visviva._parquet import file_path, groups, write
+
+        export = self._exported(columns)
+        write(file_path("path", path), groups(export, self._row_axes), dict(export.attributes), "to_parquet")
+
 
 def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
     """Every place of an array with these labels, the last axis fastest."""
@@ -171,8 +212,8 @@ def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
     return places
 
 
-def needed(package: str, what: str) -> Any:
-    """The package, or an error that says how to get it.
+def needed(package: str, what: str, extra: str | None = None) -> Any:
+    """The package, or an error that says how to get it: by the `extra` of its name, or of another.
 
     Raises
     ------
@@ -182,7 +223,7 @@ def needed(package: str, what: str) -> Any:
     try:
         return import_module(package)
     except ImportError as error:
-        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{package}]'") from error
+        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{extra or package}]'") from error
 
 
 def labels(names: Iterable[str], number: int) -> NDArray[Any]:
