@@ -1,7 +1,7 @@
-"""Results as they are wanted elsewhere: an xarray Dataset, a pandas DataFrame.
+"""Results as they are wanted elsewhere: an xarray Dataset, a pandas DataFrame, a Parquet file.
 
-The one idea: a result says its axes and its columns once (`Columns`); both forms follow from that. xarray and pandas
-are imported when they are asked for, so that nobody else pays for them.
+The one idea: a result says its axes and its columns once (`Columns`); all forms follow from that. The packages are
+imported when they are asked for, so that nobody else pays for them.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
+    from os import PathLike
 
     from numpy.typing import NDArray
     from pandas import DataFrame
@@ -57,7 +58,7 @@ class Columns:
 
 @known_keywords
 class Exported:
-    """Base of what can be handed to xarray and pandas."""
+    """Base of what can be handed to xarray and pandas, and written to Parquet."""
 
     __slots__ = ()
 
@@ -65,8 +66,10 @@ class Exported:
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         """Columns and axes; the first axis of a table is that of its rows."""
 
-    # How many leading axes are rows of a DataFrame: copy and time of an ensemble.
-    _row_axes: tuple[str, ...] = ("time",)
+    @property
+    def _row_axes(self) -> tuple[str, ...]:
+        """The leading axes that are rows of a DataFrame: copy and time of an ensemble."""
+        return ("time",)
 
     def to_xarray(self, columns: str | Sequence[str] | None = None) -> Dataset:
         """As an ``xarray.Dataset``: a variable for each column, over named axes with their labels.
@@ -80,7 +83,8 @@ class Exported:
         -------
         xarray.Dataset
             Axes are ``time``, ``copy``, ``body`` (names, if the bodies have some), ``component``, ``quaternion``,
-            ``coordinate`` and so on, as far as there are such. Numbers are views of the result's, which are read-only.
+            ``coordinate``, ``orbit`` and so on, as far as there are such. Numbers are views of the result's, which are
+            read-only.
 
         Raises
         ------
@@ -109,7 +113,7 @@ class Exported:
         return made
 
     def to_pandas(self, columns: str | Sequence[str] | None = None) -> DataFrame:
-        """As a ``pandas.DataFrame`` with a row for each time, of an ensemble for each copy and time.
+        """As a ``pandas.DataFrame`` with a row for each time, of elements each orbit, of ensembles each copy and time.
 
         Parameters
         ----------
@@ -159,6 +163,46 @@ class Exported:
         frame.columns = module.MultiIndex.from_tuples(padded) if levels > 1 else [key[0] for key in keys]
         return frame
 
+    def to_parquet(self, path: str | PathLike[str], columns: str | Sequence[str] | None = None) -> None:
+        """Write a Parquet file with the rows of `to_pandas`, a group of them at a time.
+
+        Beside the result itself it takes the memory of one group of rows (16 MB). `EnsembleScene.run_to_parquet` does
+        not hold the result either.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, exactly as named; one that exists is replaced.
+        columns : str or sequence of str, optional
+            As of `to_xarray`.
+
+        Raises
+        ------
+        ImportError
+            Without the package pyarrow: ``pip install 'visviva[parquet]'``.
+        visviva.InvalidInput
+            As `to_xarray`, and for what is no path.
+
+        Notes
+        -----
+        First come the axes of the rows (``copy``, ``time``), then the columns, with a name for each number:
+        ``position_Jupiter_x``, or ``position_0_x`` of bodies without names. Of an ensemble every row has the ``status``
+        of its copy. Method and status are in the metadata of the schema.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, pyarrow.parquet, visviva as vv
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "planets.parquet"
+        >>> vv.datasets.outer_solar_system().scene.run(t=[0.0, 100.0]).to_parquet(path, "position")
+        >>> table = pyarrow.parquet.read_table(path, columns=["time", "position_Jupiter_x"])
+        >>> table["position_Jupiter_x"].to_numpy().round(3).tolist()[0]
+        -3.502
+        """
+        from visviva._parquet import file_path, groups, write
+
+        export = self._exported(columns)
+        write(file_path("path", path), groups(export, self._row_axes), dict(export.attributes), "to_parquet")
+
 
 def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
     """Every place of an array with these labels, the last axis fastest."""
@@ -168,8 +212,8 @@ def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
     return places
 
 
-def needed(package: str, what: str) -> Any:
-    """The package, or an error that says how to get it.
+def needed(package: str, what: str, extra: str | None = None) -> Any:
+    """The package, or an error that says how to get it: by the `extra` of its name, or of another.
 
     Raises
     ------
@@ -179,7 +223,7 @@ def needed(package: str, what: str) -> Any:
     try:
         return import_module(package)
     except ImportError as error:
-        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{package}]'") from error
+        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{extra or package}]'") from error
 
 
 def labels(names: Iterable[str], number: int) -> NDArray[Any]:

@@ -14,13 +14,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import number
+from visviva._exported import labels
 from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_indices, body_label
 from visviva.errors import InvalidInput
 from visviva.forces import Gravity
 from visviva.orbits import Elements, elements
+from visviva.orbits._elements import labelled
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from numpy.typing import NDArray
 
@@ -48,9 +50,11 @@ def elements_of(
     about: str | int,
     G: float | None,
     merged: tuple[NDArray[np.bool_], NDArray[np.float64]] | None = None,
+    rows: Mapping[str, NDArray[Any]] | None = None,
 ) -> Elements:
     """The elements of states (…, N, 3) that began with `start`: of an ensemble (B, T, N, 3).
 
+    `rows` is what stands along the axes before that of the bodies.
     Where bodies have `merged`: which are parts of others, and what the masses are, (…, N).
     """
     from visviva.ensemble import EnsembleScene
@@ -95,11 +99,13 @@ def elements_of(
             mu[..., column] = constant * (attracting + mass[..., body])
         lost = ~np.isfinite(apart) & np.isfinite(position[..., body, :])
         _check(r[..., column, :], lost, mu[..., column], attracting, body_label(body, names), parent, names)
-    found = _conics(mu, r, v)
+    found, along = _conics(mu, r, v), dict(rows or {})
     if isinstance(bodies, str | int | np.integer):
         # Of one body alone, without the axis over bodies.
         found = {name: values[(slice(None),) * (len(axes) - 1) + (0,)] for name, values in found.items()}
-    return Elements(**found)
+    else:
+        along["body"] = labels(names, count)[chosen]
+    return labelled(found, along)
 
 
 def _check_chosen(chosen: list[int], parent: str | int, names: tuple[str, ...]) -> None:

@@ -22,6 +22,7 @@ from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
 from visviva.errors import InvalidInput
 from visviva.particles import Particles, radius_array, read_only
 from visviva.recorded import Recorded
+from visviva.request import StreamRequest, asked_by
 from visviva.runnable import Runnable
 from visviva.status import Status
 from visviva.trajectory import Trajectory
@@ -197,13 +198,66 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
     def _execute(self, request: RunRequest) -> EnsembleTrajectory:
         if request.save_every is not None or request.save_to is not None:
             raise InvalidInput(
-                "save_every", "an ensemble is not written while it goes on; run and save it in slices: ensemble[:1000]"
+                "save_every",
+                "an ensemble is not written in stretches of time; run_to_parquet writes it some copies at a time",
             )
         if request.executor is None:
             return super()._execute(request)
         from visviva._copies_apart import run_apart
 
         return run_apart(self, request)
+
+    @asked_by(StreamRequest)
+    def run_to_parquet(self, request: StreamRequest) -> NDArray[np.int8]:
+        """Run the copies into a Parquet file, some at a time, in memory that does not grow with their number.
+
+        Parameters
+        ----------
+        t, method, dt, time_transformation, rtol, atol, max_step, max_steps, record, collisions, restitution, threads
+            As of `run`; `record` is what the file holds, with the same bits.
+        events
+            As of `run`. What ends copies ends them here, too; the tables of events and collisions are not kept.
+        to : path-like
+            The file, exactly as named; one that exists is replaced. Its columns are those of
+            `EnsembleTrajectory.to_parquet`.
+        copies_at_once : int, optional
+            How many copies are run before they are written; by default what takes about 32 MB, but at least 8.
+        progress : bool or callable, optional
+            As of `run`; copies are counted.
+
+        Returns
+        -------
+        ndarray of int8, shape (B,)
+            How each copy ended, values of `Status`; the rows in the file have it, too.
+
+        Raises
+        ------
+        ImportError
+            Without the package pyarrow: ``pip install 'visviva[parquet]'``.
+        visviva.InvalidInput
+            As `run`, and for what is no path; there is no file then.
+        visviva.Interrupted
+            After Ctrl-C. The file holds the copies before the number in the message.
+
+        Warns
+        -----
+        visviva.AccuracyWarning
+            As `run`, once for all copies.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, numpy as np, pyarrow.parquet, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> copies = scene.ensemble(velocity=scene.particles.velocity * np.linspace(0.9, 1.0, 100)[:, None, None])
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "copies.parquet"
+        >>> status = copies.run_to_parquet(t=[0.0, 1.0], record="energy", to=path, copies_at_once=32)
+        >>> file = pyarrow.parquet.ParquetFile(path)
+        >>> file.metadata.num_rows, file.metadata.num_row_groups, status.any()
+        (200, 4, np.False_)
+        """
+        from visviva._streamed import run_streamed
+
+        return run_streamed(self, request)
 
     def _finished(self, result: dict[str, Any]) -> EnsembleTrajectory:
         return EnsembleTrajectory(self, result)

@@ -263,7 +263,9 @@ class Recorded(Exported, Shown, ABC):
         from visviva._osculating import elements_of
 
         merged = parts_and_masses(self) if self._result.get("collisions") else None
-        return elements_of(self._start, self.position, self.velocity, bodies, about, G, merged)
+        given = {"copy": np.arange(len(self.position)), "time": self.t}
+        rows = {axis: given[axis] for axis in self._row_axes}
+        return elements_of(self._start, self.position, self.velocity, bodies, about, G, merged, rows)
 
     @property
     def recorded(self) -> tuple[str, ...]:

@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from visviva.integrators import Method
     from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName, TransformationName
 
-__all__ = ["PlanRequest", "RunRequest", "asked_by", "execute", "finished"]
+__all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished"]
 
 _Parameters = ParamSpec("_Parameters")
 _Request = TypeVar("_Request")
@@ -164,6 +164,16 @@ class RunRequest(PlanRequest):
     executor: Any = None
     save_every: float | None = None
     save_to: str | PathLike[str] | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class StreamRequest(PlanRequest):
+    """What is asked of an ensemble that is written while it runs: the arguments of ``run_to_parquet``."""
+
+    to: str | PathLike[str]
+    copies_at_once: int | None = None
+    threads: int | None = None
+    progress: Progress = False
 
 
 # Name, default, what the core is told if the default was left, and the check of anything else.

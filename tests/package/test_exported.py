@@ -1,5 +1,7 @@
 """What goes to xarray and pandas is what the result has, under the names that it has there."""
 
+import dataclasses
+import pickle
 import sys
 
 import numpy as np
@@ -138,3 +140,51 @@ def test_what_is_missing_is_named(
     monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(ImportError, match=rf"{form} needs the package {package}: pip install 'visviva\[{package}\]'"):
         getattr(planets, form)()
+
+
+def test_elements_of_a_run_stand_under_its_times_and_bodies(planets: vv.Trajectory) -> None:
+    found = planets.elements(["Saturn", "Jupiter"], about="Sun")
+    data, frame = found.to_xarray(), found.to_pandas()
+    assert data["energy"].dims == ("time", "body")
+    assert data["laplace_runge_lenz"].dims == ("time", "body", "component")
+    assert data["inclination"].attrs == {"units": "rad"}
+    np.testing.assert_array_equal(data["time"], TIMES)
+    np.testing.assert_array_equal(data["eccentricity"].sel(body="Jupiter"), found.eccentricity[:, 1])
+    assert frame.index.names == ["time", "body"]
+    assert len(frame) == len(TIMES) * 2
+    np.testing.assert_array_equal(frame["period"].xs("Saturn", level="body"), found.period[:, 0])
+    np.testing.assert_array_equal(frame["angular_momentum"]["z"], found.angular_momentum[..., 2].reshape(-1))
+    alone = planets.elements("Saturn", about="Sun").to_pandas(["mean_longitude", "node"])
+    assert alone.index.name == "time"
+    np.testing.assert_array_equal(alone["mean_longitude"], found.mean_longitude[:, 0])
+
+
+def test_elements_of_copies_have_their_number(copies: vv.EnsembleTrajectory) -> None:
+    scene = copies.ensemble.scene
+    starts = copies.ensemble[1:]
+    out = starts.run(t=[0.0, 0.1])
+    found = out.elements(about=2, G=1.0)
+    data = found.to_xarray("semi_major_axis")
+    assert dict(data.sizes) == {"copy": 2, "time": 2, "body": len(scene.particles) - 1}
+    np.testing.assert_array_equal(data["semi_major_axis"], found.semi_major_axis)
+
+
+@pytest.mark.parametrize(("shape", "names"), [((), ["orbit"]), ((4,), ["orbit"]), ((2, 3), ["orbit_0", "orbit_1"])])
+def test_elements_of_states_are_counted(shape: tuple[int, ...], names: list[str]) -> None:
+    speed = np.zeros((*shape, 3))
+    speed[..., 1] = 1.0 + 0.1 * np.arange(np.prod(shape, dtype=int)).reshape(shape)
+    found = vv.orbits.elements(1.0, [1.0, 0.0, 0.0], speed)
+    frame = found.to_pandas()
+    assert frame.index.names == names
+    np.testing.assert_array_equal(frame["energy"], found.energy.reshape(-1))
+    assert set(found.to_xarray().data_vars) == set(vv.orbits.Elements.__slots__)
+    with pytest.raises(vv.InvalidInput, match="columns: there is no column 'anomaly'"):
+        found.to_pandas("anomaly")
+
+
+def test_rows_of_elements_keep_their_names_on_a_journey(planets: vv.Trajectory) -> None:
+    found = planets.elements(about="Sun")
+    xarray.testing.assert_identical(pickle.loads(pickle.dumps(found)).to_xarray(), found.to_xarray())
+    # What is made anew by hand may be of anything.
+    other = dataclasses.replace(found, mu=found.mu)
+    assert other.to_xarray()["mu"].dims == ("orbit_0", "orbit_1")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from visviva import _core
 from visviva._arrays import float_array
@@ -12,15 +12,18 @@ from visviva._keywords import known_keywords
 from visviva._text import short, table
 from visviva.errors import InvalidInput
 from visviva.orbits._arguments import broadcast, fields, shaped
+from visviva.orbits._rows import OfOrbits
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class Elements(Shown):
+class Elements(OfOrbits, Shown):
     """The elements of orbits about a fixed centre, per unit mass; what :func:`elements` returns.
 
     Every attribute has the shape of the orbits asked for (a number for one orbit), vectors with a last axis of 3.
@@ -74,6 +77,17 @@ class Elements(Shown):
         `node`.
     longitude_of_pericenter, mean_longitude : ndarray
         ϖ = node + argument of pericenter, and ϖ + mean anomaly; both may be beyond π.
+
+    `to_xarray` and `to_pandas` have a row for each orbit: of a run's elements under its times and the names of the
+    bodies (and the number of the copy), of others under their place in the arrays.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.datasets.outer_solar_system().scene.run(t=[0.0, 1e4], method="dop853")
+    >>> frame = out.elements(["Jupiter", "Saturn"], about="Sun").to_pandas(["semi_major_axis", "eccentricity"])
+    >>> frame.loc[1e4].round(2).values.tolist()
+    [[5.2, 0.05], [9.58, 0.05]]
     """
 
     mu: NDArray[np.float64]
@@ -104,6 +118,11 @@ class Elements(Shown):
 
     def __str__(self) -> str:
         return table(self)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        # A dataclass would leave behind what is no field: the times and names of the rows.
+        own = {name: getattr(self, name) for name in type(self).__slots__}
+        return labelled, (own, getattr(self, "_axes", {}))
 
     @property
     def longitude_of_ascending_node(self) -> NDArray[np.float64]:
@@ -142,6 +161,13 @@ class Elements(Shown):
             argument_of_pericenter=self.argument_of_pericenter,
             true_anomaly=self.true_anomaly,
         )
+
+
+def labelled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:
+    """Elements that know what stands along their axes."""
+    made = Elements(**columns)
+    made._along(axes)
+    return made
 
 
 @known_keywords

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -10,6 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import whole_number
 from visviva._keywords import known_keywords
+from visviva._parquet import file_path
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
@@ -17,6 +17,8 @@ from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam, _which
 
 if TYPE_CHECKING:
+    from os import PathLike
+
     from numpy.typing import NDArray
 
     from visviva._progress import Progress, Report
@@ -89,7 +91,7 @@ def scattering_events(
     with callback(progress, "events") as report:
         if to is None:
             return _columns(request, first, count, report)
-        _stream(request, first, count, report, _path(to))
+        _stream(request, first, count, report, file_path("to", to))
     return {}
 
 
@@ -107,16 +109,6 @@ def _columns(request: dict[str, Any], first: int, count: int, report: Report | N
     if request["beam"]["importance"] is None:
         del columns["weight"]
     return {"event": np.arange(first, first + count, dtype=np.uint64), "component": component, **columns}
-
-
-def _path(to: object) -> str:
-    try:
-        path = fspath(to) if isinstance(to, str | PathLike) else None
-    except TypeError:
-        path = None
-    if not isinstance(path, str):
-        raise InvalidInput("to", f"expected the path of a file, got {to!r}")
-    return path
 
 
 def _stream(request: dict[str, Any], first: int, count: int, report: Report | None, path: str) -> None:
