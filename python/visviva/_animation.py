@@ -1,11 +1,13 @@
 """Moving pictures of runs: the bodies at outputs that are evenly spaced in time, and where each has been just before.
 
 The one idea: a frame is an output of the run, the nearest one to its time; nothing is interpolated, so nothing is shown
-that was not computed.
+that was not computed. What moves is `Places`: those of bodies, or of a system in generalized coordinates, whose points
+are joined by lines.
 """
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import number, whole_number
-from visviva._style import COLORS
+from visviva._style import COLORS, FRAME
 from visviva.errors import InvalidInput
 from visviva.plot import chosen_bodies, directions, label_places, new_figure
 
@@ -25,24 +27,54 @@ if TYPE_CHECKING:
 
     from visviva.trajectory import Trajectory
 
-__all__ = ["animate"]
+__all__ = ["Places", "animate", "animate_places"]
 
 _SUFFIXES = (".gif", ".html", ".mp4")
+
+
+@dataclass(frozen=True, slots=True)
+class Places:
+    """Points over time.
+
+    Attributes
+    ----------
+    t : ndarray, shape (T,)
+    position : ndarray, shape (T, P, 3)
+    names : tuple of str, or None
+        Of the points; without them there is no legend.
+    joined : bool
+        Whether a line goes from each point to the next.
+    """
+
+    t: NDArray[np.float64]
+    position: NDArray[np.float64]
+    names: tuple[str, ...] | None = None
+    joined: bool = False
 
 
 def animate(
     trajectory: Trajectory, path: Any, *, bodies: object, plane: str | None, trail: object, frames: object, fps: object
 ) -> FuncAnimation:
     """As `Trajectory.animate`."""
-    chosen, shown = chosen_bodies("animate", trajectory, bodies), directions(trajectory, plane)
+    chosen = chosen_bodies("animate", trajectory, bodies)
+    known = trajectory.scene.particles.names
+    names = tuple(known[body] for body in chosen) if known else None
+    places = Places(trajectory.t, trajectory.position[:, chosen], names)
+    shown = directions(trajectory.position, plane)
+    return animate_places(places, path, shown=shown, trail=trail, frames=frames, fps=fps)
+
+
+def animate_places(
+    places: Places, path: Any, *, shown: Sequence[int], trail: object, frames: object, fps: object
+) -> FuncAnimation:
+    """Show points as they move, in these directions of space."""
     most = whole_number("frames", frames, 1, 100_000)
     part, rate = number("trail", trail), whole_number("fps", fps, 1, 1000)
     if not 0.0 <= part <= 1.0:
         raise InvalidInput("trail", f"expected a part of the run from 0 to 1, got {part!r}")
     figure, (axes,) = new_figure(1, (6.0, 5.5), solid=(0,) if len(shown) == 3 else ())
     file = None if path is None else _file(path)
-    outputs = _outputs(trajectory.t, most)
-    return _saved(_moving(figure, axes, trajectory, chosen, shown, outputs, part, rate), file, rate)
+    return _saved(_moving(figure, axes, places, shown, _outputs(places.t, most), part, rate), file, rate)
 
 
 def _outputs(t: NDArray[np.float64], most: int) -> NDArray[np.int64]:
@@ -58,8 +90,7 @@ def _outputs(t: NDArray[np.float64], most: int) -> NDArray[np.int64]:
 def _moving(
     figure: Any,
     axes: Any,
-    trajectory: Trajectory,
-    bodies: list[int],
+    places: Places,
     shown: Sequence[int],
     outputs: NDArray[np.int64],
     trail: float,
@@ -69,8 +100,7 @@ def _moving(
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     FigureCanvasAgg(figure)
-    names = trajectory.scene.particles.names
-    position = trajectory.position[:, bodies][..., shown]
+    names, t, position = places.names, places.t, places.position[..., shown]
     low, high = position.min(axis=(0, 1)), position.max(axis=(0, 1))
     # Room about what moves, and some where nothing does.
     room = 0.05 * max(float((high - low).max()), 1e-12 * float(np.abs(position).max()), np.finfo(float).tiny)
@@ -79,31 +109,31 @@ def _moving(
     label_places(axes, shown)
     if len(shown) == 2:
         axes.set_aspect("equal", adjustable="box")
-    span = trail * (trajectory.t[-1] - trajectory.t[0])
-    colors = [COLORS[at % len(COLORS)] for at in range(len(bodies))]
-    paths = [
-        axes.plot([], [], *[[]] * (len(shown) - 2), linewidth=0.8, linestyle="-", color=color)[0] for color in colors
-    ]
+    span = trail * (t[-1] - t[0])
+    nothing: list[list[float]] = [[] for _ in shown]
+    colors = [COLORS[at % len(COLORS)] for at in range(position.shape[1])]
+    paths = [axes.plot(*nothing, linewidth=0.8, linestyle="-", color=color)[0] for color in colors]
+    rods = [axes.plot(*nothing, linewidth=1.2, linestyle="-", color=FRAME, zorder=1)[0]] if places.joined else []
     marks = [
-        axes.plot(
-            [], [], *[[]] * (len(shown) - 2), "o", markersize=5, color=color, label=names[body] if names else None
-        )[0]
-        for body, color in zip(bodies, colors, strict=True)
+        axes.plot(*nothing, "o", markersize=5, color=color, label=names[at] if names else None)[0]
+        for at, color in enumerate(colors)
     ]
-    if names and len(bodies) <= len(COLORS):
+    if names and len(names) <= len(COLORS):
         axes.legend(fontsize="small", loc="upper right")
     title = axes.set_title("")
 
     def draw(output: int) -> list[Any]:
-        time = trajectory.t[output]
-        first = int(np.argmax(np.abs(time - trajectory.t[: output + 1]) <= abs(span)))
+        time = t[output]
+        first = int(np.argmax(np.abs(time - t[: output + 1]) <= abs(span)))
+        lines = [(rod, position[output]) for rod in rods]
         for at, (path, mark) in enumerate(zip(paths, marks, strict=True)):
-            for line, of in ((path, position[first : output + 1, at]), (mark, position[output : output + 1, at])):
-                line.set_data(of[:, 0], of[:, 1])
-                if len(shown) == 3:
-                    line.set_3d_properties(of[:, 2])
+            lines += [(path, position[first : output + 1, at]), (mark, position[output : output + 1, at])]
+        for line, of in lines:
+            line.set_data(of[:, 0], of[:, 1])
+            if len(shown) == 3:
+                line.set_3d_properties(of[:, 2])
         title.set_text(f"t = {time:.6g}")
-        return [*paths, *marks, title]
+        return [*paths, *rods, *marks, title]
 
     animation = FuncAnimation(figure, draw, frames=outputs.tolist(), interval=1000.0 / fps)
     # The first frame is drawn, so that nobody is warned who does not look at it.

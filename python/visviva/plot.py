@@ -67,7 +67,7 @@ def axes_or_new(axes: Axes | None) -> Axes:
 
 def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
     """Orbits and, in a figure of its own and if it is known, the relative change of the energy."""
-    chosen, shown = chosen_bodies("plot", trajectory, bodies), directions(trajectory, plane)
+    chosen, shown = chosen_bodies("plot", trajectory, bodies), directions(trajectory.position, plane)
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     solid = len(shown) == 3
     if ax is not None:
@@ -106,7 +106,7 @@ def chosen_bodies(what: str, trajectory: Trajectory, bodies: object) -> list[int
     return chosen
 
 
-def directions(trajectory: Trajectory, plane: object) -> Sequence[int]:
+def directions(position: NDArray[np.float64], plane: object) -> Sequence[int]:
     """The directions of space that are drawn: those of a plane, or the two of largest extent.
 
     Raises
@@ -115,7 +115,7 @@ def directions(trajectory: Trajectory, plane: object) -> Sequence[int]:
         For a plane that there is not.
     """
     if plane is None:
-        extent = np.ptp(trajectory.position.reshape(-1, 3), axis=0)
+        extent = np.ptp(position.reshape(-1, 3), axis=0)
         return sorted(np.argsort(-extent, kind="stable")[:2].tolist())
     if plane not in PLANES:
         near = did_you_mean(plane, PLANES) if isinstance(plane, str) else ""

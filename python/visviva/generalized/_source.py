@@ -28,6 +28,8 @@ class Source:
     symbols: tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]] | None
     parameters: tuple[str, ...]
     description: dict[str, Any]
+    #: Of coordinates, time and parameters, the points that a picture shows; None where nobody said.
+    points: Callable[..., Any] | None = None
 
     def nodes(self, argument: str, expressions: Iterable[Any]) -> tuple[list[Any], list[int]]:
         """Give further expressions of the same state as nodes and their places."""

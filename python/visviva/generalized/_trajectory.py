@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -14,8 +14,10 @@ from visviva.errors import InvalidInput
 from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
+    from os import PathLike
 
+    from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
@@ -275,3 +277,63 @@ class GeneralizedTrajectory(Exported, Shown):
         ax.set_xlabel(name)
         ax.set_ylabel(f"momentum of {name}")
         return ax
+
+    def animate(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        points: Callable[..., Any] | None = None,
+        plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
+        trail: float = 0.1,
+        frames: int = 200,
+        fps: int = 25,
+    ) -> FuncAnimation:
+        """Show the system as it moves, its points joined by lines, and save that as a GIF, MP4 or HTML page.
+
+        Frames are outputs of the run, those nearest to evenly spaced times: give the run as many as should be seen.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+        points : callable, optional
+            ``points(q, t, **parameters)`` gives the places of what is drawn, each of two or three numbers or arrays
+            over time, in the order in which lines join them; ``q[0]`` is the first coordinate, shape (T,). Those of
+            `systems` know theirs, with y upwards in a plane and z upwards in space.
+        plane : str, optional
+            What is shown: ``"xy"``, ``"xz"``, ``"yz"`` or ``"xyz"``; space where points have a third number, else xy.
+        trail : float
+            For how much of the run, from 0 to 1, the way of each point is shown behind it.
+        frames : int
+            At most so many.
+        fps : int
+            Frames a second.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+            In a notebook ``IPython.display.HTML(out.animate().to_jshtml())`` shows it.
+
+        Raises
+        ------
+        InvalidInput
+            If nobody said where the points are, they are no numbers, the run has no time, matplotlib or what writes the
+            file is not installed, or an argument is not one of these.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> out = vv.systems.double_pendulum().run(t=np.linspace(0.0, 2.0, 51))
+        >>> len(list(out.animate().new_frame_seq()))
+        51
+
+        A system of one's own says where its points are, here a bead on a parabola:
+
+        >>> bead = vv.Lagrangian(
+        ...     lambda q, v, t: v[0] ** 2 * (1 + 4 * q[0] ** 2) / 2 - 9.81 * q[0] ** 2, ["x"], position=[1.0]
+        ... )
+        >>> moving = bead.run(t=np.linspace(0.0, 2.0, 51)).animate(points=lambda q, t: [(q[0], q[0] ** 2)])
+        """
+        from visviva.generalized._points import animate
+
+        return animate(self, path, points, plane, {"trail": trail, "frames": frames, "fps": fps})

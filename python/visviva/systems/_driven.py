@@ -8,6 +8,8 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.generalized import Lagrangian
+from visviva.generalized._points import with_points
+from visviva.systems import _points
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
@@ -52,12 +54,15 @@ def rod(
     >>> vv.systems.rod().run(t=1.0).position[-1].round(12)
     array([1.54308063])
     """
-    return Lagrangian(
-        lambda q, v, _, m, Omega: m * (v[0] ** 2 + Omega**2 * q[0] ** 2) / 2,
-        ["r"],
-        parameters=checked(m=m, Omega=Omega),
-        position=position,
-        velocity=velocity,
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, m, Omega: m * (v[0] ** 2 + Omega**2 * q[0] ** 2) / 2,
+            ["r"],
+            parameters=checked(m=m, Omega=Omega),
+            position=position,
+            velocity=velocity,
+        ),
+        _points.bead_on_rod,
     )
 
 
@@ -99,14 +104,17 @@ def hoop(
     >>> bool(abs(aloft.run(t=1.0).position[-1, 0] - np.pi / 3) < 1e-14)
     True
     """
-    return Lagrangian(
-        lambda q, v, _, g, m, R, Omega: (
-            m * R**2 * (v[0] ** 2 + Omega**2 * np.sin(q[0]) ** 2) / 2 + m * g * R * np.cos(q[0])
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, m, R, Omega: (
+                m * R**2 * (v[0] ** 2 + Omega**2 * np.sin(q[0]) ** 2) / 2 + m * g * R * np.cos(q[0])
+            ),
+            ["theta"],
+            parameters=checked(g=g, m=m, R=R, Omega=Omega),
+            position=position,
+            velocity=velocity,
         ),
-        ["theta"],
-        parameters=checked(g=g, m=m, R=R, Omega=Omega),
-        position=position,
-        velocity=velocity,
+        _points.bead_on_hoop,
     )
 
 
@@ -157,7 +165,9 @@ def moving_pivot(
         return m * l**2 * v[0] ** 2 / 2 + m * l * ((g + y) * np.cos(q[0]) - x * np.sin(q[0]))
 
     values = checked(g=g, l=l, m=m, X=X, Y=Y, Omega=Omega)
-    return Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity), _points.moving_pivot
+    )
 
 
 @known_keywords
@@ -208,4 +218,6 @@ def kapitza(
         return m * l**2 * v[0] ** 2 / 2 + m * l * (g + y) * np.cos(q[0])
 
     values = checked(g=g, l=l, m=m, a=a, Omega=Omega)
-    return Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["theta"], parameters=values, position=position, velocity=velocity), _points.moving_pivot
+    )

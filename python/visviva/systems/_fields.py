@@ -10,6 +10,8 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized import Hamiltonian, Lagrangian
 from visviva.generalized._nodes import check_call
+from visviva.generalized._points import with_points
+from visviva.systems import _points
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
@@ -73,7 +75,10 @@ def charged_particle(
 
     names = ("Ex", "Ey", "Ez", "Bx", "By", "Bz")
     values = checked(m=m, charge=charge) | dict(zip(names, [*electric.tolist(), *magnetic.tolist()], strict=True))
-    return Lagrangian(function, ["x", "y", "z"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["x", "y", "z"], parameters=values, position=position, velocity=velocity),
+        _points.cartesian,
+    )
 
 
 @known_keywords
@@ -137,7 +142,9 @@ def central_force(
         return m * (v[0] ** 2 + q[0] ** 2 * v[1] ** 2) / 2 - energy(q[0], **others)
 
     values = checked(m=m) | dict(parameters or {})
-    return Lagrangian(function, ["r", "phi"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["r", "phi"], parameters=values, position=position, velocity=velocity), _points.polar
+    )
 
 
 def _kepler(r: Any, k: Any) -> Any:
@@ -169,9 +176,14 @@ def henon_heiles(
     >>> vv.systems.henon_heiles().run(t=100.0).position[-1].round(12)
     array([-0.04019424,  0.67901692])
     """
-    return Hamiltonian(
-        lambda q, p, _: (p[0] ** 2 + p[1] ** 2) / 2 + (q[0] ** 2 + q[1] ** 2) / 2 + q[0] ** 2 * q[1] - q[1] ** 3 / 3,
-        ["x", "y"],
-        position=position,
-        momentum=momentum,
+    return with_points(
+        Hamiltonian(
+            lambda q, p, _: (
+                (p[0] ** 2 + p[1] ** 2) / 2 + (q[0] ** 2 + q[1] ** 2) / 2 + q[0] ** 2 * q[1] - q[1] ** 3 / 3
+            ),
+            ["x", "y"],
+            position=position,
+            momentum=momentum,
+        ),
+        _points.cartesian,
     )

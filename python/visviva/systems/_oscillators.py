@@ -9,6 +9,8 @@ import numpy as np
 from visviva._arrays import whole_number
 from visviva._keywords import known_keywords
 from visviva.generalized import Lagrangian
+from visviva.generalized._points import with_points
+from visviva.systems import _points
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
@@ -49,12 +51,15 @@ def oscillator(
     >>> vv.systems.oscillator(k=4.0).run(t=np.pi / 3).position[-1].round(12)
     array([-0.5])
     """
-    return Lagrangian(
-        lambda q, v, _, k, m: m * v[0] ** 2 / 2 - k * q[0] ** 2 / 2,
-        ["x"],
-        parameters=checked(k=k, m=m),
-        position=position,
-        velocity=velocity,
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, k, m: m * v[0] ** 2 / 2 - k * q[0] ** 2 / 2,
+            ["x"],
+            parameters=checked(k=k, m=m),
+            position=position,
+            velocity=velocity,
+        ),
+        _points.line,
     )
 
 
@@ -90,12 +95,15 @@ def constant_force(
     >>> vv.systems.constant_force(F=3.0).run(t=2.0).position[-1].round(12)
     array([6.])
     """
-    return Lagrangian(
-        lambda q, v, _, F, m: m * v[0] ** 2 / 2 + F * q[0],
-        ["x"],
-        parameters=checked(F=F, m=m),
-        position=position,
-        velocity=velocity,
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, F, m: m * v[0] ** 2 / 2 + F * q[0],
+            ["x"],
+            parameters=checked(F=F, m=m),
+            position=position,
+            velocity=velocity,
+        ),
+        _points.line,
     )
 
 
@@ -149,7 +157,7 @@ def coupled_oscillators(
     names = [f"x{i + 1}" for i in range(n)]
     start = np.eye(n)[0] if position is None else position
     values = checked(k=k, coupling=coupling, m=m)
-    return Lagrangian(function, names, parameters=values, position=start, velocity=velocity)
+    return with_points(Lagrangian(function, names, parameters=values, position=start, velocity=velocity), _points.line)
 
 
 @known_keywords
@@ -202,4 +210,6 @@ def foucault(
         return kinetic - m * g * (q[0] ** 2 + q[1] ** 2) / (2 * l)
 
     values = checked(g=g, l=l, m=m, Omega=Omega, latitude=latitude)
-    return Lagrangian(function, ["x", "y"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["x", "y"], parameters=values, position=position, velocity=velocity), _points.cartesian
+    )

@@ -9,6 +9,8 @@ import numpy as np
 from visviva._arrays import whole_number
 from visviva._keywords import known_keywords
 from visviva.generalized import Lagrangian
+from visviva.generalized._points import with_points
+from visviva.systems import _points
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
@@ -52,12 +54,15 @@ def pendulum(
     >>> vv.systems.pendulum(g=1.0, position=[3.0]).run(t=16.1555393723933747).position[-1].round(12)
     array([3.])
     """
-    return Lagrangian(
-        lambda q, v, _, g, l, m: m * l**2 * v[0] ** 2 / 2 + m * g * l * np.cos(q[0]),
-        ["theta"],
-        parameters=checked(g=g, l=l, m=m),
-        position=position,
-        velocity=velocity,
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, l, m: m * l**2 * v[0] ** 2 / 2 + m * g * l * np.cos(q[0]),
+            ["theta"],
+            parameters=checked(g=g, l=l, m=m),
+            position=position,
+            velocity=velocity,
+        ),
+        _points.hanging,
     )
 
 
@@ -108,7 +113,10 @@ def double_pendulum(
         return kinetic + (m1 + m2) * g * l1 * c1 + m2 * g * l2 * c2
 
     values = checked(g=g, l1=l1, l2=l2, m1=m1, m2=m2)
-    return Lagrangian(function, ["theta1", "theta2"], parameters=values, position=position, velocity=velocity)
+    return with_points(
+        Lagrangian(function, ["theta1", "theta2"], parameters=values, position=position, velocity=velocity),
+        _points.hanging,
+    )
 
 
 @known_keywords
@@ -149,12 +157,17 @@ def spherical_pendulum(
     >>> cone.run(t=10.0).position[-1].round(12)
     array([ 0.5       , 33.43416729])
     """
-    return Lagrangian(
-        lambda q, v, _, g, l, m: m * l**2 * (v[0] ** 2 + np.sin(q[0]) ** 2 * v[1] ** 2) / 2 + m * g * l * np.cos(q[0]),
-        ["theta", "phi"],
-        parameters=checked(g=g, l=l, m=m),
-        position=position,
-        velocity=velocity,
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, l, m: (
+                m * l**2 * (v[0] ** 2 + np.sin(q[0]) ** 2 * v[1] ** 2) / 2 + m * g * l * np.cos(q[0])
+            ),
+            ["theta", "phi"],
+            parameters=checked(g=g, l=l, m=m),
+            position=position,
+            velocity=velocity,
+        ),
+        _points.spherical,
     )
 
 
@@ -215,7 +228,10 @@ def chain(
 
     start = 0.5 + np.arange(n) / 16 if position is None else position
     names = [f"theta{i + 1}" for i in range(n)]
-    return Lagrangian(function, names, parameters=checked(g=g, l=l, m=m), position=start, velocity=velocity)
+    return with_points(
+        Lagrangian(function, names, parameters=checked(g=g, l=l, m=m), position=start, velocity=velocity),
+        _points.hanging,
+    )
 
 
 @known_keywords
@@ -256,14 +272,17 @@ def spring_pendulum(
     >>> bouncing.run(t=np.pi / np.sqrt(40.0)).position[-1].round(12)
     array([1., 0.])
     """
-    return Lagrangian(
-        lambda q, v, _, g, k, l, m: (
-            m * (v[0] ** 2 + q[0] ** 2 * v[1] ** 2) / 2 + m * g * q[0] * np.cos(q[1]) - k * (q[0] - l) ** 2 / 2
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, k, l, m: (
+                m * (v[0] ** 2 + q[0] ** 2 * v[1] ** 2) / 2 + m * g * q[0] * np.cos(q[1]) - k * (q[0] - l) ** 2 / 2
+            ),
+            ["r", "theta"],
+            parameters=checked(g=g, k=k, l=l, m=m),
+            position=position,
+            velocity=velocity,
         ),
-        ["r", "theta"],
-        parameters=checked(g=g, k=k, l=l, m=m),
-        position=position,
-        velocity=velocity,
+        _points.spring,
     )
 
 
@@ -306,15 +325,18 @@ def cart_pendulum(
     >>> bool(abs(3.0 * x + np.sin(theta) - np.sin(1.0)).max() < 1e-13)
     True
     """
-    return Lagrangian(
-        lambda q, v, _, g, l, m, cart: (
-            (cart + m) * v[0] ** 2 / 2
-            + m * l * v[0] * v[1] * np.cos(q[1])
-            + m * l**2 * v[1] ** 2 / 2
-            + m * g * l * np.cos(q[1])
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, l, m, cart: (
+                (cart + m) * v[0] ** 2 / 2
+                + m * l * v[0] * v[1] * np.cos(q[1])
+                + m * l**2 * v[1] ** 2 / 2
+                + m * g * l * np.cos(q[1])
+            ),
+            ["x", "theta"],
+            parameters=checked(g=g, l=l, m=m, cart=cart),
+            position=position,
+            velocity=velocity,
         ),
-        ["x", "theta"],
-        parameters=checked(g=g, l=l, m=m, cart=cart),
-        position=position,
-        velocity=velocity,
+        _points.cart,
     )

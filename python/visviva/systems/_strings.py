@@ -8,6 +8,8 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.generalized import Lagrangian
+from visviva.generalized._points import with_points
+from visviva.systems import _points
 from visviva.systems._values import checked
 
 if TYPE_CHECKING:
@@ -56,15 +58,18 @@ def atwood(
     """
     values = checked(g=g, m1=m1, m2=m2, length=length)
     middle = values["length"] / 2
-    return Lagrangian(
-        lambda q, v, _, g, m1, m2, length: (  # noqa: ARG005
-            m1 * v[0] ** 2 / 2 + m2 * v[1] ** 2 / 2 + g * (m1 * q[0] + m2 * q[1])
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, m1, m2, length: (  # noqa: ARG005
+                m1 * v[0] ** 2 / 2 + m2 * v[1] ** 2 / 2 + g * (m1 * q[0] + m2 * q[1])
+            ),
+            ["x1", "x2"],
+            parameters=values,
+            position=(middle, middle) if position is None else position,
+            velocity=velocity,
+            constraints=[lambda q, _v, _t, length, **_others: q[0] + q[1] - length],
         ),
-        ["x1", "x2"],
-        parameters=values,
-        position=(middle, middle) if position is None else position,
-        velocity=velocity,
-        constraints=[lambda q, _v, _t, length, **_others: q[0] + q[1] - length],
+        _points.atwood,
     )
 
 
@@ -105,14 +110,17 @@ def swinging_atwood(
     >>> out.conservation()["energy"] < 1e-13
     True
     """
-    return Lagrangian(
-        lambda q, v, _, g, m, counterweight: (
-            (counterweight + m) * v[0] ** 2 / 2
-            + m * q[0] ** 2 * v[1] ** 2 / 2
-            - g * q[0] * (counterweight - m * np.cos(q[1]))
+    return with_points(
+        Lagrangian(
+            lambda q, v, _, g, m, counterweight: (
+                (counterweight + m) * v[0] ** 2 / 2
+                + m * q[0] ** 2 * v[1] ** 2 / 2
+                - g * q[0] * (counterweight - m * np.cos(q[1]))
+            ),
+            ["r", "theta"],
+            parameters=checked(g=g, m=m, counterweight=counterweight),
+            position=position,
+            velocity=velocity,
         ),
-        ["r", "theta"],
-        parameters=checked(g=g, m=m, counterweight=counterweight),
-        position=position,
-        velocity=velocity,
+        _points.swinging_atwood,
     )
