@@ -1,8 +1,8 @@
 """Moving pictures of runs: the bodies at outputs that are evenly spaced in time, and where each has been just before.
 
 The one idea: a frame is an output of the run, the nearest one to its time; nothing is interpolated, so nothing is shown
-that was not computed. What moves is `Places`: those of bodies, or of a system in generalized coordinates, whose points
-are joined by lines.
+that was not computed. What moves is `Places`: points and lines, be they those of bodies, of a system in generalized
+coordinates or of something that turns.
 """
 
 from __future__ import annotations
@@ -42,25 +42,29 @@ class Places:
     position : ndarray, shape (T, P, 3)
     names : tuple of str, or None
         Of the points; without them there is no legend.
-    joined : bool
-        Whether a line goes from each point to the next.
+    lines : ndarray, shape (T, K, 3), or None
+        What is drawn beside the points: a line through places that are given for each time, with NaN where it breaks.
     """
 
     t: NDArray[np.float64]
     position: NDArray[np.float64]
     names: tuple[str, ...] | None = None
-    joined: bool = False
+    lines: NDArray[np.float64] | None = None
 
 
 def animate(
     trajectory: Trajectory, path: Any, *, bodies: object, plane: str | None, trail: object, frames: object, fps: object
 ) -> FuncAnimation:
     """As `Trajectory.animate`."""
+    from visviva._boxes import boxes
+
     chosen = chosen_bodies("animate", trajectory, bodies)
     known = trajectory.scene.particles.names
     names = tuple(known[body] for body in chosen) if known else None
-    places = Places(trajectory.t, trajectory.position[:, chosen], names)
-    shown = directions(trajectory.position, plane)
+    outlines = boxes(trajectory, chosen)
+    places = Places(trajectory.t, trajectory.position[:, chosen], names, outlines)
+    # What turns is seen from aside.
+    shown = directions(trajectory.position, plane if plane is not None or outlines is None else "xyz")
     return animate_places(places, path, shown=shown, trail=trail, frames=frames, fps=fps)
 
 
@@ -101,9 +105,11 @@ def _moving(
 
     FigureCanvasAgg(figure)
     names, t, position = places.names, places.t, places.position[..., shown]
-    low, high = position.min(axis=(0, 1)), position.max(axis=(0, 1))
+    joined = position[:, :0] if places.lines is None else places.lines[..., shown]
+    everywhere = np.concatenate([position, joined], axis=1)
+    low, high = np.nanmin(everywhere, axis=(0, 1)), np.nanmax(everywhere, axis=(0, 1))
     # Room about what moves, and some where nothing does.
-    room = 0.05 * max(float((high - low).max()), 1e-12 * float(np.abs(position).max()), np.finfo(float).tiny)
+    room = 0.05 * max(float((high - low).max()), 1e-12 * float(np.nanmax(np.abs(everywhere))), np.finfo(float).tiny)
     for axis, least, greatest in zip("xyz", low, high, strict=False):
         getattr(axes, f"set_{axis}lim")(least - room, greatest + room)
     label_places(axes, shown)
@@ -113,19 +119,20 @@ def _moving(
     nothing: list[list[float]] = [[] for _ in shown]
     colors = [COLORS[at % len(COLORS)] for at in range(position.shape[1])]
     paths = [axes.plot(*nothing, linewidth=0.8, linestyle="-", color=color)[0] for color in colors]
-    rods = [axes.plot(*nothing, linewidth=1.2, linestyle="-", color=FRAME, zorder=1)[0]] if places.joined else []
+    rods = [axes.plot(*nothing, linewidth=1.2, linestyle="-", color=FRAME, zorder=1)[0]] if joined.size else []
     marks = [
         axes.plot(*nothing, "o", markersize=5, color=color, label=names[at] if names else None)[0]
         for at, color in enumerate(colors)
     ]
     if names and len(names) <= len(COLORS):
-        axes.legend(fontsize="small", loc="upper right")
+        # Beside the picture: within it, something would move behind.
+        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     title = axes.set_title("")
 
     def draw(output: int) -> list[Any]:
         time = t[output]
         first = int(np.argmax(np.abs(time - t[: output + 1]) <= abs(span)))
-        lines = [(rod, position[output]) for rod in rods]
+        lines = [(rod, joined[output]) for rod in rods]
         for at, (path, mark) in enumerate(zip(paths, marks, strict=True)):
             lines += [(path, position[first : output + 1, at]), (mark, position[output : output + 1, at])]
         for line, of in lines:

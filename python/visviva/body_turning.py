@@ -12,6 +12,9 @@ from visviva.rigid._orientation import quaternion_product, rotate_back
 from visviva.rigid._rotation import Rotation
 
 if TYPE_CHECKING:
+    from os import PathLike
+
+    from matplotlib.animation import FuncAnimation
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -115,6 +118,55 @@ class BodyTurning(Rotation):
         from visviva.rigid._pictures import plot_free_rotation
 
         return plot_free_rotation(self, kind)
+
+    def animate(
+        self,
+        path: str | PathLike[str] | None = None,
+        *,
+        plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
+        trail: float = 0.1,
+        frames: int = 200,
+        fps: int = 25,
+    ) -> FuncAnimation:
+        """Show the body as it turns: its principal axes, and the homogeneous box that has its moments.
+
+        Frames are times of the motion, those nearest to evenly spaced ones: give it as many as should be seen.
+
+        Parameters
+        ----------
+        path : str or PathLike, optional
+            A file ending in ``.gif``, ``.mp4`` (which needs ffmpeg) or ``.html``; nothing is written without one.
+        plane : str, optional
+            What is shown: ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"``, the default.
+        trail : float
+            For how much of the time, from 0 to 1, the ways of the axes are shown behind them.
+        frames : int
+            At most so many.
+        fps : int
+            Frames a second.
+
+        Returns
+        -------
+        matplotlib.animation.FuncAnimation
+            In a notebook ``IPython.display.HTML(out.animate().to_jshtml())`` shows it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the times are not a row, matplotlib or what writes the file is not installed, or an argument is not one
+            of these.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0])
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 20.0, 51)).body(0).turning
+        >>> len(list(out.animate().new_frame_seq()))
+        51
+        """
+        from visviva._boxes import animate_turning
+
+        return animate_turning(self, path, plane, {"trail": trail, "frames": frames, "fps": fps})
 
 
 def __dir__() -> list[str]:

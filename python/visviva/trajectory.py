@@ -284,6 +284,9 @@ class Trajectory(Recorded):
     ) -> FuncAnimation:
         """Show the bodies as they move, and save that as a GIF, MP4 or HTML page.
 
+        A rigid body whose orientation was recorded is drawn as the homogeneous box that has its mass and moments; from
+        its fixed point, if it has one, a line goes to its center.
+
         Frames are outputs of the run, those nearest to evenly spaced times: give the run as many as should be seen.
 
         Parameters
@@ -293,7 +296,7 @@ class Trajectory(Recorded):
         bodies : sequence of int or str, optional
             Which; all if not given.
         plane : str, optional
-            As in `plot`.
+            As in `plot`; ``"xyz"`` if not given and there are boxes.
         trail : float
             For how much of the run, from 0 to 1, the way of each body is shown behind it.
         frames : int

@@ -53,7 +53,7 @@ def animate(
         raise InvalidInput("animate", "expected a trajectory with times, got 0 times")
     position, solid = _positions(trajectory, points)
     shown = directions(position, ("xyz" if solid else "xy") if plane is None else plane)
-    return animate_places(Places(trajectory.t, position, joined=True), path, shown=shown, **how)
+    return animate_places(Places(trajectory.t, position, lines=position), path, shown=shown, **how)
 
 
 def _positions(trajectory: GeneralizedTrajectory, points: Callable[..., Any]) -> tuple[NDArray[np.float64], bool]:
