@@ -10,6 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
 from visviva.rigid._top_motion import TopMotion
 
 if TYPE_CHECKING:
@@ -27,6 +28,13 @@ class SteadyPrecession(NamedTuple):
 
     slow: float
     fast: float
+
+
+def _from_the_vertical(theta: float) -> float:
+    angle = number("theta", theta)
+    if not 0.0 <= angle <= np.pi:
+        raise InvalidInput("theta", f"expected an angle in [0, π], got {angle}")
+    return angle
 
 
 @known_keywords
@@ -123,7 +131,7 @@ class HeavyTop:
         >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).least_spin(2.0)
         0.0
         """
-        return _core.top_least_spin(self._numbers, number("theta", theta))
+        return _core.top_least_spin(self._numbers, _from_the_vertical(theta))
 
     def steady_precession(self, theta: float, spin: float) -> SteadyPrecession:
         """Give both rates of steady precession: A cos θ Ω² − C ω₃ Ω + M g R = 0.
@@ -169,7 +177,7 @@ class HeavyTop:
         return SteadyPrecession(*frequencies)
 
     def _precessions(self, theta: float, spin: float) -> tuple[list[float], list[float]]:
-        return _core.top_steady_precession(self._numbers, number("theta", theta), number("spin", spin))
+        return _core.top_steady_precession(self._numbers, _from_the_vertical(theta), number("spin", spin))
 
     def nutation(self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0) -> Nutation:
         """Give the nutation of a top from where it is and how it turns.
@@ -201,7 +209,7 @@ class HeavyTop:
         ('cusp', 0.3, 0.682256015831)
         """
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
-        found = _core.top_nutation(self._numbers, number("theta", theta), *rates)
+        found = _core.top_nutation(self._numbers, _from_the_vertical(theta), *rates)
         low, high = found["theta"]
         one, two, three = found["roots"]
         return Nutation(
@@ -285,7 +293,7 @@ class HeavyTop:
         array([  0.   ,   4.2  , 416.468])
         """
         times = float_array("t", t, None)
-        angles = (number("theta", theta), number("phi", phi), number("psi", psi))
+        angles = (_from_the_vertical(theta), number("phi", phi), number("psi", psi))
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
         found = _core.top_motion(self._numbers, angles, rates, times.ravel())
         columns = [np.ascontiguousarray(column).reshape(times.shape) for column in found.T]
