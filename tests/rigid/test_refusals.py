@@ -46,6 +46,8 @@ WRONG: dict[str, list[Any]] = {
         None,
         *NO_ARRAY,
     ],
+    "two equal moments": [[1.0, 2.0, 2.5], [1.0, 1.0, 1.0], [1.0, 1.0, 2.1], [1.0, 1.0], None, *NO_ARRAY],
+    "turning": [[0.0, 0.0, 0.0], [NAN, 0.0, 1.0], [1.0, 2.0], None, *NO_ARRAY],
     "inertia": [
         np.diag([1.0, 2.0, 3.1]),
         np.diag([-1.0, 1.0, 1.0]),
@@ -78,6 +80,8 @@ WRONG: dict[str, list[Any]] = {
     "convention": ["ZZX", "ZX", "ZXZX", "abc", "zXZ", "", 3, None, ["Z", "X", "Z"]],
     "frame": ["bodies", "", 1, None, ["body"]],
     "switch": ["yes", 2, None, [True]],
+    "not zero": [NAN, INF, -INF, 0.0, None, *NO_NUMBER],
+    "polar angles": [NAN, INF, -0.1, 3.2, [0.5, -0.1], None, *NO_ARRAY],
     "polar angle": [NAN, INF, -0.1, 3.2, None, *NO_NUMBER],
     "upright angle": [NAN, INF, None, *NO_NUMBER],
     "body": [7, -3, 0.5, "nobody", [0], object()],
@@ -124,6 +128,15 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
     "HeavyTop": (
         vv.rigid.HeavyTop,
         {"A": MASS, "C": (0.5, "positive"), "mass": MASS, "g": MASS, "R": MASS},
+    ),
+    "HeavyTop.weak_torque_precession": (TOP.weak_torque_precession, {"spin": (30.0, "not zero")}),
+    "HeavyTop.momenta": (
+        TOP.momenta,
+        {"theta": (0.5, "polar angle"), "psi_dot": (20.0, "number"), "phi_dot": (0.0, "number")},
+    ),
+    "HeavyTop.effective_potential": (
+        TOP.effective_potential,
+        {"theta": ([0.5, 1.0], "polar angles"), "p_phi": (1.0, "number"), "p_psi": (2.0, "number")},
     ),
     "HeavyTop.least_spin": (TOP.least_spin, {"theta": (0.5, "polar angle")}),
     "HeavyTop.nutation": (TOP.nutation, START),
@@ -215,6 +228,14 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
     "quaternion_from_matrix": (vv.rigid.quaternion_from_matrix, {"matrix": (UNIT_TENSOR, "rotation matrix")}),
     "quaternion_from_rotation_vector": (vv.rigid.quaternion_from_rotation_vector, {"rotation_vector": VECTOR}),
     "quaternion_product": (vv.rigid.quaternion_product, {"a": UNIT, "b": UNIT}),
+    "slerp": (
+        vv.rigid.slerp,
+        {"start": UNIT, "end": ([0.0, 0.0, 0.0, 1.0], "quaternion"), "fraction": ([0.0, 0.5], "numbers")},
+    ),
+    "cone_angles": (
+        vv.rigid.cone_angles,
+        {"moments": ([2.0, 2.0, 3.0], "two equal moments"), "angular_velocity": ([0.1, 0.0, 1.0], "turning")},
+    ),
     "rotate": (vv.rigid.rotate, {"quaternion": UNIT, "vector": VECTOR}),
     "rotate_back": (vv.rigid.rotate_back, {"quaternion": UNIT, "vector": VECTOR}),
     "screw_axis": (vv.rigid.screw_axis, {"velocity": VECTOR, "angular_velocity": VECTOR, "about": VECTOR}),
@@ -278,7 +299,17 @@ FORCES: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
 }
 
 # What results are made of; nobody makes them by hand.
-RESULTS = {"FreeRotation", "Nutation", "Polhode", "PrincipalAxes", "ScrewAxis", "SteadyPrecession", "TopMotion"}
+RESULTS = {
+    "ConeAngles",
+    "FreeRotation",
+    "Nutation",
+    "Polhode",
+    "PrincipalAxes",
+    "ScrewAxis",
+    "SteadyPrecession",
+    "TopMomenta",
+    "TopMotion",
+}
 
 
 def cases() -> Iterator[Any]:
