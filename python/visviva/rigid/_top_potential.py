@@ -6,8 +6,6 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from visviva.errors import InvalidInput
-
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -32,11 +30,8 @@ class TopMomenta(NamedTuple):
 
 
 def weight(top: HeavyTop) -> float:
-    """M g R, the largest torque of gravity."""
-    product = top.mass * top.g * top.R
-    if not 0.0 < product < np.inf:
-        raise InvalidInput("g", f"expected units in which M g R stays within float64, got {product}")
-    return product
+    """M g R, the largest torque of gravity; a top whose product leaves the range of float64 is refused when it is made."""
+    return top.mass * top.g * top.R
 
 
 def effective_potential(top: HeavyTop, theta: NDArray[np.float64], p_phi: float, p_psi: float) -> NDArray[np.float64]:
