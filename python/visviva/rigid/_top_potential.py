@@ -30,7 +30,7 @@ class TopMomenta(NamedTuple):
 
 
 def weight(top: HeavyTop) -> float:
-    """M g R, the largest torque of gravity; a top whose product leaves the range of float64 is refused when it is made."""
+    """M g R, the largest torque of gravity; tops for which it leaves the range of float64 are refused when made."""
     return top.mass * top.g * top.R
 
 
