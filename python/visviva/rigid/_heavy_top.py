@@ -241,7 +241,7 @@ class HeavyTop:
         >>> import visviva as vv
         >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
         >>> top.effective_potential([0.0, 0.1], p_phi=30.0, p_psi=30.0).round(6).tolist()
-        [20.0, 20.125458]
+        [20.0, 20.125459]
         """
         angles = float_array("theta", theta, None)
         if not ((angles >= 0.0) & (angles <= np.pi)).all():
