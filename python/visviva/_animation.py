@@ -8,13 +8,13 @@ coordinates or of something that turns.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from os import fspath
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import number, whole_number
+from visviva._paths import path_text
 from visviva._style import COLORS, FRAME
 from visviva.errors import InvalidInput
 from visviva.plot import chosen_bodies, directions, label_places, new_figure
@@ -158,10 +158,7 @@ def _file(path: Any) -> Path:
     """
     from matplotlib.animation import writers
 
-    try:
-        file = Path(fspath(path))
-    except TypeError:
-        raise InvalidInput("path", f"expected a path, got {path!r}") from None
+    file = Path(path_text("path", path))
     if file.suffix not in _SUFFIXES:
         raise InvalidInput("path", f"expected a file ending in {', '.join(_SUFFIXES)}, got {str(path)!r}")
     if not file.parent.is_dir():

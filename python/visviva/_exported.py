@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva._paths import path_text
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -198,10 +199,10 @@ class Exported:
         >>> table["position_Jupiter_x"].to_numpy().round(3).tolist()[0]
         -3.502
         """
-        from visviva._parquet import file_path, groups, write
+        from visviva._parquet import groups, write
 
         export = self._exported(columns)
-        write(file_path("path", path), groups(export, self._row_axes), dict(export.attributes), "to_parquet")
+        write(path_text("path", path), groups(export, self._row_axes), dict(export.attributes), "to_parquet")
 
 
 def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:

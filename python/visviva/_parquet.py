@@ -6,12 +6,9 @@ that a file of any length is written in the memory of one group.
 
 from __future__ import annotations
 
-from os import PathLike, fspath
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-
-from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -20,29 +17,12 @@ if TYPE_CHECKING:
 
     from visviva._exported import Columns
 
-__all__ = ["GROUP_BYTES", "file_path", "groups", "write"]
+__all__ = ["GROUP_BYTES", "groups", "write"]
 
 # What comes again in many rows.
 _REPEATED = ("copy", "time", "body", "status", "rigid_body")
 # Of one group of rows.
 GROUP_BYTES = 1 << 24
-
-
-def file_path(name: str, given: object) -> str:
-    """The path of a file as text.
-
-    Raises
-    ------
-    visviva.InvalidInput
-        Naming the argument, for what is no path.
-    """
-    try:
-        path = fspath(given) if isinstance(given, str | PathLike) else None
-    except TypeError:
-        path = None
-    if not isinstance(path, str):
-        raise InvalidInput(name, f"expected the path of a file, got {given!r}")
-    return path
 
 
 def groups(export: Columns, rows: tuple[str, ...], first: int = 0) -> Iterator[dict[str, NDArray[Any]]]:

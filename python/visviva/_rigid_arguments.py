@@ -82,11 +82,14 @@ def unit(turns: NDArray[np.float64], names: tuple[str, ...]) -> NDArray[np.float
 
 def pivots(given: Any, sizes: Sizes) -> NDArray[np.float64] | None:
     """The fixed points, with rows of NaN for free bodies; None if there is no other."""
-    array = np.asarray(given)
     free = np.zeros(0, bool)
-    if array.dtype.kind == "f" and array.ndim == 2:
-        free = np.isnan(array).all(axis=-1)
-        given = np.where(free[:, None], 0.0, array) if free.any() else given
+    try:
+        array = np.asarray(given)
+        if array.dtype.kind == "f" and array.ndim == 2:
+            free = np.isnan(array).all(axis=-1)
+            given = np.where(free[:, None], 0.0, array) if free.any() else given
+    except ValueError:  # of rows that differ in length, which are refused below
+        pass
     checked = float_array("pivot", given, ("K", 3), sizes)
     if free.all() and len(free) == len(checked):
         return None

@@ -12,7 +12,8 @@ import numpy as np
 from visviva import _core
 from visviva._accuracy import judge
 from visviva._arrays import whole_number
-from visviva._parquet import GROUP_BYTES, file_path, groups, write
+from visviva._parquet import GROUP_BYTES, groups, write
+from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import Interrupted
 from visviva.status import Status
@@ -40,7 +41,7 @@ def run_streamed(copies: EnsembleScene, request: StreamRequest) -> NDArray[np.in
     visviva.Interrupted
         After Ctrl-C.
     """
-    path = file_path("to", request.to)
+    path = path_text("to", request.to)
     asked = request.to_core(copies._keywords, copies._names)
     threads = None if request.threads is None else whole_number("threads", request.threads, 1, 1024)
     plan = _core.plan(asked)  # refuses by the number of a copy what a part would count anew

@@ -23,6 +23,7 @@ import numpy as np
 import visviva
 from visviva._continuation import ARRAYS, SHARED, attached, turning
 from visviva._keywords import known_keywords
+from visviva._paths import path_text
 from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva._turning import restored, saved
 from visviva.ensemble import EnsembleScene, EnsembleTrajectory
@@ -58,7 +59,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     OSError
         If it cannot be written.
     """
-    name = _named(path)
+    name = path_text("path", path)
     result = run._result
     start = run._start._keywords
     header = {
@@ -141,7 +142,7 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     >>> vv.load(path).final.t0
     1.0
     """
-    name = _named(path)
+    name = path_text("path", path)
     with open(name, "rb") as stream:
         try:
             return _restored(*checked(stream))
@@ -204,14 +205,6 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     _ = run.stats, run.plan, run.status, "events" in result and run.events
     _ = "collisions" in result and run.collisions
     return run
-
-
-def _named(path: Any) -> str:
-    try:
-        name = os.fspath(path)
-    except TypeError:
-        raise InvalidInput("path", f"expected the path of a file, got {type(path).__name__}") from None
-    return os.fsdecode(name)
 
 
 def _plain(value: object) -> Any:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
 from visviva.rigid._arguments import rows
 from visviva.rigid_bodies import RigidBodies
 
@@ -65,6 +66,8 @@ def RigidBody(  # noqa: N802
     >>> vv.RigidBody(brick.mass, inertia=brick.tensor, angular_velocity=[0.1, 5.0, 0.1], name="brick")
     RigidBodies(1 body: brick)
     """
+    if name is not None and not (isinstance(name, str) and name.strip()):
+        raise InvalidInput("name", f"expected a text that is not empty, got {name!r}")
     turn = rows("orientation", orientation, (4,))
     vectors = {"position": position, "velocity": velocity, "angular_velocity": angular_velocity}
     return RigidBodies(

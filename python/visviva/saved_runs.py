@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from dataclasses import dataclass, fields, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,6 +20,7 @@ from visviva import _core
 from visviva._arrays import positive, whole_number
 from visviva._joined_parts import joined
 from visviva._keywords import known_keywords
+from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import InvalidInput
 from visviva.events import from_description
@@ -92,9 +92,9 @@ def resume(path: str | PathLike[str], *, threads: int | None = None, progress: P
     >>> bool((vv.resume(path).position == out.position).all())
     True
     """
-    folder = _folder(path)
+    folder = Path(path_text("path", path, "folder"))
     if not folder.is_dir():
-        raise FileNotFoundError(f"no such folder: {os.fspath(folder)!r}")
+        raise FileNotFoundError(f"no such folder: {str(folder)!r}")
     try:
         request = _read(folder / _REQUEST)
     except (OSError, ValueError, KeyError, TypeError) as error:
@@ -128,7 +128,7 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
     with callback(request.progress):
         pass  # it is one, or is refused
     _parts(scene, replace(request, save_every=every), asked, _core.plan(asked))
-    folder = _folder(request.save_to)
+    folder = Path(path_text("save_to", request.save_to, "folder"))
     if (folder / _REQUEST).exists():
         raise InvalidInput("save_to", f"there is a run in {str(folder)!r}; visviva.resume goes on with it")
     folder.mkdir(exist_ok=True)
@@ -293,13 +293,6 @@ def _loaded(file: Path) -> Trajectory:
         raise InvalidInput("path", f"expected one run in {str(file)!r}, got an ensemble")
     run._result["plan"] = told(run._result["plan"])
     return run
-
-
-def _folder(path: Any) -> Path:
-    try:
-        return Path(os.fsdecode(os.fspath(path)))
-    except TypeError:
-        raise InvalidInput("save_to", f"expected the path of a folder, got {type(path).__name__}") from None
 
 
 def _scaled(report: Report | None, number: int, parts: int) -> Report | None:

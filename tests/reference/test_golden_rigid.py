@@ -44,6 +44,8 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     axes = vv.rigid.rotate(out.orientation, [0.0, 0.0, 1.0])
     along = out.angular_momentum[0] / expected["L"]
     close(np.arccos(axes @ along), [expected["cone_angle"]] * 2)
+    cones = vv.rigid.cone_angles([a, a, c], spin)
+    close([cones.axis, cones.body], [expected["cone_angle"], expected["angle_omega_e3"]])
     turned = vv.rigid.rotate(vv.rigid.quaternion_from_rotation_vector(expected["Omega"] * given["t"] * along), axes[0])
     close(axes[1], turned, scale=1.0)
     velocity = vv.rigid.rotate(out.orientation, out.angular_velocity)
@@ -163,6 +165,7 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     # The limit A Ω ≪ C ω₃: of a top that is light across its axis, the slow precession at the horizontal.
     top = vv.rigid.HeavyTop(given["C"], given["C"], given["M"], given["g"], given["R"])
     slow = top.steady_precession(np.pi / 2, given["omega3"]).slow
+    close(top.weak_torque_precession(given["omega3"]), expected["Omega"])
     close(slow, expected["Omega"])
     close(2 * np.pi / slow, expected["period"])
     close(slow * given["C"] * given["omega3"], expected["torque_horizontal_max"])
@@ -222,6 +225,10 @@ def _(given: dict[str, Any], expected: dict[str, Any]) -> None:
     close(found.theta[0], expected["theta_t"])
     close(found.phi[1], expected["phi_advance_per_nutation"])
     sine, cosine = np.sin(found.theta), np.cos(found.theta)
+    momenta = top.momenta(start["theta"], psi_dot=start["psi_dot"], phi_dot=start["phi_dot"])
+    close(momenta, [expected["p_phi"], expected["p_psi"]])
+    ends = top.effective_potential([nutation.theta_min, nutation.theta_max], **momenta._asdict())
+    close(ends, [expected["E_prime"]] * 2)
     p_psi = given["C"] * (found.psi_dot + found.phi_dot * cosine)
     close(p_psi, [expected["p_psi"]] * 2)
     close(given["A"] * found.phi_dot * sine**2 + p_psi * cosine, [expected["p_phi"]] * 2)

@@ -278,7 +278,7 @@ def test_one_body_is_refused_by_its_own_shapes() -> None:
         ({"moments": [1.0, 1.0, 2.5]}, r"moments\[2\] = 2.5 is larger by 0.5$"),
         ({"pivot": FREE}, r"pivot\[0\] is nan"),
         ({"position": [[0, 0, 0]]}, r"position: expected shape \(3,\)"),
-        ({"name": ""}, "names"),
+        ({"name": ""}, "name: expected a text that is not empty"),
     ):
         with pytest.raises(vv.InvalidInput, match=words):
             vv.RigidBody(**{"mass": 1.0, "moments": [1.0, 1.0, 1.0], **changes})

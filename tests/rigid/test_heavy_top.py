@@ -130,6 +130,40 @@ def test_limits():
 
 
 @pytest.mark.parametrize(
+    ("theta", "p_phi", "p_psi"),
+    [
+        (1e-9, 30.0, 30.0),
+        (1e-9, 30.0000001, 30.0),
+        (0.3, 3.0, 30.0),
+        (1.5, 2.0, 7.0),
+        (2.5, 1.0, 0.0),
+        (2.9, -30.0, 30.0),
+        (np.pi - 1e-8, -30.0, 30.0),
+    ],
+)
+def test_the_potential_in_which_it_nods(theta, p_phi, p_psi):
+    with mpmath.workdps(40):
+        sine, cosine = mpmath.sin(theta), mpmath.cos(theta)
+        barrier = (p_phi - p_psi * cosine) ** 2 / (2 * 5 * sine**2)
+        exact, size = barrier + 20 * cosine, barrier + 20
+    found = vv.rigid.HeavyTop(5.0, 1.0, 1.0, 20.0, 1.0).effective_potential(theta, p_phi=p_phi, p_psi=p_psi)
+    assert abs(found - exact) < 8 * np.finfo(float).eps * size  # rounding of its two terms
+
+
+def test_the_potential_at_the_poles():
+    top = vv.rigid.HeavyTop(5.0, 1.0, 1.0, 20.0, 1.0)
+    assert top.effective_potential(0.0, p_phi=3.0, p_psi=3.0) == 20.0
+    assert top.effective_potential([0.0, np.pi], p_phi=3.0, p_psi=2.0).min() > 1e30
+    assert top.effective_potential(np.pi, p_phi=-3.0, p_psi=3.0) == -20.0
+    # A steady precession is at the bottom: the derivative vanishes to the square of the step.
+    slow = top.steady_precession(0.7, 60.0).slow
+    momenta = top.momenta(0.7, psi_dot=60.0 - slow * np.cos(0.7), phi_dot=slow)
+    left, middle, right = top.effective_potential([0.699, 0.7, 0.701], **momenta._asdict())
+    assert middle < min(left, right)
+    assert abs(left - right) < 2e-3 * (left + right - 2.0 * middle)  # of third order in the step
+
+
+@pytest.mark.parametrize(
     ("call", "argument", "words"),
     [
         (lambda: vv.rigid.HeavyTop(0.0, 1.0, 1.0, 1.0, 1.0), "A", "positive"),

@@ -10,7 +10,7 @@ import pytest
 from high_order import angle_between
 from hypothesis import given
 from hypothesis import strategies as st
-from scipy.spatial.transform import Rotation
+from scipy.spatial.transform import Rotation, Slerp
 
 import visviva as vv
 
@@ -127,6 +127,34 @@ def test_small_rotations_keep_their_digits():
         v = np.array([1.0, -2.0, 3.0]) * size
         back = vv.rigid.rotation_vector(vv.rigid.quaternion_from_rotation_vector(v))
         assert np.allclose(back, v, rtol=4 * EPSILON, atol=0)
+
+
+@given(fraction=st.floats(-3.0, 4.0), size=st.floats(-12.0, 0.0))
+def test_slerp_is_a_steady_turn(fraction: float, size: float) -> None:
+    start = vv.rigid.quaternion_from_rotation_vector([0.3, -1.0, 0.4])
+    turn = 10.0**size * np.array([0.6, -0.48, 0.64]) * 3.1
+    end = vv.rigid.quaternion_product(start, vv.rigid.quaternion_from_rotation_vector(turn))
+    for sign in (1.0, -1.0):  # a quaternion and its opposite are one orientation
+        between = vv.rigid.slerp(start, sign * end, fraction)
+        exact = vv.rigid.quaternion_product(start, vv.rigid.quaternion_from_rotation_vector(fraction * turn))
+        # The rounding of the ends, as far as the fraction carries it.
+        assert np.abs(between - exact).max() < 4 * EPSILON * (2.0 + abs(fraction))
+
+
+def test_slerp_broadcasts_and_agrees_with_scipy() -> None:
+    ends = Rotation.random(2, random_state=3)
+    fractions = np.linspace(0.0, 1.0, 7)
+    ours = vv.rigid.slerp(ends[0], ends[1], fractions)
+    theirs = Slerp([0.0, 1.0], ends)(fractions)
+    assert (theirs.inv() * vv.rigid.to_scipy(ours)).magnitude().max() < 1e-15
+    grid = vv.rigid.slerp(ours[:, None], ours[None], 0.5)
+    assert grid.shape == (7, 7, 4)
+    for i, j in ((0, 6), (3, 1), (2, 2)):
+        assert (grid[i, j] == vv.rigid.slerp(ours[i], ours[j], 0.5)).all()
+    with pytest.raises(vv.InvalidInput, match=r"end: expected axes that broadcast with \(7,\) of start, got \(2,\)"):
+        vv.rigid.slerp(ours, ours[:2], 0.5)
+    with pytest.raises(vv.InvalidInput, match=r"fraction: expected axes that broadcast with \(7,\) of start and end"):
+        vv.rigid.slerp(ours, ours, [0.5, 0.6])
 
 
 @pytest.mark.parametrize(

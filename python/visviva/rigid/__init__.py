@@ -6,6 +6,7 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 ``scipy.spatial.transform.Rotation``.
 """
 
+from visviva.rigid._cones import ConeAngles, cone_angles
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
 from visviva.rigid._heavy_top import HeavyTop, Nutation, SteadyPrecession
@@ -33,6 +34,7 @@ from visviva.rigid._orientation import (
     to_scipy,
 )
 from visviva.rigid._polhode import Polhode, flip_time, period, polhode, precession_rate
+from visviva.rigid._slerp import slerp
 from visviva.rigid._solids import (
     box,
     capsule,
@@ -46,9 +48,11 @@ from visviva.rigid._solids import (
 )
 from visviva.rigid._thin import disc, plate, rod
 from visviva.rigid._top_motion import TopMotion
+from visviva.rigid._top_potential import TopMomenta
 from visviva.rigid._velocity import ScrewAxis, screw_axis, velocity_at
 
 __all__ = [
+    "ConeAngles",
     "FreeRotation",
     "HeavyTop",
     "MassProperties",
@@ -57,12 +61,14 @@ __all__ = [
     "PrincipalAxes",
     "ScrewAxis",
     "SteadyPrecession",
+    "TopMomenta",
     "TopMotion",
     "angular_velocity_from_euler",
     "box",
     "capsule",
     "composite",
     "cone",
+    "cone_angles",
     "cylinder",
     "disc",
     "ellipsoid",
@@ -94,6 +100,7 @@ __all__ = [
     "rotate_tensor",
     "rotation_vector",
     "screw_axis",
+    "slerp",
     "sphere",
     "tetrahedron",
     "to_scipy",

@@ -10,10 +10,12 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
 from visviva.rigid._top_motion import TopMotion
+from visviva.rigid._top_potential import TopMomenta, effective_potential, weight
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from numpy.typing import ArrayLike, NDArray
 
 
 class SteadyPrecession(NamedTuple):
@@ -27,6 +29,13 @@ class SteadyPrecession(NamedTuple):
 
     slow: float
     fast: float
+
+
+def _from_the_vertical(theta: float) -> float:
+    angle = number("theta", theta)
+    if not 0.0 <= angle <= np.pi:
+        raise InvalidInput("theta", f"expected an angle in [0, π], got {angle}")
+    return angle
 
 
 @known_keywords
@@ -123,7 +132,7 @@ class HeavyTop:
         >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).least_spin(2.0)
         0.0
         """
-        return _core.top_least_spin(self._numbers, number("theta", theta))
+        return _core.top_least_spin(self._numbers, _from_the_vertical(theta))
 
     def steady_precession(self, theta: float, spin: float) -> SteadyPrecession:
         """Give both rates of steady precession: A cos θ Ω² − C ω₃ Ω + M g R = 0.
@@ -155,6 +164,91 @@ class HeavyTop:
         rates, _ = self._precessions(theta, spin)
         return SteadyPrecession(*rates)
 
+    def weak_torque_precession(self, spin: float) -> float:
+        """Give the rate M g R/(C ω₃) at which a fast top goes round, at any angle.
+
+        It is the limit of the slow steady precession for (C ω₃)² ≫ A M g R, off by about A M g R cos θ/(C ω₃)² of
+        itself; see `steady_precession` for the rate itself.
+
+        Raises
+        ------
+        InvalidInput
+            For a spin of 0.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> top.weak_torque_precession(500.0), round(top.steady_precession(0.3, 500.0).slow, 6)
+        (0.04, 0.040015)
+        """
+        own = number("spin", spin)
+        if own == 0.0:
+            raise InvalidInput("spin", "expected a top that spins, got 0.0")
+        return weight(self) / self.C / own
+
+    def momenta(self, theta: float, *, psi_dot: float, phi_dot: float = 0.0) -> TopMomenta:
+        """Give the momenta p_φ = A φ̇ sin²θ + p_ψ cos θ and p_ψ = C (ψ̇ + φ̇ cos θ), which stay what they are.
+
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical, in [0, π].
+        psi_dot, phi_dot : float
+            Rates of Euler's angles.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).momenta(0.0, psi_dot=50.0)
+        TopMomenta(p_phi=50.0, p_psi=50.0)
+        """
+        angle, spin, around = _from_the_vertical(theta), number("psi_dot", psi_dot), number("phi_dot", phi_dot)
+        sine, cosine = float(np.sin(angle)), float(np.cos(angle))
+        along = self.C * (spin + around * cosine)
+        return TopMomenta(self.A * around * sine * sine + along * cosine, along)
+
+    def effective_potential(self, theta: ArrayLike, *, p_phi: float, p_psi: float) -> NDArray[np.float64]:
+        """Give the potential in which the axis nods: (p_φ − p_ψ cos θ)²/(2A sin²θ) + M g R cos θ.
+
+        The axis is where it does not exceed E′ = E − p_ψ²/(2C); `nutation` gives the ends of that range.
+
+        Parameters
+        ----------
+        theta : array_like
+            Angles of the axis from the vertical, in [0, π].
+        p_phi, p_psi : float
+            The momenta; see `momenta`.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of `theta`; infinite at 0 unless the momenta are equal, and at π unless they are opposite.
+
+        Raises
+        ------
+        InvalidInput
+            For an angle outside [0, π], NaN or infinity.
+
+        Notes
+        -----
+        Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. eq. (5.60).
+
+        Examples
+        --------
+        Momenta that are equal let the axis through the vertical:
+
+        >>> import visviva as vv
+        >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+        >>> top.effective_potential([0.0, 0.1], p_phi=30.0, p_psi=30.0).round(6).tolist()
+        [20.0, 20.125459]
+        """
+        angles = float_array("theta", theta, None)
+        if not ((angles >= 0.0) & (angles <= np.pi)).all():
+            outside = angles[(angles < 0.0) | (angles > np.pi)][0]
+            raise InvalidInput("theta", f"expected angles in [0, π], got {outside}")
+        return effective_potential(self, angles, number("p_phi", p_phi), number("p_psi", p_psi))
+
     def nutation_frequency(self, theta: float, spin: float) -> SteadyPrecession:
         """Give the frequencies of small nutations about the slow and the fast steady precession.
 
@@ -169,7 +263,7 @@ class HeavyTop:
         return SteadyPrecession(*frequencies)
 
     def _precessions(self, theta: float, spin: float) -> tuple[list[float], list[float]]:
-        return _core.top_steady_precession(self._numbers, number("theta", theta), number("spin", spin))
+        return _core.top_steady_precession(self._numbers, _from_the_vertical(theta), number("spin", spin))
 
     def nutation(self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0) -> Nutation:
         """Give the nutation of a top from where it is and how it turns.
@@ -201,7 +295,7 @@ class HeavyTop:
         ('cusp', 0.3, 0.682256015831)
         """
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
-        found = _core.top_nutation(self._numbers, number("theta", theta), *rates)
+        found = _core.top_nutation(self._numbers, _from_the_vertical(theta), *rates)
         low, high = found["theta"]
         one, two, three = found["roots"]
         return Nutation(
@@ -285,7 +379,7 @@ class HeavyTop:
         array([  0.   ,   4.2  , 416.468])
         """
         times = float_array("t", t, None)
-        angles = (number("theta", theta), number("phi", phi), number("psi", psi))
+        angles = (_from_the_vertical(theta), number("phi", phi), number("psi", psi))
         rates = (number("theta_dot", theta_dot), number("phi_dot", phi_dot), number("psi_dot", psi_dot))
         found = _core.top_motion(self._numbers, angles, rates, times.ravel())
         columns = [np.ascontiguousarray(column).reshape(times.shape) for column in found.T]

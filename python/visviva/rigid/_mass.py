@@ -19,6 +19,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+# How far entries that should be equal may differ, relative to the largest, as in the core.
+_ROUNDING = 1e-12
+
 
 class PrincipalAxes(NamedTuple):
     """Principal moments and the axes that they belong to.
@@ -79,6 +82,19 @@ def _particles(mass: ArrayLike, position: ArrayLike) -> tuple[NDArray[np.float64
     return masses, float_array("position", position, ("N", 3), sizes)
 
 
+def _symmetric(tensor: ArrayLike) -> NDArray[np.float64]:
+    """An inertia tensor, symmetric to the last bit."""
+    array = float_array("tensor", tensor, (3, 3))
+    apart = np.abs(array - array.T)
+    if (apart > _ROUNDING * np.abs(array).max()).any():
+        i, j = np.unravel_index(int(apart.argmax()), (3, 3))
+        message = (
+            f"expected a symmetric tensor, but tensor[{i}, {j}] = {array[i, j]} and tensor[{j}, {i}] = {array[j, i]}"
+        )
+        raise InvalidInput("tensor", message)
+    return np.where(apart == 0.0, array, 0.5 * array + 0.5 * array.T)
+
+
 @known_keywords
 def principal_axes(tensor: ArrayLike) -> PrincipalAxes:
     """Give the principal moments of inertia and the principal axes.
@@ -136,7 +152,7 @@ def parallel_axis(tensor: ArrayLike, mass: float, offset: ArrayLike) -> NDArray[
     Raises
     ------
     InvalidInput
-        For a mass that is not positive, NaN or infinity, or another shape.
+        For a mass that is not positive, a tensor that is not symmetric, NaN or infinity, or another shape.
 
     Examples
     --------
@@ -146,7 +162,7 @@ def parallel_axis(tensor: ArrayLike, mass: float, offset: ArrayLike) -> NDArray[
            [ 0., 13.,  0.],
            [ 0.,  0.,  0.]])
     """
-    checked, weight = float_array("tensor", tensor, (3, 3)), positive("mass", mass, "mass")
+    checked, weight = _symmetric(tensor), positive("mass", mass, "mass")
     return _core.tensor_about(checked, weight, float_array("offset", offset, (3,))) + 0.0
 
 
@@ -169,7 +185,7 @@ def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float6
     Raises
     ------
     InvalidInput
-        For a quaternion whose length is not 1 within 1e-6, or another shape.
+        For a quaternion whose length is not 1 within 1e-6, a tensor that is not symmetric, or another shape.
 
     Examples
     --------
@@ -180,7 +196,7 @@ def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float6
            [0., 0., 2.]])
     """
     turn = float_array("quaternion", rows("quaternion", quaternion, (4,)), (4,))
-    return _core.tensor_rotated(float_array("tensor", tensor, (3, 3)), turn) + 0.0
+    return _core.tensor_rotated(_symmetric(tensor), turn) + 0.0
 
 
 @known_keywords
@@ -202,7 +218,7 @@ class MassProperties:
     Raises
     ------
     InvalidInput
-        For a mass that is not positive, NaN or infinity, or another shape.
+        For a mass that is not positive, a tensor that is not symmetric, NaN or infinity, or another shape.
 
     Examples
     --------
@@ -226,8 +242,11 @@ class MassProperties:
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "mass", positive("mass", self.mass, "mass"))
-        for name, shape in (("center", (3,)), ("tensor", (3, 3))):
-            array = float_array(name, getattr(self, name), shape) + 0.0
+        for name, checked in (
+            ("center", float_array("center", self.center, (3,))),
+            ("tensor", _symmetric(self.tensor)),
+        ):
+            array = checked + 0.0
             array.flags.writeable = False
             object.__setattr__(self, name, array)
 

@@ -9,6 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
+from visviva._paths import path_text
 from visviva.errors import InvalidInput
 from visviva.rigid._mass import MassProperties
 
@@ -90,6 +91,8 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
 
     Raises
     ------
+    InvalidInput
+        For what is no path.
     ImportError
         Without trimesh.
 
@@ -98,16 +101,20 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     >>> import visviva as vv
     >>> vertices, faces = vv.rigid.load_mesh("part.stl")  # doctest: +SKIP
     """
+    file = path_text("path", path)
     try:
         import trimesh
     except ImportError as error:
         raise ImportError("load_mesh reads files with trimesh: pip install trimesh") from error
-    found: Any = trimesh.load_mesh(path, process=False)
+    found: Any = trimesh.load_mesh(file, process=False)
     return np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)
 
 
 def _whole_numbers(faces: ArrayLike) -> NDArray[np.int64]:
-    array = np.asarray(faces)
+    try:
+        array = np.asarray(faces)
+    except ValueError:  # rows of different lengths
+        raise InvalidInput("faces", "expected three numbers in each row, got rows of different lengths") from None
     if array.dtype.kind not in "iu" or array.ndim != 2 or array.shape[1] != 3:
         raise InvalidInput("faces", f"expected whole numbers of shape (F, 3), got {array.dtype.name} of {array.shape}")
     return np.ascontiguousarray(array, dtype=np.int64)

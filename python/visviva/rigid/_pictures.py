@@ -37,7 +37,7 @@ def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str) -> Figure:
 
 def plot_top(motion: TopMotion, kind: str) -> Figure:
     """A picture of the motion of a heavy top; see `TopMotion.plot`."""
-    return _plotted(motion, kind, {"nutation": nutation, "theta": theta})
+    return _plotted(motion, kind, {"nutation": nutation, "theta": theta, "effective_potential": potential})
 
 
 _SOLID = ("polhode", "axes", "nutation")
@@ -112,12 +112,7 @@ def spin(axes: Any, motion: FreeRotation | BodyTurning) -> None:
 
 def nutation(axes: Any, motion: TopMotion) -> None:
     """Where the top's axis points, on the unit sphere, between the circles that it nods between."""
-    low, high = motion.top.nutation_range(
-        float(motion.theta[0]),
-        psi_dot=float(motion.psi_dot[0]),
-        theta_dot=float(motion.theta_dot[0]),
-        phi_dot=float(motion.phi_dot[0]),
-    )
+    low, high = _nods_between(motion)
     _ellipsoid(axes, np.ones(3))
     around = np.linspace(0.0, 2.0 * np.pi, 200)
     for angle in (low, high):
@@ -136,6 +131,37 @@ def theta(axes: Any, motion: TopMotion) -> None:
     axes.plot(motion.t[chosen], motion.theta[chosen], linewidth=0.8)
     axes.set(xlabel="t", ylabel="θ", title="angle from the vertical")
     axes.margins(x=0.01)
+
+
+def potential(axes: Any, motion: TopMotion) -> None:
+    """The effective potential about the angles that the axis nods between, and the energy."""
+    low, high = _nods_between(motion)
+    first = np.argmin(np.abs(motion.theta - 0.5 * np.pi))  # where both momenta keep their digits best
+    p_phi, p_psi = motion.top.momenta(
+        float(motion.theta[first]), psi_dot=float(motion.psi_dot[first]), phi_dot=float(motion.phi_dot[first])
+    )
+    margin = 0.3 * max(high - low, 0.05)
+    angles = np.linspace(max(low - margin, 1e-3), min(high + margin, np.pi - 1e-3), 400)
+    values = motion.top.effective_potential(angles, p_phi=p_phi, p_psi=p_psi)
+    own = motion.top.effective_potential(motion.theta[first], p_phi=p_phi, p_psi=p_psi)
+    energy = float(0.5 * motion.top.A * motion.theta_dot[first] ** 2 + own)
+    least = float(values.min())
+    axes.plot(angles, values, linewidth=1.0, label="effective potential")
+    axes.plot([low, high], [energy, energy], linewidth=1.2, color=VERMILION, label="energy less that of the spin")
+    height = max(energy - least, 1e-3 * abs(energy), np.finfo(float).tiny)
+    axes.set_ylim(least - 0.3 * height, energy + 1.5 * height)
+    axes.set(xlabel="θ", ylabel="V", title="effective potential")
+    axes.margins(x=0.01)
+    axes.legend(fontsize="small", loc="upper center")
+
+
+def _nods_between(motion: TopMotion) -> tuple[float, float]:
+    return motion.top.nutation_range(
+        float(motion.theta[0]),
+        psi_dot=float(motion.psi_dot[0]),
+        theta_dot=float(motion.theta_dot[0]),
+        phi_dot=float(motion.phi_dot[0]),
+    )
 
 
 def _directions(vectors: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -95,14 +95,14 @@ class TopMotion:
     def _rates(self) -> NDArray[np.float64]:
         return np.stack([self.phi_dot, self.theta_dot, self.psi_dot], axis=-1)
 
-    def plot(self, kind: Literal["nutation", "theta"] = "nutation") -> Figure:
+    def plot(self, kind: Literal["nutation", "theta", "effective_potential"] = "nutation") -> Figure:
         """Draw the motion, as a matplotlib Figure.
 
         Parameters
         ----------
-        kind : {"nutation", "theta"}
-            Where the axis points, on the unit sphere, with the two circles that it nods between; or its angle from the
-            vertical against time.
+        kind : {"nutation", "theta", "effective_potential"}
+            Where the axis points, on the unit sphere, with the two circles that it nods between; its angle from the
+            vertical against time; or the potential in which it nods, with the energy.
 
         Returns
         -------

@@ -9,7 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import whole_number
 from visviva._keywords import known_keywords
-from visviva._parquet import file_path
+from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
@@ -91,7 +91,7 @@ def scattering_events(
     with callback(progress, "events") as report:
         if to is None:
             return _columns(request, first, count, report)
-        _stream(request, first, count, report, file_path("to", to))
+        _stream(request, first, count, report, path_text("to", to))
     return {}
 
 
