@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from operator import index as whole
-from typing import TYPE_CHECKING, Any, overload
+from typing import TYPE_CHECKING, Any, Literal, overload
 
 import numpy as np
 
@@ -30,6 +30,8 @@ from visviva.trajectory import Trajectory
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from visviva import _core
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
     from visviva.forces import Force
     from visviva.request import RunRequest
     from visviva.scene import Scene
+    from visviva.typing import ColumnName
 
 __all__ = ["EnsembleScene", "EnsembleTrajectory"]
 
@@ -397,6 +400,57 @@ class EnsembleTrajectory(Recorded):
         state = {"position": last["position"], "velocity": last["velocity"]}
         copies = EnsembleScene(shared, **state, mass=mass, radius=radius, **own)
         return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
+
+    def plot(
+        self,
+        column: ColumnName = "position",
+        *,
+        body: str | int | None = None,
+        component: Literal["x", "y", "z", "w"] | None = None,
+        kind: Literal["lines", "bands"] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Draw a column of all copies against time, a panel for each component.
+
+        The energy is drawn as its relative change in each copy; the picture says where that is no more than rounding.
+
+        Parameters
+        ----------
+        column : str
+            Which one: any that was recorded, or that follows from those.
+        body : str or int, optional
+            Of which body, where the column has one for each; the only one if not given.
+        component : {"x", "y", "z", "w"}, optional
+            One panel; all if not given.
+        kind : {"lines", "bands"}, optional
+            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; lines of
+            up to 60 copies, and else bands.
+        ax : matplotlib.axes.Axes, optional
+            Where, if there is one panel; a new figure if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new one, or that of `ax`. Copies that ended before are counted in the title, and not in bands after it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the column was not recorded and does not follow from those, it is not said of which of several bodies,
+            matplotlib is not installed, or an argument is not one of these.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> slower = scene.particles.velocity * np.linspace(0.9, 1.0, 9)[:, None, None]
+        >>> out = scene.ensemble(velocity=slower).run(t=np.linspace(0.0, 10.0, 101))
+        >>> len(out.plot("position", body=1).axes), out.plot("energy").axes[0].get_ylabel()
+        (3, '(E − E₀) / |E₀|')
+        """
+        from visviva._ensemble_plot import plot_ensemble
+
+        return plot_ensemble(self, column, body, component, kind, ax)
 
 
 def _chosen(index: Any, count: int) -> int | slice:

@@ -21,12 +21,21 @@ if TYPE_CHECKING:
 
     from visviva.trajectory import Trajectory
 
-__all__ = ["PLANES", "axes_or_new", "chosen_bodies", "directions", "new_figure", "plot_trajectory"]
+__all__ = [
+    "PLANES",
+    "POINTS",
+    "axes_or_new",
+    "chosen_bodies",
+    "directions",
+    "mark_round_off",
+    "new_figure",
+    "plot_trajectory",
+]
 
 PLANES = ("xy", "xz", "yz", "xyz")
 """What a picture of places shows."""
-# More points than this cannot be told apart in a figure and make the file large.
-_POINTS = 4000
+POINTS = 4000
+"""More points than this cannot be told apart in a figure and make the file large."""
 # A legend of more bodies would hide the picture.
 _LEGEND = 24
 # A relative change of the energy below this is the rounding of its terms, and no drift.
@@ -125,7 +134,7 @@ def directions(position: NDArray[np.float64], plane: object) -> Sequence[int]:
 
 def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequence[int]) -> None:
     names = trajectory.scene.particles.names
-    stride = max(1, len(trajectory) // _POINTS)
+    stride = max(1, len(trajectory) // POINTS)
     position: NDArray[np.float64] = trajectory.position[::stride][..., shown]
     for body in bodies:
         label = names[body] if names else None
@@ -152,18 +161,25 @@ def label_places(axes: Any, shown: Sequence[int]) -> None:
         axes.set_aspect("equal", adjustable="datalim")
 
 
+def mark_round_off(axes: Axes, change: NDArray[np.float64]) -> bool:
+    """Whether relative changes of an energy are no more than rounding; axes then say so. NaN is no change."""
+    if not np.nanmax(np.abs(change)) <= _ROUND_OFF:
+        return False
+    axes.set_ylim(-2.0 * _ROUND_OFF, 2.0 * _ROUND_OFF)
+    axes.axhspan(-_ROUND_OFF, _ROUND_OFF, color="0.95", zorder=-1)
+    axes.annotate("round-off", (0.02, 0.95), xycoords="axes fraction", va="top", color="0.4")
+    return True
+
+
 def _energy(axes: Axes, trajectory: Trajectory) -> None:
     energy = trajectory.energy
     scale = abs(energy[0]) if energy[0] != 0.0 else 1.0
-    stride = max(1, len(trajectory) // _POINTS)
+    stride = max(1, len(trajectory) // POINTS)
     change = (energy - energy[0]) / scale
     axes.set(xlabel="t", ylabel="(E − E₀) / |E₀|" if energy[0] != 0.0 else "E − E₀", title="energy")
-    if energy[0] != 0.0 and np.abs(change).max() <= _ROUND_OFF:
+    if energy[0] != 0.0 and mark_round_off(axes, change):
         # Points, since a line would draw noise as a signal.
         axes.plot(trajectory.t[::stride], change[::stride], ".", markersize=2)
-        axes.set_ylim(-2.0 * _ROUND_OFF, 2.0 * _ROUND_OFF)
-        axes.axhspan(-_ROUND_OFF, _ROUND_OFF, color="0.95", zorder=-1)
-        axes.annotate("round-off", (0.02, 0.95), xycoords="axes fraction", va="top", color="0.4")
     else:
         axes.plot(trajectory.t[::stride], change[::stride], linewidth=0.8)
     axes.axhline(0.0, color=FRAME, linewidth=0.6, zorder=0)

@@ -57,13 +57,13 @@ class Stats:
 
 
 # The axes of a column after time: what it is over, and the numbers of each.
-_AXES: dict[str, tuple[str, ...]] = {
+COLUMN_AXES: dict[str, tuple[str, ...]] = {
     "position": ("body", "component"),
     "velocity": ("body", "component"),
     "orientation": ("rigid_body", "quaternion"),
     "angular_velocity": ("rigid_body", "component"),
 }
-_AXES |= {name: ("component",) if width == 3 else () for name, _, width, _ in _core.columns()}
+COLUMN_AXES |= {name: ("component",) if width == 3 else () for name, _, width, _ in _core.columns()}
 
 
 # What people look for from elsewhere, and where it is here.
@@ -318,9 +318,8 @@ class Recorded(Exported, Shown, ABC):
 
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         rows = self._row_axes
-        of = {
-            name: ((*rows, *_AXES[name]), self._column(name)) for name in chosen_columns(columns, self.recorded, _AXES)
-        }
+        chosen = chosen_columns(columns, self.recorded, COLUMN_AXES)
+        of = {name: ((*rows, *COLUMN_AXES[name]), self._column(name)) for name in chosen}
         own: dict[str, NDArray[Any]] = {"time": self.t}
         rigid = self._scene.rigid_bodies
         names = {"body": self._start._names, "rigid_body": rigid.names if rigid is not None else ()}

@@ -80,7 +80,8 @@ scene.plan(1.0, threads=2)  # wrong
 scene.run()  # wrong
 vv.Drag(0.1)  # wrong
 vv.orbits.stat  # wrong
-copies.plot()  # wrong
+copies.animate()  # wrong
+copies.plot("energi")  # wrong
 """
 
 

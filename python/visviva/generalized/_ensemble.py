@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from operator import index
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -20,6 +20,8 @@ from visviva.status import Status
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._system import GeneralizedSystem
@@ -268,3 +270,50 @@ class GeneralizedEnsembleTrajectory(Exported, Shown):
     def reactions(self) -> NDArray[np.float64]:
         """Multipliers of the constraints, shape (B, T, c)."""
         return self._column(self._n + 1, None)
+
+    def plot(
+        self,
+        column: Literal["position", "velocity", "momentum", "energy"] = "position",
+        *,
+        coordinate: str | None = None,
+        kind: Literal["lines", "bands"] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Draw a column of all copies against time, a panel for each coordinate.
+
+        The energy is drawn as its relative change in each copy; the picture says where that is no more than rounding.
+
+        Parameters
+        ----------
+        column : {"position", "velocity", "momentum", "energy"}
+            Which one.
+        coordinate : str, optional
+            One panel; all if not given.
+        kind : {"lines", "bands"}, optional
+            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; lines of
+            up to 60 copies, and else bands.
+        ax : matplotlib.axes.Axes, optional
+            Where, if there is one panel; a new figure if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new one, or that of `ax`. Copies that ended before are counted in the title, and not in bands after it.
+
+        Raises
+        ------
+        InvalidInput
+            For a column or a coordinate that is not there, axes for several panels, a run without times, or if
+            matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> many = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 3.0, 100)[:, None])
+        >>> figure = many.run(t=np.linspace(0.0, 10.0, 201)).plot()
+        >>> figure.axes[0].get_title("left"), figure.axes[0].get_ylabel()
+        ('100 copies', 'theta')
+        """
+        from visviva._ensemble_plot import plot_generalized
+
+        return plot_generalized(self, column, coordinate, kind, ax)
