@@ -45,8 +45,19 @@ def run(system: Any, *times: Any, **how: Any) -> Callable[[], Any]:
 
 
 PENDULUM = vv.systems.pendulum()
+VALLEY = vv.Lagrangian(vx**2 / 2 - sp.Abs(x), [x], position=[1.0])
+OVER_A_KINK = "would choose steps that pass over where an absolute value turns"
+ACROSS_A_KINK = "expected a function without absolute values: where one turns the derivatives of a motion jump"
 
 REFUSED = [
+    # Kinks
+    (run(VALLEY, 1.0, method="gauss16"), "method", f"gauss16 {OVER_A_KINK}, as if it did not; dop853 makes"),
+    (run(VALLEY, 1.0, method="gauss4"), "method", f"gauss4 {OVER_A_KINK}"),
+    (run(VALLEY.ensemble(position=[[1.0], [2.0]]), 1.0, method="gauss8"), "method", f"gauss8 {OVER_A_KINK}"),
+    (lambda: VALLEY.poincare("x", 5.0), "method", f"gauss16 {OVER_A_KINK}"),
+    (lambda: VALLEY.flow_jacobian(5.0), "system", ACROSS_A_KINK),
+    (lambda: VALLEY.lyapunov_exponents(5.0), "system", ACROSS_A_KINK),
+    (lambda: VALLEY.boundary_value(5.0, [0.0]), "system", ACROSS_A_KINK),
     # Expressions
     (lagrangian(rate**2 / 2 + phi**2), "L", r"phi\(t\) is not among the coordinates \[theta\(t\)\]; add it"),
     (lagrangian(rate**2 + turning**2), "L", r"Derivative\(phi\(t\), t\) is in it, but phi\(t\) is not among"),

@@ -156,6 +156,35 @@ def test_a_wall_that_is_flat_to_all_orders_is_met(span: float) -> None:
     assert many.evaluations[0] == out.evaluations
 
 
+@pytest.mark.parametrize("factor", [1.0, 3.0, np.sqrt(2.0)])
+def test_a_valley_of_two_planes_is_crossed_where_it_bends(factor: float) -> None:
+    """V = |c x|/c: from x = 1 down in √2, up in √2 on the other side, exactly parabolas."""
+    valley = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - abs(factor * q[0]) / factor, ["x"], position=[1.0])
+    assert valley.plan(t=1.0).method == "dop853"
+    assert dict(valley.plan(t=1.0).rows)["kinks"].startswith("an absolute value")
+    times = np.linspace(0.0, 12.0, 41)
+    phase = times % (4.0 * np.sqrt(2.0))
+    since = np.abs(
+        (phase + np.sqrt(2.0)) % (2.0 * np.sqrt(2.0)) - np.sqrt(2.0)
+    )  # since the last end of a swing, or to it
+    side = np.where((phase > np.sqrt(2.0)) & (phase < 3.0 * np.sqrt(2.0)), -1.0, 1.0)
+    out = valley.run(t=times)
+    # A kink lies within a step that the tolerance, 1e-12, makes small: its square root is the time that it is off.
+    assert np.abs(out.position[:, 0] - side * (1.0 - since**2 / 2.0)).max() < 1e-8
+    copies = valley.ensemble(position=[[1.0], [0.5]]).run(t=times)
+    assert (copies.position[0] == out.position).all()
+
+
+def test_roots_that_have_no_kink_are_none() -> None:
+    for function in (
+        lambda q, v, t, k: v[0] ** 2 / 2 - np.sqrt(q[0] ** 2 + k),
+        lambda q, v, t, k: v[0] ** 2 / 2 - abs(k) * q[0] ** 4,
+    ):
+        smooth = vv.Lagrangian(function, ["x"], parameters={"k": 2.0}, position=[1.0])
+        assert smooth.plan(t=1.0).method == "gauss16"
+        assert "kinks" not in dict(smooth.plan(t=1.0).rows)
+
+
 def test_a_longest_step_is_kept() -> None:
     for method in ("gauss16", "dop853", "taylor"):
         out = vv.systems.pendulum().run(10.0, method=method, max_step=0.05)

@@ -121,6 +121,7 @@ def flow_jacobian(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the state at ``t``, and its derivatives with respect to the state at the start."""
     n = 2 * len(system.coordinates)
+    _refuse_kinks(system)
     asked, _ = system._asked(t, method, rtol, None, None)
     asked["max_steps"] = most_steps
     start = np.concatenate([system._start(), np.eye(n).ravel()])
@@ -132,9 +133,19 @@ def flow_jacobian(
     return last[:n], last[n:].reshape(n, n)
 
 
+def _refuse_kinks(system: GeneralizedSystem) -> None:
+    if system._structure["kinks"]:
+        raise InvalidInput(
+            "system",
+            "expected a function without absolute values: where one turns the derivatives of a motion jump, which "
+            "variational equations do not tell; compare runs from neighboring starts",
+        )
+
+
 def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, rtol: float) -> NDArray[np.float64]:
     """Give all exponents, by the variational equations and orthonormal frames."""
     n = 2 * len(system.coordinates)
+    _refuse_kinks(system)
     model = system._model.variational()
     parts = max(1, round(abs(t - system.t0) / interval))
     times = np.linspace(system.t0, t, parts + 1)
@@ -163,6 +174,7 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
 
 def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, rtol: float) -> GeneralizedSystem:
     """Give the system with the velocities (or momenta) that lead to a place at a time, by Newton's method."""
+    _refuse_kinks(system)
     from visviva._arrays import float_array
 
     n = len(system.coordinates)

@@ -10,13 +10,16 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.generalized._states import States
 
-__all__ = ["CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "discrete_name", "method_name"]
+__all__ = ["ACROSS_KINKS", "CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "discrete_name", "method_name"]
 
 #: What solves linear equations with constant coefficients, without steps.
 LINEAR = "matrix_exponential"
 
 #: Collocation methods, which take any Lagrangian and any Hamiltonian.
 GAUSS = ("gauss16", "gauss8", "gauss4")
+
+#: What finds by its error where an absolute value turns, within a step, and makes that step small.
+ACROSS_KINKS = "dop853"
 
 #: Methods that make the action of a discrete path stationary: of Lagrangians.
 DISCRETE = (
@@ -42,8 +45,17 @@ def discrete_name(method: object) -> str:
 def method_name(method: object, system: States, dt: float | None, max_step: float | None = None) -> str:
     """Check a method, by its name or itself, and give its name."""
     if isinstance(method, str) and method == "auto":
-        return LINEAR if system._structure["linear"] and dt is None and max_step is None else "gauss16"
+        found = system._structure
+        if found["linear"] and dt is None and max_step is None:
+            return LINEAR
+        return ACROSS_KINKS if found["kinks"] and dt is None else "gauss16"
     if isinstance(method, str) and method in GAUSS:
+        if dt is None and system._structure["kinks"]:
+            raise InvalidInput(
+                "method",
+                f"{method} would choose steps that pass over where an absolute value turns, as if it did not; "
+                f"{ACROSS_KINKS} makes its steps small there, or give a step dt of your own",
+            )
         return method
     if isinstance(method, str) and method == LINEAR:
         _check_linear(system, dt)

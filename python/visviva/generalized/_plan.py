@@ -68,6 +68,7 @@ class GeneralizedPlan(Shown):
             ("accelerations", "of places alone" if found["separable"] else "of velocities, too"),
             ("operations", f"{found['operations']} per evaluation, for eight states at once"),
             ("equations", "linear, with constant coefficients" if found["linear"] else "not linear"),
+            *([("kinks", "an absolute value, which turns within a step")] if found["kinks"] else []),
             ("method", asked["method"]),
             ("steps", steps),
         )

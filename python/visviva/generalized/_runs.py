@@ -83,7 +83,8 @@ class Runs(States):
             The end, or output times in order; they change no step.
         method : str
             ``auto``: where the equations are linear with constant coefficients, ``matrix_exponential``, which is exact
-            at any time and takes no steps; else ``gauss16``, as also where a step is given.
+            at any time and takes no steps; where an absolute value turns on the way, ``dop853``, which makes its steps
+            small there; else ``gauss16``, as also where a step is given.
             ``gauss16`` (also ``gauss8``, ``gauss4``): implicit, symplectic for any Lagrangian and Hamiltonian; where
             energy is conserved its step is chosen at the start and then held. Or a method of `visviva.methods`:
             adaptive ones (``dop853``), ones with a fixed step (``rk4``), and symplectic ones where accelerations do not

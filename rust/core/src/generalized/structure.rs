@@ -1,7 +1,8 @@
 //! What is found on the graph of a model without running it.
 
 use super::model::{Kind, Model};
-use crate::expressions::graph::Dependence;
+use crate::expressions::function::Function;
+use crate::expressions::graph::{Dependence, Graph, number};
 use crate::expressions::{Id, Node};
 
 /// What is known of a mass matrix.
@@ -32,6 +33,8 @@ pub struct Structure {
     pub mass: MassMatrix,
     /// Whether accelerations depend on places and time alone: kicks and drifts make a method.
     pub separable: bool,
+    /// Whether something has a kink: |x| = √(x²) of what changes with the state, where it passes zero.
+    pub kinks: bool,
     /// Operations of the right-hand side.
     pub operations: usize,
 }
@@ -71,8 +74,23 @@ impl Structure {
             conserves_energy,
             mass: Self::mass_matrix(model),
             separable: matches!(model.form, crate::ode::system::Form::SecondOrder(_)) && !needs.velocity,
+            kinks: all.iter().any(|&root| Self::has_kinks(graph, root)),
             operations: model.code.operations(),
         }
+    }
+
+    fn has_kinks(graph: &Graph, root: Id) -> bool {
+        graph.any(&[root], |node| {
+            let &Node::Call(Function::Sqrt, mut under) = node else { return false };
+            // A square that has a factor.
+            while let Node::Sum(constant, terms) = graph.node(under)
+                && number(*constant) == 0.0
+                && let [(_, only)] = **terms
+            {
+                under = only;
+            }
+            matches!(*graph.node(under), Node::Product(a, b) if a == b && graph.dependence(a) > Dependence::Parameters)
+        })
     }
 
     fn mass_matrix(model: &Model) -> MassMatrix {
