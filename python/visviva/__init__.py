@@ -37,7 +37,7 @@ _HOME = {
     "Drift": "conservation",
     "DrivenForce": "forces",
     "EnsembleScene": "ensemble",
-    "EnsembleTrajectory": "ensemble",
+    "EnsembleTrajectory": "ensemble_trajectory",
     "Error": "errors",
     "ExpressedForce": "forces",
     "ExpressionForce": "expression_force",
@@ -217,7 +217,8 @@ if TYPE_CHECKING:
     from visviva.body_turning import BodyTurning
     from visviva.comparison import Point, WorkPrecision, work_precision
     from visviva.conservation import Conservation, Drift
-    from visviva.ensemble import EnsembleScene, EnsembleTrajectory
+    from visviva.ensemble import EnsembleScene
+    from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.errors import (
         AccuracyWarning,
         CloseEncounter,

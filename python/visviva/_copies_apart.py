@@ -21,7 +21,8 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.request import execute, finished
 
 if TYPE_CHECKING:
-    from visviva.ensemble import EnsembleScene, EnsembleTrajectory
+    from visviva.ensemble import EnsembleScene
+    from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.request import RunRequest
     from visviva.typing import ColumnName
 

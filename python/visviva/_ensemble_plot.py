@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
-    from visviva.ensemble import EnsembleTrajectory
+    from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.generalized._ensemble import GeneralizedEnsembleTrajectory
 
 __all__ = ["plot_ensemble", "plot_generalized"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from contextlib import suppress
 
 from visviva.errors import InvalidInput
 
@@ -25,7 +26,7 @@ def path_text(name: str, given: object, what: str = "file") -> str:
       ...
     visviva.errors.InvalidInput: to: expected the path of a file, got float
     """
-    try:
-        return os.fsdecode(os.fspath(given))  # type: ignore[call-overload]
-    except TypeError:
-        raise InvalidInput(name, f"expected the path of a {what}, got {type(given).__name__}") from None
+    if isinstance(given, str | bytes | os.PathLike):
+        with suppress(TypeError):  # of a path-like whose text is none
+            return os.fsdecode(given)
+    raise InvalidInput(name, f"expected the path of a {what}, got {type(given).__name__}")

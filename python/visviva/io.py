@@ -26,7 +26,8 @@ from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
 from visviva._turning import restored, saved
-from visviva.ensemble import EnsembleScene, EnsembleTrajectory
+from visviva.ensemble import EnsembleScene
+from visviva.ensemble_trajectory import EnsembleTrajectory
 from visviva.errors import InvalidInput
 from visviva.forces import force_from_core
 from visviva.particles import Particles

@@ -205,7 +205,7 @@ def test_a_name_that_is_not_there_is_told_from_the_nearest(name: str, message: s
 
 @pytest.mark.parametrize(
     ("name", "message"),
-    [("conservation", r"out\[i\]\.conservation"), ("plot", r"out\[i\]\.plot"), ("y", "position and velocity")],
+    [("conservation", r"out\[i\]\.conservation"), ("animate", r"out\[i\]\.animate"), ("y", "position and velocity")],
 )
 def test_what_an_ensemble_lacks_its_copies_have(name: str, message: str) -> None:
     copies: vv.EnsembleScene = NAMES["copies"]  # type: ignore[assignment]

@@ -10,7 +10,7 @@ import numpy as np
 from visviva._exported import needed
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.scattering._of_events import OfEvents, is_zero
+from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
@@ -56,10 +56,6 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
 
     def __post_init__(self) -> None:
         read_only(*self.edges, self.flow, self.by_stratum)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # a pickle does not keep that arrays are read-only
 
     @property
     def counts(self) -> NDArray[np.uint64]:
@@ -166,7 +162,3 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
             events=self._merged_events(other),
             by_stratum=added(self.by_stratum, other.by_stratum),
         )
-
-    def __radd__(self, other: int) -> JointTally:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, Self
 
 from visviva.errors import InvalidInput
 
@@ -27,6 +27,17 @@ class OfEvents:
     def b_max(self) -> float:
         """Radius of the disc of impact parameters."""
         return self.beam.b_max
+
+    def __radd__(self, other: int) -> Self:
+        """Begin a `sum`."""
+        return self if is_zero(other) else NotImplemented
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a pickle does not keep that arrays are read-only
+
+    def __post_init__(self) -> None:
+        pass
 
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""

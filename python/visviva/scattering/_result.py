@@ -16,7 +16,7 @@ from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._importance import Strata
 from visviva.scattering._joint_tally import JointTally
-from visviva.scattering._of_events import OfEvents, is_zero
+from visviva.scattering._of_events import OfEvents
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -110,10 +110,6 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
         return replace(self, events=events, tallies=tuple(self[name] + other[name] for name in self))
-
-    def __radd__(self, other: int) -> MonteCarlo:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented
 
     def _sheet(self) -> Sheet:
         rows = [

@@ -13,7 +13,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
-from visviva.scattering._of_events import OfEvents, is_zero
+from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
@@ -89,10 +89,6 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
 
     def __post_init__(self) -> None:
         read_only(self.edges, self.counts, self.reachable, self.by_stratum)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # a pickle does not keep that arrays are read-only
 
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
@@ -331,7 +327,3 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
             events=self._merged_events(other),
             by_stratum=added(self.by_stratum, other.by_stratum),
         )
-
-    def __radd__(self, other: int) -> Tally:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented

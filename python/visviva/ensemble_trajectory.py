@@ -1,0 +1,254 @@
+"""What comes back of many copies in one run: arrays with a leading axis B.
+
+A copy that fails has a status and NaN from there on; the others do not notice.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from operator import index as whole
+from typing import TYPE_CHECKING, Any, Literal, overload
+
+import numpy as np
+
+from visviva._continuation import attached, left_behind
+from visviva._keywords import known_keywords
+from visviva._text import count
+from visviva.errors import InvalidInput
+from visviva.recorded import Recorded
+from visviva.status import Status
+from visviva.trajectory import Trajectory
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from visviva._exported import Columns
+    from visviva._html import Sheet
+    from visviva.body import BodyMotion
+    from visviva.ensemble import EnsembleScene
+    from visviva.scene import Scene
+    from visviva.typing import ColumnName
+
+__all__ = ["EnsembleTrajectory", "one_or_some", "rows_of"]
+
+
+@known_keywords
+class EnsembleTrajectory(Recorded):
+    """The motions of the copies. Made by `EnsembleScene.run` and `load`.
+
+    Attributes
+    ----------
+    ensemble : EnsembleScene
+    t : ndarray, shape (T,)
+    position, velocity : ndarray, shape (B, T, N, 3)
+    energy : ndarray, shape (B, T)
+    momentum, angular_momentum, center_of_mass : ndarray, shape (B, T, 3)
+    status : ndarray of int8, shape (B,)
+        Values of `Status`; rows after a failure or a terminal event are NaN.
+    stats : Stats
+        Totals over the copies; `per_trajectory` has them one by one.
+
+    Every array is read-only; ``out.position.copy()`` is yours. Indexing with a number gives the `Trajectory` of one
+    copy, with a slice those of a smaller ensemble, with the name of a body its motion in all copies.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> scene = vv.problems.kepler(e=0.5).scene
+    >>> out = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]).run(t=1.0)
+    >>> out.position.shape, out[1].position.shape
+    ((2, 2, 2, 3), (2, 2, 3))
+    """
+
+    __slots__ = ("ensemble",)
+
+    _row_axes = ("copy", "time")
+    ensemble: EnsembleScene
+
+    def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
+        super().__init__(result)
+        object.__setattr__(self, "ensemble", ensemble)
+
+    def __len__(self) -> int:
+        return len(self.ensemble)
+
+    @overload
+    def __getitem__(self, index: int) -> Trajectory: ...
+    @overload
+    def __getitem__(self, index: slice) -> EnsembleTrajectory: ...
+    @overload
+    def __getitem__(self, index: str) -> BodyMotion: ...
+    def __getitem__(self, index: int | slice | str) -> Trajectory | EnsembleTrajectory | BodyMotion:
+        if isinstance(index, str):
+            return self.body(index)
+        chosen = one_or_some(index, len(self))
+        rows = rows_of(chosen)
+        result = dict(self._result)
+        for group in ("columns", "final", "per_trajectory"):
+            result[group] = {name: values[rows] for name, values in self._result[group].items()}
+        result["status"] = self.status[rows]
+        for table in ("events", "collisions"):
+            if table in self._result:
+                result[table] = _of_copies(self._result[table], range(len(self))[rows])
+        own = {name: int(each.sum()) for name, each in result["per_trajectory"].items() if name in result["stats"]}
+        result["stats"] = {**result["stats"], **own}
+        if isinstance(chosen, slice):
+            return EnsembleTrajectory(self.ensemble[chosen], result)
+        return Trajectory(self.ensemble[chosen], result)
+
+    def _elsewhere(self, name: str) -> str:
+        return f"; each copy has one: out[i].{name}" if hasattr(Trajectory, name) else super()._elsewhere(name)
+
+    def __iter__(self) -> Iterator[Trajectory]:
+        return (self[index] for index in range(len(self)))
+
+    def __repr__(self) -> str:
+        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
+        copies = count(len(self), "copy", "copies")
+        return f"EnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
+
+    def _sheet(self) -> Sheet:
+        kinds = np.unique(self.status, return_counts=True)
+        ended = ", ".join(f"{number} {Status(int(kind)).name}" for kind, number in zip(*kinds, strict=True))
+        return self._run_sheet(f"Motions of {count(len(self), 'copy', 'copies')}", ended)
+
+    @property
+    def _start(self) -> EnsembleScene:
+        return self.ensemble
+
+    @property
+    def _scene(self) -> Scene:
+        return self.ensemble.scene
+
+    def _found(self, name: str) -> NDArray[np.float64]:
+        recorded: NDArray[np.float64] | None = self._result["columns"].get(name)
+        # A copy's own property computes it, or says what to record.
+        return np.stack([getattr(trajectory, name) for trajectory in self]) if recorded is None else recorded
+
+    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+        made = super()._exported(columns)
+        return replace(made, of={**made.of, "status": (("copy",), self.status)})
+
+    @property
+    def status(self) -> NDArray[np.int8]:
+        """How each copy ended, values of `Status`, shape (B,)."""
+        status: NDArray[np.int8] = self._result["status"]
+        status.setflags(write=False)
+        return status
+
+    @property
+    def per_trajectory(self) -> dict[str, NDArray[Any]]:
+        """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,)."""
+        counts: dict[str, NDArray[Any]] = self._result["per_trajectory"]
+        for each in counts.values():
+            each.setflags(write=False)
+        return dict(counts)
+
+    @property
+    def final(self) -> EnsembleScene:
+        """The copies at the last time, ready to run on, with the bits of one long run as `Trajectory.final`.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
+        """
+        if self.status.any():
+            failed = np.flatnonzero(self.status)[:8].tolist()
+            raise InvalidInput(
+                "final", f"copies {failed} failed or were stopped, so the copies do not share a time; use out[i].final"
+            )
+        last = self._result["final"]
+        own = {name: last[name] for name in ("orientation", "angular_velocity") if name in last}
+        first = {name: array[0] for name, array in own.items()}
+        shared = self.ensemble.scene.with_state(last["position"][0], last["velocity"][0], float(last["t"][0]), **first)
+        mass, radius = last.get("mass", self.ensemble.mass), last.get("radius", self.ensemble.radius)
+        state = {"position": last["position"], "velocity": last["velocity"]}
+        copies = type(self.ensemble)(shared, **state, mass=mass, radius=radius, **own)
+        return attached(copies._own(self.ensemble.forces), left_behind(self.ensemble._keywords, self._result))
+
+    def plot(
+        self,
+        column: ColumnName = "position",
+        *,
+        body: str | int | None = None,
+        component: Literal["x", "y", "z", "w"] | None = None,
+        kind: Literal["lines", "bands"] | None = None,
+        ax: Axes | None = None,
+    ) -> Figure:
+        """Draw a column of all copies against time, a panel for each component.
+
+        The energy is drawn as its relative change in each copy; the picture says where that is no more than rounding.
+
+        Parameters
+        ----------
+        column : str
+            Which one: any that was recorded, or that follows from those.
+        body : str or int, optional
+            Of which body, where the column has one for each; the only one if not given.
+        component : {"x", "y", "z", "w"}, optional
+            One panel; all if not given.
+        kind : {"lines", "bands"}, optional
+            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; lines of
+            up to 60 copies, and else bands.
+        ax : matplotlib.axes.Axes, optional
+            Where, if there is one panel; a new figure if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new one, or that of `ax`. Copies that ended before are counted in the title, and not in bands after it.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If the column was not recorded and does not follow from those, it is not said of which of several bodies,
+            matplotlib is not installed, or an argument is not one of these.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> slower = scene.particles.velocity * np.linspace(0.9, 1.0, 9)[:, None, None]
+        >>> out = scene.ensemble(velocity=slower).run(t=np.linspace(0.0, 10.0, 101))
+        >>> len(out.plot("position", body=1).axes), out.plot("energy").axes[0].get_ylabel()
+        (3, '(E − E₀) / |E₀|')
+        """
+        from visviva._ensemble_plot import plot_ensemble
+
+        return plot_ensemble(self, column, body, component, kind, ax)
+
+
+def one_or_some(index: Any, count: int) -> int | slice:
+    """An index as it came if it is a slice, and else as a whole number from 0."""
+    if isinstance(index, slice):
+        return index
+    try:
+        number = whole(index)
+    except TypeError:
+        raise InvalidInput("index", f"expected a whole number or a slice, got {index!r}") from None
+    if not -count <= number < count:
+        raise IndexError(f"copy {number} of {count}")
+    return number % count
+
+
+def rows_of(chosen: int | slice) -> slice:
+    """The rows of what `one_or_some` gave."""
+    return chosen if isinstance(chosen, slice) else slice(chosen, chosen + 1)
+
+
+def _of_copies(events: dict[str, NDArray[Any]], copies: range) -> dict[str, NDArray[Any]]:
+    """The lines of some copies, which are numbered anew."""
+    lines = [np.flatnonzero(events["member"] == copy) for copy in copies]
+    chosen = np.concatenate([np.zeros(0, dtype=np.intp), *lines])
+    table = {name: array[chosen] for name, array in events.items()}
+    table["member"] = np.repeat(np.arange(len(lines), dtype=np.int64), [len(line) for line in lines])
+    return table
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
