@@ -4,6 +4,7 @@ Each line is typed as a user would type it. The laws over random input are in `t
 keywords in `test_keywords.py`.
 """
 
+import os
 import re
 from dataclasses import FrozenInstanceError
 
@@ -201,6 +202,15 @@ def test_a_name_that_is_not_there_is_told_from_the_nearest(name: str, message: s
     with pytest.raises(AttributeError) as caught:
         getattr(vv, name)
     assert str(caught.value).endswith(message)
+
+
+def test_a_path_whose_text_is_none_is_refused() -> None:
+    class Odd(os.PathLike[str]):
+        def __fspath__(self) -> str:
+            return 1  # type: ignore[return-value]
+
+    with pytest.raises(vv.InvalidInput, match="path: expected the path of a file, got Odd"):
+        vv.load(Odd())
 
 
 @pytest.mark.parametrize(

@@ -161,6 +161,7 @@ def test_a_valley_of_two_planes_is_crossed_where_it_bends(factor: float) -> None
     """V = |c x|/c: from x = 1 down in √2, up in √2 on the other side, exactly parabolas."""
     valley = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - abs(factor * q[0]) / factor, ["x"], position=[1.0])
     assert valley.plan(t=1.0).method == "dop853"
+    assert valley.plan(t=1.0, dt=0.01).method == "gauss16"  # a step of one's own
     assert dict(valley.plan(t=1.0).rows)["kinks"].startswith("an absolute value")
     times = np.linspace(0.0, 12.0, 41)
     phase = times % (4.0 * np.sqrt(2.0))

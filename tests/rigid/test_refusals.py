@@ -89,6 +89,8 @@ WRONG: dict[str, list[Any]] = {
     "function": [1.5, "name", lambda t: t, object(), None],
     "rotation": [1.0, "x", None, [0.0, 0.0, 0.0, 1.0]],
     "bodies": [[], (), None, 1.0, [1.0], "ab", [None]],
+    "part": [NAN, INF, -0.1, 1.1, None, *NO_NUMBER],
+    "count": [0, -1, 1.5, NAN, None, *NO_NUMBER],
     "path": [None, 1.5, ["a"]],
     "name": [1, 2.5, ["a"], "", object()],
     "names": ["ab", ["a"], ["a", "a"], ["a", 1], 3, ["a", ""]],
@@ -155,6 +157,16 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
     ),
     "TopMotion.plot": (TOP.solve([0.0, 0.1], theta=0.5, psi_dot=20.0).plot, {"kind": ("theta", "frame")}),
     "FreeRotation.plot": (FREE.plot, {"kind": ("axes", "frame")}),
+    "FreeRotation.animate": (
+        FREE.animate,
+        {
+            "path": (None, optional("path")),
+            "plane": ("xy", optional("frame")),
+            "trail": (0.5, "part"),
+            "frames": (2, "count"),
+            "fps": (25, "count"),
+        },
+    ),
     "MassProperties": (
         vv.rigid.MassProperties,
         {"mass": MASS, "center": ([0.0, 0.0, 0.0], "vector"), "tensor": (UNIT_TENSOR, "tensor")},
