@@ -137,7 +137,9 @@ def test_limits():
         (0.3, 3.0, 30.0),
         (1.5, 2.0, 7.0),
         (2.5, 1.0, 0.0),
+        (2.5, 3.0, 7.0),
         (2.9, -30.0, 30.0),
+        (np.pi - 1e-4, -29.9997, 30.0),
         (np.pi - 1e-8, -30.0, 30.0),
     ],
 )
@@ -148,6 +150,15 @@ def test_the_potential_in_which_it_nods(theta, p_phi, p_psi):
         exact, size = barrier + 20 * cosine, barrier + 20
     found = vv.rigid.HeavyTop(5.0, 1.0, 1.0, 20.0, 1.0).effective_potential(theta, p_phi=p_phi, p_psi=p_psi)
     assert abs(found - exact) < 8 * np.finfo(float).eps * size  # rounding of its two terms
+
+
+def test_a_fast_top_goes_round_at_the_rate_of_a_weak_torque():
+    for spin in (1e3, -1e5):
+        rate = SIMO_WONG.weak_torque_precession(spin)
+        assert rate == 20.0 / spin
+        # Off by A M g R cos θ/(C ω₃)² of itself, and by its square.
+        share = 5.0 * 20.0 * np.cos(0.3) / spin**2
+        assert abs(SIMO_WONG.steady_precession(0.3, spin).slow / rate - 1.0 - share) < 3.0 * share**2 + 1e-15
 
 
 def test_the_potential_at_the_poles():

@@ -342,3 +342,23 @@ def test_files_are_read_by_trimesh(monkeypatch):
     monkeypatch.setitem(sys.modules, "trimesh", None)
     with pytest.raises(ImportError, match="pip install trimesh"):
         vv.rigid.load_mesh("box.stl")
+
+
+@pytest.mark.parametrize("unit", [1e-20, 1.0, 1e20])
+def test_tensors_are_symmetric_but_for_rounding(unit):
+    """What is off by rounding is made symmetric, what is off by more refused, whatever the unit."""
+    tensor = unit * np.array([[3.0, 0.1, 0.2], [0.1, 4.0, 0.3], [0.2, 0.3, 5.0]])
+    rounded = tensor.copy()
+    rounded[0, 1] *= 1.0 + 1e-12
+    kept = vv.rigid.MassProperties(1.0, [0.0, 0.0, 0.0], rounded).tensor
+    assert (kept == kept.T).all()
+    assert tensor[0, 1] < kept[0, 1] < rounded[0, 1]
+    wrong = tensor.copy()
+    wrong[0, 1] *= 1.0 + 1e-9
+    for refused in (
+        lambda: vv.rigid.MassProperties(1.0, [0.0, 0.0, 0.0], wrong),
+        lambda: vv.rigid.rotate_tensor(wrong, [0.0, 0.0, 0.0, 1.0]),
+        lambda: vv.rigid.parallel_axis(wrong, 1.0, [0.0, 0.0, 0.0]),
+    ):
+        with pytest.raises(vv.InvalidInput, match=r"tensor: expected a symmetric tensor, but tensor\[0, 1\] = "):
+            refused()

@@ -76,8 +76,7 @@ def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
     at = _symmetry_axis(own)
     if path.kind not in ("steady", "symmetric") or at is None:
         raise InvalidInput("moments", f"expected two that are equal and a third that is not, got {own.tolist()}")
-    # Sizes near one: the products below neither overflow nor vanish.
-    own, spin = own / own.max(), spin / np.abs(spin).max()
+    own, spin = _near_one(own), _near_one(spin)
     across, along = float(np.hypot(*np.delete(spin, at))), abs(float(spin[at]))
     equal, third = float(np.delete(own, at)[0]), float(own[at])
     return ConeAngles(
@@ -86,6 +85,12 @@ def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
         space=float(np.arctan2(abs(third - equal) * across * along, equal * across * across + third * along * along)),
         axis=float(np.arctan2(equal * across, third * along)),
     )
+
+
+def _near_one(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
+    """The same by a power of two, exactly: products of them neither overflow nor vanish, and differences are kept."""
+    scaled: NDArray[np.float64] = np.ldexp(numbers, -np.frexp(np.abs(numbers).max())[1])
+    return scaled
 
 
 def _symmetry_axis(moments: NDArray[np.float64]) -> int | None:
