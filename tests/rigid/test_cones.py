@@ -43,7 +43,7 @@ def test_they_are_the_angles_between_the_vectors(
             assert abs(own - other) <= 8 * EPSILON * other
 
 
-@pytest.mark.parametrize("power", [-500, 500])
+@pytest.mark.parametrize("power", [-600, 600])
 def test_units_do_not_matter(power: int) -> None:
     unit = 2.0**power
     here = vv.rigid.cone_angles([1.0, 1.0, 1.5], [0.3, 0.4, 2.0])

@@ -66,7 +66,7 @@ def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
     --------
     >>> import visviva as vv
     >>> cones = vv.rigid.cone_angles([2.0, 2.0, 3.0], [0.5, 0.0, 1.25])
-    >>> round(cones.axis, 12), round(cones.body - cones.axis - cones.space, 12)
+    >>> round(cones.axis, 12), round(abs(cones.body - cones.axis - cones.space), 12)
     (0.260602391747, 0.0)
     """
     path = polhode(moments, angular_velocity)
@@ -76,7 +76,8 @@ def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
     at = _symmetry_axis(own)
     if path.kind not in ("steady", "symmetric") or at is None:
         raise InvalidInput("moments", f"expected two that are equal and a third that is not, got {own.tolist()}")
-    own, spin = _near_one(own), _near_one(spin)
+    # By a power of two, exactly, so that no square of them overflows or vanishes.
+    spin = np.ldexp(spin, -np.frexp(np.abs(spin).max())[1])
     across, along = float(np.hypot(*np.delete(spin, at))), abs(float(spin[at]))
     equal, third = float(np.delete(own, at)[0]), float(own[at])
     return ConeAngles(
@@ -85,12 +86,6 @@ def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
         space=float(np.arctan2(abs(third - equal) * across * along, equal * across * across + third * along * along)),
         axis=float(np.arctan2(equal * across, third * along)),
     )
-
-
-def _near_one(numbers: NDArray[np.float64]) -> NDArray[np.float64]:
-    """The same by a power of two, exactly: products of them neither overflow nor vanish, and differences are kept."""
-    scaled: NDArray[np.float64] = np.ldexp(numbers, -np.frexp(np.abs(numbers).max())[1])
-    return scaled
 
 
 def _symmetry_axis(moments: NDArray[np.float64]) -> int | None:
