@@ -84,6 +84,15 @@ def test_the_top_of_bruels_and_cardona():
     assert late.theta[2] == pytest.approx(np.pi / 2, abs=1e-13)
 
 
+def test_the_same_top_after_two_hundred_seconds():
+    """Against `taylor`, which takes five minutes to get there; 30 761 radians are turned through until then."""
+    exact = [0.9569495342822668, 0.10194178926670941, -0.20039690984978636, 0.18356617052363158]
+    found = BRUELS.solve(200.0, theta=np.pi / 2, phi_dot=-4.61538, psi_dot=150.0)
+    turned = abs(found.phi) + abs(found.psi)
+    assert angle_between(found.orientation, exact) <= 1e-14 + 4 * np.finfo(float).eps * turned
+    assert np.abs(found.axis - vv.rigid.rotate(exact, [0.0, 0.0, 1.0])).max() < 1e-13  # its nods and turns alone: 181
+
+
 angles = st.one_of(st.floats(0.0, np.pi), st.floats(-12.0, 0.0).map(lambda x: 10.0**x))
 rates = st.floats(-20.0, 20.0)
 
