@@ -153,11 +153,15 @@ def a_terminal_event_only_cuts(recipe: Recipe) -> None:
             first = getattr(full.events, name)[: len(table)]
             assert np.array_equal(getattr(table, name), first, equal_nan=True), f"other {name} before the end"
         # Bodies that do not depend on each other have their own steps, and for the event those of all.
-        together = "also integrated together" not in str(scene.plan(t=list(case.t), **case.how))
+        explained = str(scene.plan(t=list(case.t), **case.how))
+        together = "also integrated together" not in explained
+        # A body that is known from the others is put together anew, to an ulp.
+        rounding = 4.0 * EPSILON if "steps of the first massive body" in explained else 0.0
         end = cut.final.particles
         known = np.isfinite(table.position[-1]).all(axis=1)
         for name in ("position", "velocity"):
-            same = np.array_equal(getattr(end, name)[known], getattr(table, name)[-1][known])
+            last, found = getattr(end, name)[known], getattr(table, name)[-1][known]
+            same = np.abs(last - found).max(initial=0.0) <= rounding * np.abs(found).max(initial=0.0)
             assert same or not together, f"{name} of final is not that of the event"
         rows = sum(sign * t <= sign * table.t[-1] for t in full.t)
         assert not case.alone or len(cut.t) == rows, f"{len(cut.t)} rows up to the end, of {rows}"

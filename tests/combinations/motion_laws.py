@@ -151,8 +151,14 @@ def what_is_reversed_retraces_its_path(recipe: Recipe) -> None:
     scene = _scene(case)
     x, v = states(case, **how)
     turned = scene.with_state(x, v, case.t[-1]).reversed()
-    y, w = states(Case(turned, (2.0 * case.t[-1] - scene.t0,)), **how)
+    there = (2.0 * case.t[-1] - scene.t0,)
+    y, w = states(Case(turned, there), **how)
     bodies = scene.particles
+    if method is None or not method.reversible:
+        # The error of the way there grows on the way back as much as whatever is off at the turn.
+        signs = np.random.default_rng(recipe.seed).choice([-1.0, 1.0], (2, *x.shape))
+        off = turned.with_state(x + error_x * signs[0], turned.particles.velocity + error_v * signs[1], case.t[-1])
+        allowed = _sum(allowed, change((y, w), states(Case(off, there), **how)))
     _alike(f"{recipe.method}, there and back", (bodies.position, bodies.velocity), (y, -w), allowed)
 
 

@@ -150,7 +150,13 @@ def the_work_of_the_forces_is_the_kinetic_energy_gained(recipe: Recipe) -> None:
     def power(place: NDArray[np.float64], speed: NDArray[np.float64], now: float) -> float:
         return float((_forces(scene.with_state(place, speed, now)) * speed).sum())
 
-    powers = np.array([power(*state) for state in zip(x, v, t, strict=True)])
+    with np.errstate(over="ignore", under="ignore", invalid="ignore"):
+        powers = np.array([power(*state) for state in zip(x, v, t, strict=True)])
+    pushed = float(np.abs(_forces(scene.with_state(x[-1], v[-1], t[-1]))).max(initial=0.0))
+    if not np.isfinite(powers).all() or 0.0 < pushed * float(np.abs(v[-1]).max(initial=0.0)) < 1e-290 or (
+        pushed > 0.0 and not powers.any()
+    ):
+        raise Refused("beyond float64")
     work = span / NODES * float((powers[:-1].reshape(-1, 4) @ BOOLE[:4]).sum() + powers[4::4].sum() * BOOLE[4])
     kinetic = 0.5 * (mass[:, None] * v**2).sum(axis=(1, 2))
     # What the errors of a state make of the power, about, seen at some of the states.

@@ -145,6 +145,7 @@ impl ForceTerm for CentralField {
         &self,
         bodies: &[(usize, f64, [f64; 3])],
         units: Units,
+        _: [f64; 3],
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
         let (potential, center) = (self.potential.scaled(units), units.take_vector(self.center, [1, 0, 0]));

@@ -196,6 +196,7 @@ impl ForceTerm for Coulomb {
         &self,
         bodies: &[(usize, f64, [f64; 3])],
         units: Units,
+        _: [f64; 3],
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
         let largest = self.largest;

@@ -158,7 +158,13 @@ impl ForceTerm for DrivenForce {
     fn keeps_plane(&self) -> bool {
         self.amplitude[2] == 0.0
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let largest =
             units.take_vector(self.amplitude, FORCE).into_iter().fold(0.0, |m: f64, x| m.max(x.abs()));
         Ok(bodies.iter().map(|&(_, mass, _)| largest / mass).fold(0.0, f64::max))

@@ -107,7 +107,13 @@ impl ForceTerm for Harmonic {
     fn unit_of_time(&self, _: i32, mass: i32) -> Option<i32> {
         (self.k > 0.0).then(|| (mass - exponent(self.k)).div_euclid(2))
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let (k, center) = (units.take(self.k, STIFFNESS), units.take_vector(self.center, [1, 0, 0]));
         Ok(bodies.iter().map(|&(_, mass, place)| k / mass * distance(place, center)).fold(0.0, f64::max))
     }

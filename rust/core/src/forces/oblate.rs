@@ -176,7 +176,13 @@ impl ForceTerm for Oblate {
     fn keeps_plane(&self) -> bool {
         self.axis[2] == 0.0 || (self.axis[0] == 0.0 && self.axis[1] == 0.0)
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let constant = units.take(self.constant, CONSTANT).abs();
         let mut strongest = 0.0_f64;
         for (shape, source) in self.shapes.iter().zip(&self.bodies) {

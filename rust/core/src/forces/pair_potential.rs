@@ -157,6 +157,7 @@ impl ForceTerm for PairPotential {
         &self,
         bodies: &[(usize, f64, [f64; 3])],
         units: crate::units::Units,
+        _: [f64; 3],
         ticker: &mut Ticker<'_>,
     ) -> Result<f64> {
         let potential = self.potential.scaled(units);

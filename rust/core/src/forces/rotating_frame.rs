@@ -127,7 +127,13 @@ impl ForceTerm for RotatingFrame {
     fn keeps_plane(&self) -> bool {
         self.omega[0] == 0.0 && self.omega[1] == 0.0
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let omega = distance(units.take_vector(self.omega, FREQUENCY), [0.0; 3]);
         let center = units.take_vector(self.center, [1, 0, 0]);
         Ok(bodies.iter().map(|&(_, _, place)| omega * omega * distance(place, center)).fold(0.0, f64::max))

@@ -156,7 +156,13 @@ impl ForceTerm for Springs {
         let stiffest = self.springs.iter().map(|spring| spring.k).fold(0.0, f64::max);
         (stiffest > 0.0).then(|| (mass - exponent(stiffest)).div_euclid(2))
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let of = |(at, (i, j)): (usize, (usize, usize))| {
             let spring = self.springs[at];
             let (&(_, m, x), &(_, n, y)) = (bodies.get(i)?, bodies.get(j)?);

@@ -243,11 +243,18 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         None
     }
     /// The largest acceleration that it gives to one of some bodies at rest, by which a step is chosen if nothing else
-    /// tells: their places in the scene, masses and positions in those units.
+    /// tells: their places in the scene, masses and positions in those units; a force that changes in time is asked at these
+    /// times of the run, in the scene's units.
     ///
     /// # Errors
     /// When the caller asks to stop.
-    fn strongest(&self, _: &[(usize, f64, [f64; 3])], _: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        _: &[(usize, f64, [f64; 3])],
+        _: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         Ok(0.0)
     }
     /// The largest rate at which it slows down or turns such a body, or changes in time: nothing it does to a body by itself

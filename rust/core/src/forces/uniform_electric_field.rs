@@ -120,7 +120,13 @@ impl ForceTerm for UniformElectricField {
     fn keeps_plane(&self) -> bool {
         self.field[2] == 0.0
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let field = distance(units.take_vector(self.field, FORCE), [0.0; 3]);
         let of = |&(body, mass, _): &(usize, f64, [f64; 3])| match of_body(&self.charge, body) {
             0.0 => 0.0,

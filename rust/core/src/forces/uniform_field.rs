@@ -79,7 +79,13 @@ impl ForceTerm for Uniform {
     fn keeps_plane(&self) -> bool {
         self.g[2] == 0.0
     }
-    fn strongest(&self, _: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        _: &[(usize, f64, [f64; 3])],
+        units: Units,
+        _: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         Ok(distance(units.take_vector(self.g, ACCELERATION), [0.0; 3]))
     }
     fn in_every_lane(&self) -> Option<Vec<u64>> {

@@ -209,22 +209,34 @@ impl ForceTerm for ExpressionForce {
         let energy = self.expressions.potential.is_some() && !self.expressions.needs.time;
         Conserves { energy, ..Conserves::NOTHING }
     }
+    /// The origin of the coordinates that the expressions have.
+    fn fixed_point(&self) -> Option<[f64; 3]> {
+        Some(self.place.origin)
+    }
     /// Copies may have parameters of their own.
     fn in_every_lane(&self) -> Option<Vec<u64>> {
         let Place { axes, origin, scales } = &self.place;
         let place = axes.as_flattened().iter().chain(origin).chain(scales).map(|x| x.to_bits());
         Some(place.chain(self.expressions.made_from.iter().copied()).collect())
     }
-    fn strongest(&self, bodies: &[(usize, f64, [f64; 3])], units: Units, _: &mut Ticker<'_>) -> Result<f64> {
+    fn strongest(
+        &self,
+        bodies: &[(usize, f64, [f64; 3])],
+        units: Units,
+        times: [f64; 3],
+        _: &mut Ticker<'_>,
+    ) -> Result<f64> {
         let Expressions { force, parameters, .. } = &self.expressions;
         let mut force = Machine::new(force.clone(), parameters);
         let mut strongest = 0.0;
         for &(_, mass, position) in bodies {
             let position = position.map(|x| scale(x, units.length));
-            let mut pull = [0.0; 3];
-            force.evaluate(0.0, &self.place.local(position, [0.0; 3]), &mut pull);
-            let pull = units.take_vector(self.place.global(&pull), kernel::FORCE);
-            strongest = pull.iter().fold(strongest, |most: f64, x| most.max(x.abs() / mass));
+            for t in times {
+                let mut pull = [0.0; 3];
+                force.evaluate(t / self.place.scales[2], &self.place.local(position, [0.0; 3]), &mut pull);
+                let pull = units.take_vector(self.place.global(&pull), kernel::FORCE);
+                strongest = pull.iter().fold(strongest, |most: f64, x| most.max(x.abs() / mass));
+            }
         }
         Ok(strongest)
     }

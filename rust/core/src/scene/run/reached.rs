@@ -70,15 +70,16 @@ pub(super) fn gather(
     Ok(())
 }
 
-/// Whether what became undefined did so by leaving the distances or the speeds at which a force is known: it is no number there.
+/// Whether what became undefined did so by leaving the distances or the speeds at which a force is known: it is no number
+/// there. The state that is told may be the last that was one.
 fn left_a_domain(scene: &Scene, report: &Report) -> bool {
-    let undefined = || report.states.iter().flatten().flatten().any(|x| x.is_nan());
+    let infinite = || report.states.iter().flatten().flatten().any(|x| x.is_infinite());
     report.ending == Ending::NotFinite
         && scene.forces_of(report.unit.copy).iter().any(|force| {
             force.domain().is_some()
                 || report.unit.bodies.iter().any(|&body| force.speed_limit(body).is_some())
         })
-        && undefined()
+        && !infinite()
 }
 
 /// The time of a report's state, or of the last output before it ceased to be one.

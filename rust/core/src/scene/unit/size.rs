@@ -120,11 +120,13 @@ impl Prepared {
         Ok(separation.max(self.units.take(length, [1, 0, 0])))
     }
 
-    /// The largest acceleration that a force gives to a body of the unit, at rest where it is.
+    /// The largest acceleration that a force gives to a body of the unit, at rest where it is, in the course of the run.
     fn field_strength(&self, plan: &Plan, ticker: &mut Ticker<'_>) -> Result<f64> {
         let bodies = self.bodies();
+        // A force may begin, or vanish, where the run does.
+        let times = [0.0, 0.5, 1.0].map(|share| plan.t0 + share * plan.direction * plan.span);
         let of = |most: f64, force: &Arc<dyn ForceTerm>| {
-            Ok(most.max(force.strongest(&bodies, self.units, ticker)?))
+            Ok(most.max(force.strongest(&bodies, self.units, times, ticker)?))
         };
         plan.forces_of(self.unit.copy).iter().try_fold(0.0, of)
     }
