@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from kept_events import KEPT_EVENTS
+from kept_found import KEPT_FOUND
 from kept_motions import KEPT_MOTIONS
 from recipe import Recipe
 
 KEPT: list[tuple[str, Recipe]] = [
     *KEPT_MOTIONS,
     *KEPT_EVENTS,
+    *KEPT_FOUND,
     # An adaptive chunk took its masses from its first member: more than eight bodies, masses of their own.
     (
         "threads_change_no_bit",

@@ -37,9 +37,17 @@ def states(case: Case, **how: object) -> tuple[NDArray[np.float64], NDArray[np.f
 
 
 def _check_series(case: Case) -> None:
-    """Near the speed of light the post-Newtonian terms are no small correction, and may have no motion at all."""
-    if any(isinstance(force, vv.PostNewtonian) for force in case.members()[0].forces):
-        raise Refused("a series in v/c that does not converge")
+    """Near the speed of light post-Newtonian terms are no small correction, nor is a flattening inside the body that has
+    it: such series may lead into a center, or have no motion at all."""
+    for scene in case.members():
+        if any(isinstance(force, vv.PostNewtonian) for force in scene.forces):
+            raise Refused("a series in v/c that does not converge")
+        for force in (each for each in scene.forces if isinstance(each, vv.Oblate)):
+            places = scene.particles.position
+            for source, radius in zip(force.body, np.broadcast_to(force.radius, np.shape(force.body)), strict=True):
+                others = np.delete(places, source, axis=0)
+                if (np.linalg.norm(others - places[source], axis=1) < radius).any():
+                    raise Refused("a series in R/r that does not converge")
 
 
 def _pull(scene: vv.Scene, end: float) -> float:

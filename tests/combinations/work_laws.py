@@ -153,8 +153,10 @@ def the_work_of_the_forces_is_the_kinetic_energy_gained(recipe: Recipe) -> None:
     with np.errstate(over="ignore", under="ignore", invalid="ignore"):
         powers = np.array([power(*state) for state in zip(x, v, t, strict=True)])
     pushed = float(np.abs(_forces(scene.with_state(x[-1], v[-1], t[-1]))).max(initial=0.0))
-    if not np.isfinite(powers).all() or 0.0 < pushed * float(np.abs(v[-1]).max(initial=0.0)) < 1e-290 or (
-        pushed > 0.0 and not powers.any()
+    if (
+        not np.isfinite(powers).all()
+        or 0.0 < pushed * float(np.abs(v[-1]).max(initial=0.0)) < 1e-290
+        or (pushed > 0.0 and not powers.any())
     ):
         raise Refused("beyond float64")
     work = span / NODES * float((powers[:-1].reshape(-1, 4) @ BOOLE[:4]).sum() + powers[4::4].sum() * BOOLE[4])
