@@ -37,8 +37,10 @@ def states(case: Case, **how: object) -> tuple[NDArray[np.float64], NDArray[np.f
 
 
 def _check_series(case: Case) -> None:
-    """Near the speed of light post-Newtonian terms are no small correction, nor is a flattening inside the body that has
-    it: such series may lead into a center, or have no motion at all."""
+    """Refuse what no series holds for: post-Newtonian terms near the speed of light, a flattening inside its body.
+
+    They are no small corrections there, and may lead into a center.
+    """
     for scene in case.members():
         if any(isinstance(force, vv.PostNewtonian) for force in scene.forces):
             raise Refused("a series in v/c that does not converge")
