@@ -153,10 +153,10 @@ impl Assembler {
                 let (to, a) = (r(to)?, r(a)?);
                 words.extend([word::POWER, to, a, self.constant(*exponent)]);
             }
-            Operation::Solve { matrix, right, to } => {
+            Operation::Solve { matrix, right, to, inner } => {
                 let registers: Vec<u16> =
                     matrix.iter().chain(right).chain(to).map(r).collect::<Result<_>>()?;
-                words.extend([word::SOLVE, right.len() as u16]);
+                words.extend([word::SOLVE, right.len() as u16, *inner as u16]);
                 words.extend(registers);
             }
         }

@@ -6,9 +6,11 @@
 
 use super::code::{Code, word};
 use super::function::Function;
+use super::linear;
 use crate::numerics::binary::Binary;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::functions;
+use crate::numerics::real::Mask;
 #[cfg(target_arch = "x86_64")]
 use crate::numerics::lanes::{Avx2, Avx512};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
@@ -28,6 +30,14 @@ pub trait Scalar: Binary + Exponential + functions::Functions {
     /// The angle of the point whose y this is.
     #[must_use]
     fn angle(self, x: Self) -> Self;
+    /// So many numbers are in it.
+    const LANES: usize;
+    /// One of its numbers.
+    #[must_use]
+    fn lane(self, lane: usize) -> f64;
+    /// With another number in that place.
+    #[must_use]
+    fn with_lane(self, lane: usize, value: f64) -> Self;
 }
 
 impl Scalar for f64 {
@@ -42,6 +52,15 @@ impl Scalar for f64 {
     #[inline(always)]
     fn angle(self, x: Self) -> Self {
         angle(Lanes([self; WIDTH]), Lanes([x; WIDTH])).0[0]
+    }
+    const LANES: usize = 1;
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
+    }
+    #[inline(always)]
+    fn with_lane(self, _: usize, value: f64) -> Self {
+        value
     }
 }
 
@@ -60,6 +79,17 @@ macro_rules! by_lanes {
             #[inline(always)]
             fn angle(self, x: Self) -> Self {
                 Self::load(angle(self.store(), x.store()))
+            }
+            const LANES: usize = WIDTH;
+            #[inline(always)]
+            fn lane(self, lane: usize) -> f64 {
+                self.store().0[lane]
+            }
+            #[inline(always)]
+            fn with_lane(self, lane: usize, value: f64) -> Self {
+                let mut lanes = self.store();
+                lanes.0[lane] = value;
+                Self::load(lanes)
             }
         }
     )+};
@@ -259,23 +289,46 @@ impl<S: Scalar, const K: usize> Runner<S, K> {
     /// The solution of a linear system; the words it takes.
     #[inline(always)]
     fn solved(&mut self) -> usize {
-        let unknowns = self.word(1);
+        let (unknowns, inner) = (self.word(1), self.word(2));
         let triangle = unknowns * (unknowns + 1) / 2;
         for k in 0..K {
-            for i in 0..triangle + unknowns {
-                let value = self.get(2 + i, k);
-                self.room(i + 1)[i] = value;
-            }
+            self.read_system(triangle + unknowns, k);
             let (matrix, rest) = self.room(triangle + 2 * unknowns).split_at_mut(triangle);
             let (right, row) = rest.split_at_mut(unknowns);
-            factor(matrix, row);
-            solve(matrix, right);
+            let sound = linear::factor(matrix, row, inner);
+            linear::solve(matrix, right);
+            if !sound.all() {
+                self.solved_with_pivots(unknowns, k, sound);
+            }
             for i in 0..unknowns {
                 let value = self.room(triangle + i + 1)[triangle + i];
-                self.put(2 + triangle + unknowns + i, k, value);
+                self.put(3 + triangle + unknowns + i, k, value);
             }
         }
-        2 + triangle + 2 * unknowns
+        3 + triangle + 2 * unknowns
+    }
+
+    /// Puts the numbers of a linear system in the room for it.
+    #[inline(always)]
+    fn read_system(&mut self, numbers: usize, k: usize) {
+        for i in 0..numbers {
+            let value = self.get(3 + i, k);
+            self.room(i + 1)[i] = value;
+        }
+    }
+
+    /// Solves again where the matrix was none that needs no pivots.
+    #[cold]
+    fn solved_with_pivots(&mut self, unknowns: usize, k: usize, sound: S::Mask) {
+        let triangle = unknowns * (unknowns + 1) / 2;
+        let found = self.room(triangle + unknowns)[triangle..].to_vec();
+        self.read_system(triangle + unknowns, k);
+        let (matrix, right) = self.room(triangle + unknowns).split_at_mut(triangle);
+        linear::invert(matrix, unknowns, sound);
+        linear::solve_either(matrix, right, S::zero());
+        for (right, found) in right.iter_mut().zip(found) {
+            *right = S::select(sound, found, *right);
+        }
     }
 }
 
@@ -311,49 +364,6 @@ fn call<S: functions::Functions>(word: u16, x: S) -> S {
         SECH_SQUARED => functions::sech_squared(x),
         // Sine and cosine come in pairs.
         _ => S::splat(f64::NAN),
-    }
-}
-
-/// L D Lᵀ of a symmetric matrix, its lower triangle row by row, in place: L below the diagonal, 1/D on it. `row` is room.
-#[inline(always)]
-pub(super) fn factor<S: Scalar>(matrix: &mut [S], row: &mut [S]) {
-    for i in 0..row.len() {
-        let start = i * (i + 1) / 2;
-        for j in 0..i {
-            let other = j * (j + 1) / 2;
-            let mut x = matrix[start + j];
-            for k in 0..j {
-                x = row[k].multiply_subtract_from(matrix[other + k], x);
-            }
-            row[j] = x;
-        }
-        let mut pivot = matrix[start + i];
-        for j in 0..i {
-            let l = row[j] * matrix[j * (j + 1) / 2 + j];
-            matrix[start + j] = l;
-            pivot = l.multiply_subtract_from(row[j], pivot);
-        }
-        matrix[start + i] = S::one() / pivot;
-    }
-}
-
-/// Solves with what [`factor`] has made.
-#[inline(always)]
-pub(super) fn solve<S: Scalar>(matrix: &[S], right: &mut [S]) {
-    let n = right.len();
-    for i in 0..n {
-        let mut x = right[i];
-        for k in 0..i {
-            x = matrix[i * (i + 1) / 2 + k].multiply_subtract_from(right[k], x);
-        }
-        right[i] = x;
-    }
-    for i in (0..n).rev() {
-        let mut x = right[i] * matrix[i * (i + 1) / 2 + i];
-        for k in i + 1..n {
-            x = matrix[k * (k + 1) / 2 + i].multiply_subtract_from(right[k], x);
-        }
-        right[i] = x;
     }
 }
 

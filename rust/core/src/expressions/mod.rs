@@ -11,6 +11,7 @@ pub mod execute;
 pub mod function;
 pub mod graph;
 mod identity;
+mod linear;
 pub mod machine;
 pub mod nodes;
 pub mod program;

@@ -43,6 +43,7 @@ pub(super) enum Operation {
         matrix: Vec<Value>,
         right: Vec<Value>,
         to: Vec<Value>,
+        inner: usize,
     },
 }
 
@@ -82,13 +83,15 @@ impl Operation {
 }
 
 /// A system of linear equations `matrix · x = right` with a symmetric matrix of expressions. It is solved without a search
-/// for pivots: positive definite, or such a matrix bordered by rows of full rank.
+/// for pivots where its first rows are positive definite, bordered by rows of full rank, and else with one.
 #[derive(Clone, Debug, Default)]
 pub struct LinearSystem {
     /// Its rows.
     pub matrix: Vec<Vec<Id>>,
     /// The right side.
     pub right: Vec<Id>,
+    /// So many rows are those of the matrix that is bordered.
+    pub inner: usize,
 }
 
 impl LinearSystem {
@@ -167,7 +170,7 @@ pub(super) fn write(
         let right = values.split_off(values.len() - system.right.len());
         let to: Vec<Value> = right.iter().map(|_| writer.new_value()).collect();
         solved.extend(&to);
-        writer.program.body.push(Operation::Solve { matrix: values, right, to });
+        writer.program.body.push(Operation::Solve { matrix: values, right, to, inner: system.inner });
     }
     for output in outputs {
         let value = match *output {

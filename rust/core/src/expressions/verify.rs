@@ -123,6 +123,9 @@ impl Reader<'_> {
             }
             word::SOLVE => {
                 let unknowns = usize::from(self.word()?);
+                if usize::from(self.word()?) > unknowns {
+                    return Err(refused("a linear system has more rows than unknowns"));
+                }
                 self.unknowns = self.unknowns.max(unknowns);
                 self.registers(unknowns * (unknowns + 1) / 2 + 2 * unknowns)?;
             }

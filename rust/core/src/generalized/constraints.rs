@@ -82,5 +82,5 @@ pub(super) fn border(graph: &mut Graph, mass: &[Vec<Id>], rows: &[Vec<Id>], righ
             matrix[i][n + k] = negative;
         }
     }
-    LinearSystem { matrix, right }
+    LinearSystem { matrix, right, inner: n }
 }

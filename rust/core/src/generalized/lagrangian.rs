@@ -103,7 +103,8 @@ fn solved_in_blocks(source: &mut Source, mass: &[Vec<Id>], right: &[Id]) -> (Vec
             continue;
         }
         let matrix = members.iter().map(|&i| members.iter().map(|&j| mass[i][j]).collect()).collect();
-        systems.push(LinearSystem { matrix, right: members.iter().map(|&i| right[i]).collect() });
+        let right = members.iter().map(|&i| right[i]).collect();
+        systems.push(LinearSystem { matrix, right, inner: members.len() });
         for &member in &members {
             rates[member] = Output::Unknown(unknowns);
             unknowns += 1;

@@ -290,13 +290,14 @@ impl Lowering {
                     Recurrence::Raised { to, a: a.place, exponent }
                 }
             }
-            Operation::Solve { matrix, right, to } => {
+            Operation::Solve { matrix, right, to, inner } => {
                 let triangle = self.scratch;
                 let solve = Recurrence::Solve {
                     matrix: matrix.iter().map(at).collect(),
                     right: right.iter().map(at).collect(),
                     to: to.iter().map(|value| at(value).place).collect(),
                     triangle,
+                    inner: *inner,
                 };
                 self.scratch += scratch(right.len());
                 solve

@@ -4,10 +4,11 @@
 //! order finds, so they come first, in four chains, and the processor does those of one operation while another waits.
 
 use super::super::code::word;
-use super::super::execute::{self, Scalar};
+use super::super::execute::Scalar;
 use super::super::function::Function;
+use super::super::linear;
 use crate::numerics::functions;
-use crate::numerics::real::Real;
+use crate::numerics::real::{Mask, Real};
 
 /// Where a series begins, or a constant lies.
 pub(super) type Place = usize;
@@ -54,7 +55,7 @@ pub enum Recurrence {
     /// A power; `slopes` are those of its base and its own.
     Power { to: Place, a: Place, exponent: f64, slopes: [Place; 2] },
     /// A symmetric linear system, its lower triangle row by row; `triangle` is where it is kept factored.
-    Solve { matrix: Vec<Entry>, right: Vec<Entry>, to: Vec<Place>, triangle: usize },
+    Solve { matrix: Vec<Entry>, right: Vec<Entry>, to: Vec<Place>, triangle: usize, inner: usize },
     /// A function of constants, by the operation itself.
     Call { to: Place, word: u16, of: Place },
     /// Sine and cosine of a constant.
@@ -237,7 +238,7 @@ fn first<S: Scalar>(recurrence: &Recurrence, numbers: &mut [S], scratch: &mut [S
         Recurrence::Power { to, a, exponent, .. } | Recurrence::Raised { to, a, exponent } => {
             numbers[to] = numbers[a].raised(exponent);
         }
-        Recurrence::Solve { ref matrix, ref right, ref to, triangle } => {
+        Recurrence::Solve { ref matrix, ref right, ref to, triangle, inner } => {
             let (matrix_room, room) = scratch[triangle..].split_at_mut(matrix.len());
             let (right_room, row) = room.split_at_mut(right.len());
             for (into, entry) in matrix_room.iter_mut().zip(matrix) {
@@ -246,8 +247,15 @@ fn first<S: Scalar>(recurrence: &Recurrence, numbers: &mut [S], scratch: &mut [S
             for (into, entry) in right_room.iter_mut().zip(right) {
                 *into = numbers[entry.place];
             }
-            execute::factor(matrix_room, &mut row[..right.len()]);
-            execute::solve(matrix_room, right_room);
+            let sound = linear::factor(matrix_room, &mut row[..right.len()], inner);
+            row[0] = S::select(sound, S::one(), S::zero());
+            if !sound.all() {
+                for (into, entry) in matrix_room.iter_mut().zip(matrix) {
+                    *into = S::select(sound, *into, numbers[entry.place]);
+                }
+                linear::invert(matrix_room, right.len(), sound);
+            }
+            linear::solve_either(matrix_room, right_room, row[0]);
             for (&to, &value) in to.iter().zip(right_room.iter()) {
                 numbers[to] = value;
             }
@@ -326,9 +334,9 @@ fn further<S: Scalar>(
             numbers[to + n] = value;
             numbers[own + n] = S::splat(n as f64) * value;
         }
-        Recurrence::Solve { ref matrix, ref right, ref to, triangle } => {
+        Recurrence::Solve { ref matrix, ref right, ref to, triangle, .. } => {
             let (factored, room) = scratch[triangle..].split_at_mut(matrix.len());
-            let right_room = &mut room[..right.len()];
+            let (right_room, row) = room.split_at_mut(right.len());
             for (into, entry) in right_room.iter_mut().zip(right) {
                 *into = if entry.varies { numbers[entry.place + n] } else { S::zero() };
             }
@@ -352,7 +360,7 @@ fn further<S: Scalar>(
                     right_room[j] -= last.multiply_add(numbers[to[i]], of_j);
                 }
             }
-            execute::solve(factored, right_room);
+            linear::solve_either(factored, right_room, row[0]);
             for (&to, &value) in to.iter().zip(right_room.iter()) {
                 numbers[to + n] = value;
             }

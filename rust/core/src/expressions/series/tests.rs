@@ -98,8 +98,8 @@ fn solutions_of_linear_systems_are_their_series() {
         let (one, three) = (graph.constant(1.0), graph.constant(3.0));
         let diagonal = graph.sum(2.0, &[(1.0, x)]);
         let rows = vec![vec![diagonal, y, p], vec![y, three, t], vec![p, t, diagonal]];
-        let system = LinearSystem { matrix: rows, right: vec![x, one, y] };
-        let small = LinearSystem { matrix: vec![vec![three]], right: vec![p] };
+        let system = LinearSystem { matrix: rows, right: vec![x, one, y], inner: 3 };
+        let small = LinearSystem { matrix: vec![vec![three]], right: vec![p], inner: 1 };
         (vec![system, small], (0..4).map(Output::Unknown).collect())
     });
 }
