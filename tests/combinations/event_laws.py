@@ -13,6 +13,7 @@ from drawing import EVENTS
 from law_book import EPSILON, law
 from recipe import COLUMNS, Case, Recipe, Refused
 from running import differences, events, execute, outcome
+from solutions import loses_energy
 
 import visviva as vv
 
@@ -107,7 +108,8 @@ def _value(event: vv.events.Event, scene: vv.Scene, span: float) -> tuple[float,
 
 @law
 def a_located_event_is_a_zero_at_its_state(recipe: Recipe) -> None:
-    case = _watched(replace(recipe, tame=True)).case()
+    backward = recipe.backward and not loses_energy(recipe)
+    case = _watched(replace(recipe, tame=True, backward=backward)).case()
     result = _ran(case, case.how)
     table, scenes = result.events, case.members()
     span = abs(case.t[-1] - scenes[0].t0)

@@ -148,13 +148,17 @@ def change(first: Any, second: Any) -> tuple[float, float]:
     return tuple(float(np.abs(a - b).max(initial=0.0)) for a, b in zip(first, second, strict=True))  # type: ignore[return-value]
 
 
+def loses_energy(recipe: Recipe) -> bool:
+    """Whether a force takes energy: run backward it may make a body infinitely fast in a finite time."""
+    drawn = [FORCES[name.partition("/")[0]] for name, _ in recipe.forces]
+    return any(force._at_rest == "medium" or force is vv.Damper for force in drawn)
+
+
 def tame(recipe: Recipe) -> Case:
     """The same scene at a span and a method of this law's choosing."""
     drawn = [FORCES[name.partition("/")[0]] for name, _ in recipe.forces]
     # What is fixed in space fixes the origin: 1e8 away the given positions have digits to 1e-8 alone.
     fixed = any(parameter["kind"] == "point" for force in drawn for parameter in declared(force))
     offset = min(recipe.offset, 3) if fixed else recipe.offset
-    # Run backward a drag may make a body infinitely fast in a finite time.
-    forward = any(force._at_rest == "medium" for force in drawn)
     how: dict[str, Any] = {"collisions": "", "ragged": False, "outputs": 0, "steps": 16, "decades": 9, "offset": offset}
-    return replace(recipe, tame=True, backward=recipe.backward and not forward, **how).case()
+    return replace(recipe, tame=True, backward=recipe.backward and not loses_energy(recipe), **how).case()

@@ -78,6 +78,8 @@ def units_of_powers_of_two_change_no_bit(recipe: Recipe) -> None:
     here, there = _both(
         case, _transformed(case, lambda scene: scene.rescaled(length=length, mass=mass, time=time), time=time)
     )
+    if np.nanmax(np.abs(here.velocity), initial=0.0) > 2.0**800:
+        raise Refused("a motion that ends in infinity ends beyond float64 in some units sooner")
     span = abs(case.t[-1] - case.members()[0].t0) or 1.0
     for name, scale, moves in (("position", length, 1.0), ("velocity", length / time, 1.0 / span)):
         mine, other = getattr(here, name), getattr(there, name) / scale
