@@ -175,8 +175,8 @@ def the_work_of_the_forces_is_the_kinetic_energy_gained(recipe: Recipe) -> None:
         off = max(off, abs(moved - powers[node]))
     momentum = float((mass[:, None] * np.abs(v)).sum(axis=(1, 2)).max())
     size = span * float(np.abs(powers).max()) + float(kinetic.max())
-    # Powers are smooth on the scale of the span; the rule then errs by 1e-12 of them, and of those that change faster by
-    # less than an eighth of what twice the interval does.
+    # Powers are smooth on the scale of the span; the rule then errs by 1e-12 of them, and of those that change faster
+    # by less than an eighth of what twice the interval does.
     allowed = 4 * (span * off + momentum * error_v) + 1e-10 * size + abs(work - coarse) / 8.0
     gained = float(kinetic[-1] - kinetic[0])
     if not np.isfinite([work, gained, allowed]).all():

@@ -10,10 +10,10 @@ use super::linear;
 use crate::numerics::binary::Binary;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::functions;
-use crate::numerics::real::Mask;
 #[cfg(target_arch = "x86_64")]
 use crate::numerics::lanes::{Avx2, Avx512};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::real::Mask;
 use crate::tiered;
 
 /// The word of the square root.
