@@ -5,6 +5,7 @@
 //! matrix is inverted but with numbers.
 
 pub mod abreast;
+mod christoffel;
 mod constraints;
 pub mod dependence;
 pub mod discrete;
