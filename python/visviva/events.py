@@ -228,7 +228,7 @@ def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: b
     >>> import visviva as vv
     >>> swing = vv.systems.pendulum(position=[0.1])
     >>> swing.run(t=10.0, events=[vv.events.coordinate("theta", direction=1)]).events.t.round(3)
-    array([1.506, 3.514, 5.522, 7.53 , 9.538])
+    array([1.505, 3.513, 5.52 , 7.527, 9.535])
     """
     if not isinstance(name, str) and not hasattr(name, "free_symbols"):
         raise InvalidInput("name", f"expected the name of a coordinate, got {type(name).__name__}")

@@ -90,7 +90,8 @@ def test_many_zeros_in_one_step_are_all_found(method: str, wave: float) -> None:
     step = {"dt": 0.5} if method in ("rk4", "leapfrog", "variational_lobatto8") else {}
     out = rotor.run(10.0, method=method, events=[marks], **step)
     wanted = np.pi / wave * np.arange(np.ceil(0.1 * wave / np.pi), np.floor(10.1 * wave / np.pi) + 1)
-    np.testing.assert_allclose(out.events.position[:, 0], wanted, rtol=4e-16, atol=0.0)
+    # Steps of dop853 round the coordinate; the others have it at once.
+    np.testing.assert_allclose(out.events.position[:, 0], wanted, rtol=4e-15, atol=0.0)
 
 
 @pytest.mark.parametrize("method", [name for name in METHODS if name not in ("euler", "heun", "midpoint")])

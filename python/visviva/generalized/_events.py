@@ -147,7 +147,7 @@ class GeneralizedEventTable(Lines):
     >>> events = ["theta", vv.events.expression(lambda q, v, t, **parameters: v[0])]
     >>> table = vv.systems.pendulum(position=[0.1]).run(t=3.0, events=events).events
     >>> table.which.tolist(), table.of(1).t.shape, table.momentum.shape
-    ([0, 1, 0, 1], (2,), (4, 1))
+    ([0, 1, 0, 1, 0], (2,), (5, 1))
     """
 
     which: NDArray[np.int64]

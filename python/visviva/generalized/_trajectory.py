@@ -204,7 +204,7 @@ class GeneralizedTrajectory(Exported, Shown):
         >>> import visviva as vv
         >>> out = vv.systems.henon_heiles().run(t=10.0, events=["x", vv.events.coordinate("y", 0.2)])
         >>> out.events.which.tolist(), out.events.of(1).position[:, 1]
-        ([0, 1, 1, 0, 1, 0], array([0.2, 0.2, 0.2]))
+        ([1, 0, 0, 1, 0, 1, 0], array([0.2, 0.2, 0.2]))
         """
         from visviva.generalized._events import found_events
 

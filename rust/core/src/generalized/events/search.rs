@@ -12,6 +12,9 @@ use crate::ode::events::zero;
 /// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.
 pub(super) const INSIDE: f64 = 0.458_6;
 
+/// Where a part is looked at again that seems to be understood.
+const SECOND: f64 = 0.81;
+
 /// The most by which a function of the fifth degree, odd about the middle, leaves a cubic of which its rate there differs by
 /// one.
 const OF_SLANT: f64 = 0.15;
@@ -104,13 +107,20 @@ impl<'s> Search<'s> {
     /// Looks into a part of the step, of which a point inside is known.
     fn part(&mut self, a: Point, inside: Point, b: Point, cuts: u32) -> Result<()> {
         let cubic = Cubic::through(a, b);
-        let off = cubic.off(inside);
+        let mut off = cubic.off(inside);
+        // An oscillation may agree with the cubic in one place; far from zero that is no matter.
+        let (clearance, range) = (cubic.clearance(), cubic.range());
+        if clearance <= range && (clearance > 2.0 * off || off <= UNDERSTOOD * range) {
+            let second = self.look(a.theta + SECOND * (b.theta - a.theta))?;
+            let there = cubic.off(second);
+            off = if there <= off { off } else { there };
+        }
         // Nothing is known of a function that is no number inside; it counts where it is one.
         if off.is_finite() {
-            if cubic.clearance() > 2.0 * off {
+            if clearance > 2.0 * off {
                 return Ok(());
             }
-            let understood = off <= UNDERSTOOD * cubic.range() || cuts == 0 || self.looks >= LOOKS;
+            let understood = off <= UNDERSTOOD * range || cuts == 0 || self.looks >= LOOKS;
             if !understood && !self.is_rounding(cubic.size(), inside.theta, cuts)? {
                 for (left, right) in [(a, inside), (inside, b)] {
                     let between = self.look(left.theta + INSIDE * (right.theta - left.theta))?;
