@@ -11,6 +11,7 @@ pub mod dependence;
 pub mod discrete;
 mod elimination;
 pub mod evaluate;
+pub mod events;
 mod fixed;
 pub mod gauss;
 mod hamiltonian;
