@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from visviva.orbits._radial import RadialMotion, described_motion
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -148,14 +149,14 @@ class CentralOrbit:
         )
         return length[..., None] * turned
 
-    def plot(self, kind: str = "orbit", *, ax: Any = None) -> Figure:
+    def plot(self, kind: Literal["orbit", "effective_potential"] = "orbit", *, ax: Axes | None = None) -> Figure:
         """Draw the orbit, or the effective potential with the energy and the turning points.
 
         Parameters
         ----------
         kind : {"orbit", "effective_potential"}
             What to draw.
-        ax : matplotlib Axes, optional
+        ax : matplotlib.axes.Axes, optional
             Where; a figure of its own if not given.
 
         Returns
@@ -167,6 +168,14 @@ class CentralOrbit:
         ------
         InvalidInput
             If matplotlib is not installed, and for another kind.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 0.8, 0.0])
+        >>> orbit.plot("effective_potential").axes[0].get_xlabel()
+        'r'
         """
         from visviva.orbits._pictures import plot_orbit
 

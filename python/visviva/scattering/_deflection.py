@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -15,6 +15,8 @@ from visviva.errors import InvalidInput
 from visviva.potentials import Potential
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Deflection", "DeflectionStatus", "deflect", "deflection_angle"]
@@ -67,6 +69,8 @@ class Deflection:
         `DeflectionStatus`.
     reduced_mass : float or None
         As given.
+    potential : Potential
+        As given.
     """
 
     energy: NDArray[np.float64]
@@ -79,6 +83,7 @@ class Deflection:
     error: NDArray[np.float64]
     turning_points: NDArray[np.int64]
     status: NDArray[np.int64]
+    potential: Potential
     reduced_mass: float | None = None
 
     @property
@@ -98,6 +103,43 @@ class Deflection:
         if self.reduced_mass is None:
             raise InvalidInput("reduced_mass", "expected a number, as times depend on it, got None; pass it to deflect")
         return self.path_delay / np.sqrt(2.0 * self.energy / self.reduced_mass)
+
+    def plot(
+        self, kind: Literal["angle", "closest_approach", "cross_section"] = "angle", *, ax: Axes | None = None
+    ) -> Figure:
+        """Draw what depends on the impact parameter, or the cross section that it makes: a line for each energy.
+
+        Parameters
+        ----------
+        kind : {"angle", "closest_approach", "cross_section"}
+            ψ(b) with its rainbows, glories and orbits, toward which it grows without bound; the outermost turning point,
+            beside that of a straight line; or dσ/dΩ at each energy from 1° on, with its rainbows. Nothing is drawn of
+            what is captured.
+        ax : matplotlib.axes.Axes, optional
+            Where; a figure of its own if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The caller's; pyplot's state is not touched.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed; for another kind, no energy at all, or more than 28 of them.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> pair = vv.potentials.LennardJones(epsilon=1.0, sigma=1.0)
+        >>> found = vv.scattering.deflect(pair, energy=[[0.5], [2.0]], impact_parameter=np.linspace(0.0, 3.0, 301))
+        >>> found.plot().axes[0].get_ylabel()
+        'deflection ψ [degrees]'
+        >>> figure = found.plot("cross_section")
+        """
+        from visviva.scattering._pictures import plot_deflection
+
+        return plot_deflection(self, kind, ax)
 
 
 @known_keywords
@@ -170,6 +212,7 @@ def deflect(
         error,
         turning_points,
         status,
+        potential,
         reduced_mass=mass,
     )
 

@@ -10,10 +10,12 @@ import numpy as np
 from visviva._exported import needed
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.scattering._counts import plot_joint
 from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
     from xarray import Dataset
@@ -138,6 +140,34 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         told = {"captured": self.captured, "n_events": self.n_events}
         columns = {"counts": self.counts, **weighted_columns(self)}
         return dataset(dict(zip(self.name, self.edges, strict=True)), columns, told)
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the events of each bin as its color, on a logarithmic scale where they differ much.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure, ``.figure`` of what is returned.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Bins without an event are left white.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
+        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["lab_angle", "energy"].plot().get_ylabel()
+        'energy afterwards'
+        """
+        return plot_joint(self, ax)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, JointTally):
