@@ -6,12 +6,15 @@ Three results as they draw themselves, so that nothing in it is drawn by hand.
 from __future__ import annotations
 
 import sys
+from typing import TYPE_CHECKING
 
 import numpy as np
-from matplotlib.figure import Figure
 
 import visviva as vv
 from visviva.plot import new_figure
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 
 def first_look() -> Figure:

@@ -102,6 +102,15 @@ class EventTable(Exported, Shown):
     def of(self, which: int) -> EventTable:
         """The lines of one event.
 
+        Parameters
+        ----------
+        which : int
+            The event, as counted in ``events=``.
+
+        Returns
+        -------
+        EventTable
+
         Examples
         --------
         >>> import visviva as vv

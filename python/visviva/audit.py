@@ -225,6 +225,14 @@ class Curl:
         The largest, over the largest derivative of the field at its place.
     conservative : bool
         Whether that is no more than what the differences err by (1e-8).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> places = [[1.0, 0.0, 0.0], [0.0, 2.0, 1.0]]
+    >>> found = vv.audit.curl(vv.CentralField(vv.potentials.Coulomb(k=-1.0)), places)
+    >>> found.conservative, found.value.shape
+    (True, (2, 3))
     """
 
     value: NDArray[np.float64]
@@ -246,6 +254,11 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     Returns
     -------
     Curl
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For places of another shape, a force between bodies, or a function whose values have another shape.
 
     Examples
     --------
@@ -289,6 +302,15 @@ class ThirdLaw:
         Whether the force of each body on each other one is opposite to the other's on it.
     strong : bool
         Whether both lie along the line between them, too.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> along = np.zeros((2, 2, 3))
+    >>> along[0, 1], along[1, 0] = [2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]
+    >>> audit = vv.audit.third_law([[0, 0, 0], [1.0, 0, 0]], along)
+    >>> audit.weak, audit.strong
+    (True, True)
     """
 
     force: NDArray[np.float64]

@@ -61,6 +61,13 @@ class Point:
         The largest distance of a body from its reference at the end.
     energy_error : float
         |E − E₀|/|E₀| there; NaN where the scene does not conserve its energy, or a peer did not tell.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> point = vv.Point("rk4", setting=0.01, seconds=2e-3, position_error=1e-8, energy_error=1e-9)
+    >>> point.series, point.position_error
+    ('rk4', 1e-08)
     """
 
     series: str
@@ -106,6 +113,11 @@ class WorkPrecision(Shown):
         series : str, optional
             Of one method only.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For arguments of other names; a series that there is not has no best run.
+
         Examples
         --------
         >>> import visviva as vv
@@ -116,7 +128,16 @@ class WorkPrecision(Shown):
         return min(good, key=lambda point: point.seconds, default=None)
 
     def envelope(self) -> tuple[Point, ...]:
-        """The runs that none beats in both time and error, from the roughest on."""
+        """The runs that none beats in both time and error, from the roughest on.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> three = [("a", 1.0, 1e-3), ("b", 2.0, 1e-6), ("c", 3.0, 1e-5)]
+        >>> points = tuple(vv.Point(name, 0.1, seconds, error, error) for name, seconds, error in three)
+        >>> [point.series for point in vv.WorkPrecision("three", points).envelope()]
+        ['a', 'b']
+        """
         front: list[Point] = []
         for point in sorted(self.points, key=lambda p: (p.seconds, p.position_error)):
             if not front or point.position_error < front[-1].position_error:
@@ -125,6 +146,15 @@ class WorkPrecision(Shown):
 
     def joined(self, points: Iterable[Point]) -> WorkPrecision:
         """The same with more points, for example of another package.
+
+        Parameters
+        ----------
+        points : iterable of Point
+            What is put behind those that there are.
+
+        Returns
+        -------
+        WorkPrecision
 
         Examples
         --------

@@ -104,6 +104,11 @@ def distance(
     terminal : bool or int, optional
         Whether the run ends there, or with the zero of which number.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -139,6 +144,11 @@ def plane(
     terminal : bool or int, optional
         As of `distance`.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -173,6 +183,11 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
     terminal : bool or int, optional
         As of `distance`.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -205,6 +220,11 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
     direction, terminal : optional
         As of `plane` and `distance`: 1 where the energy rises in time.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -236,6 +256,11 @@ def function(
     call : callable
     direction, terminal : optional
         As of `plane` and `distance`.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
 
     Raises
     ------

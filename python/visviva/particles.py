@@ -249,6 +249,15 @@ class Particles(Shown):
     def index(self, name: str | int) -> int:
         """The index of a body by its name.
 
+        Parameters
+        ----------
+        name : str or int
+            The name, or the index itself.
+
+        Returns
+        -------
+        int
+
         Raises
         ------
         visviva.InvalidInput

@@ -362,6 +362,11 @@ class Scene(Runnable[Trajectory], Framed):
         -------
         Invariants
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For another reference point.
+
         Examples
         --------
         >>> import visviva as vv

@@ -176,7 +176,7 @@ def test_a_run_draws_all_its_tallies() -> None:
     counts = run["lab_angle", "energy"].counts
     [mesh] = joint.collections
     drawn = np.ma.filled(mesh.get_array().astype(float), 0.0).reshape(20, 20)  # type: ignore[union-attr]
-    assert (drawn.T == counts).all()
+    assert (counts == drawn.T).all()
     # What counted nothing is white, and of no color.
     assert np.ma.count_masked(np.ma.masked_invalid(mesh.get_array())) == (counts == 0).sum()  # type: ignore[arg-type]
     fits(figure, beside=False)

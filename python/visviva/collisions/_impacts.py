@@ -30,6 +30,13 @@ class CollisionOutcome:
         What the first body has received; the second has received as much the other way.
     energy_loss : ndarray
         Kinetic energy that is gone, −Q: the same in every frame; negative where energy was released.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> after = vv.collisions.elastic(1.0, 3.0, [2.0, 0, 0], [0, 0, 0], normal=[1, 0, 0])
+    >>> after.velocity1, after.velocity2, float(after.energy_loss)
+    (array([-1.,  0.,  0.]), array([1., 0., 0.]), 0.0)
     """
 
     velocity1: NDArray[np.float64]

@@ -50,6 +50,13 @@ class RutherfordComparison:
         errors of the experiment were relative.
     ratio : ndarray, shape (11,)
         Counted over scale / sin⁴(φ/2).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> silver, gold = vv.datasets.geiger_marsden_1913().compare()
+    >>> gold.metal, gold.ratio.shape
+    ('gold', (11,))
     """
 
     metal: str
@@ -78,6 +85,13 @@ class GeigerMarsden:
         Scintillations, corrected by the authors for the decay of the source and the natural effect.
     source : str
         The paper and the table.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> data = vv.datasets.geiger_marsden_1913()
+    >>> data.angle.max(), data.gold.shape
+    (np.float64(150.0), (11,))
     """
 
     angle: NDArray[np.float64]

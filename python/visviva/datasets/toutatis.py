@@ -68,6 +68,13 @@ class RadarAttitudes:
         φ, θ, ψ (z–x–z) in radians, from the body to the ecliptic of J2000.
     angular_velocity : ndarray, shape (17, 3)
         Along the body's axes, in radians per day.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> radar = vv.datasets.toutatis().radar
+    >>> len(radar.date), radar.euler_angles.shape
+    (17, (17, 3))
     """
 
     date: tuple[str, ...]
@@ -98,6 +105,13 @@ class ToutatisComparison:
         The angle between the two angular velocities, as the body has them, in degrees.
     spin_ratio : ndarray, shape (17,)
         The angular velocity of the free rotation over that of radar.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.datasets.toutatis().compare()
+    >>> round(found.attitude.min(), 1), round(found.attitude.max(), 1)
+    (np.float64(1.3), np.float64(15.9))
     """
 
     date: tuple[str, ...]
@@ -137,6 +151,13 @@ class Toutatis:
         What was seen in December 1992.
     source : str
         Who published the numbers.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> spin = vv.datasets.toutatis()
+    >>> spin.moments.round(2), spin.radar.t.shape
+    (array([3.08, 3.24, 1.  ]), (17,))
     """
 
     moments: NDArray[np.float64]
@@ -163,6 +184,11 @@ class Toutatis:
         -------
         FreeRotation
             See `visviva.rigid.free_rotation`.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
 
         Examples
         --------

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -39,6 +39,14 @@ class CentralOrbit:
         Turning points, radial period, apsidal angle, precession and kind of this orbit.
     time_since_pericenter, angle_since_pericenter : float
         At the start, from the nearest pericenter, with its sign; NaN of a circle, and where there is no pericenter.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> sun = vv.potentials.Coulomb(-1.0)
+    >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0])
+    >>> round(orbit.energy, 12), round(orbit.angular_momentum, 12)
+    (-0.28, 1.2)
     """
 
     potentials: tuple[Potential, ...]
@@ -105,18 +113,81 @@ class CentralOrbit:
         return self._vectors(places[..., 0], places[..., 1])
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Give velocities at times since the start; as `position`."""
+        """Give velocities at times since the start; as `position`.
+
+        Parameters
+        ----------
+        t : array_like
+            Times since the start.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``t`` and one axis of 3 more.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
+        visviva.ConvergenceError
+            As `radial_motion`.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.0, 0.0])
+        >>> orbit.velocity([0.0, np.pi / 2]).round(12) + 0.0
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.]])
+        """
         places = self._places("t", t, angles=False)
         radius, angle, outward = np.moveaxis(places, -1, 0)
         across = self.angular_momentum / (self.mass * radius)
         return self._vectors(outward, angle) + self._vectors(across, angle + 0.5 * np.pi)
 
     def angle(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Give the angle gone through since the start, not reduced to a turn; as `position`."""
+        """Give the angle gone through since the start, not reduced to a turn; as `position`.
+
+        Parameters
+        ----------
+        t : array_like
+            Times since the start.
+
+        Returns
+        -------
+        ndarray
+            Radians, of the shape of ``t``.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
+        visviva.ConvergenceError
+            As `radial_motion`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.0, 0.0])
+        >>> orbit.angle([0.0, 1.0, 10.0]).round(12)  # a circle
+        array([ 0.,  1., 10.])
+        """
         return self._places("t", t, angles=False)[..., 1]
 
     def radius(self, angle: ArrayLike) -> NDArray[np.float64]:
         """Give the distance r(θ) at angles since the start: the path.
+
+        Parameters
+        ----------
+        angle : array_like
+            Radians since the start.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``angle``.
 
         Raises
         ------

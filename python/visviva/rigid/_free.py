@@ -41,6 +41,13 @@ class FreeRotation(Rotation):
         Quaternions (x, y, z, w), from the body to space; |q| is 1 to 4 ε.
     body_angular_momentum : ndarray, shape (T, 3)
         Along the body's principal axes.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> turning = vv.rigid.free_rotation([1.0, 2.0, 3.0], [0.1, 1.0, 0.1], np.linspace(0.0, 20.0, 201))
+    >>> turning.orientation.shape, bool(np.ptp(turning.energy) < 1e-14)
+    ((201, 4), True)
     """
 
     t: NDArray[np.float64]

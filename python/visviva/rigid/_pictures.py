@@ -33,6 +33,7 @@ _POINTS = 4000
 
 def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str, ax: Axes | None) -> Figure:
     """A picture of a free rotation; see `FreeRotation.plot`."""
+    known: dict[str, Callable[[Any, Any], None]]
     known = {"polhode": polhode, "herpolhode": herpolhode, "axes": traces, "components": spin}
     return _plotted(motion, kind, known, ax)
 

@@ -37,6 +37,14 @@ class TopMotion:
         jumps by π, and ψ with it.
     theta_dot, phi_dot, psi_dot : ndarray, shape (T,)
         Their rates.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> motion = top.solve(np.linspace(0.0, 3.0, 301), theta=0.3, psi_dot=50.0)
+    >>> motion.theta.shape, round(motion.theta.min(), 9)
+    ((301,), np.float64(0.3))
     """
 
     top: HeavyTop

@@ -33,6 +33,13 @@ class ScrewAxis(NamedTuple):
         The velocity along the direction, which all points share.
     pitch : ndarray, shape (…)
         How far the body goes along the axis in one radian, ω·v/ω²; infinite where it does not turn.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> screw = vv.rigid.screw_axis([0.0, 0.0, 1.0], [0.0, 0.0, 2.0])
+    >>> float(screw.rate), float(screw.speed), float(screw.pitch)
+    (2.0, 1.0, 0.5)
     """
 
     point: NDArray[np.float64]

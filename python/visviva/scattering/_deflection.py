@@ -71,6 +71,13 @@ class Deflection:
         As given.
     potential : Potential
         As given.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.scattering.deflect(vv.potentials.Coulomb(1.0), energy=0.5, impact_parameter=[0.0, 1.0])
+    >>> found.angle, found.closest_approach
+    (array([3.14159265, 1.57079633]), array([2.        , 2.41421356]))
     """
 
     energy: NDArray[np.float64]
@@ -112,9 +119,9 @@ class Deflection:
         Parameters
         ----------
         kind : {"angle", "closest_approach", "cross_section"}
-            ψ(b) with its rainbows, glories and orbits, toward which it grows without bound; the outermost turning point,
-            beside that of a straight line; or dσ/dΩ at each energy from 1° on, with its rainbows. Nothing is drawn of
-            what is captured.
+            ψ(b) with its rainbows, glories and orbits, toward which it grows without bound; the outermost turning
+            point, beside that of a straight line; or dσ/dΩ at each energy from 1° on, with its rainbows. Of what is
+            captured nothing is drawn.
         ax : matplotlib.axes.Axes, optional
             Where; a figure of its own if not given.
 

@@ -329,6 +329,13 @@ class Moderation:
         ⟨ln(E₀/E₁)⟩ = 1 + ((1 − q)/q) ln(1 − q).
     mean_cosine : ndarray
         ⟨cos θ₁⟩ in the laboratory: 2m₁/3m₂, or 1 − (m₂/m₁)²/3 for a heavy projectile.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.scattering.moderation(mass_ratio=1.0)  # neutrons in hydrogen
+    >>> float(found.greatest_transfer), float(found.mean_transfer), float(found.mean_logarithmic_decrement)
+    (1.0, 0.5, 1.0)
     """
 
     greatest_transfer: NDArray[np.float64]

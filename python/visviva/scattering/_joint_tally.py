@@ -46,6 +46,15 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         Which events: sorted (seed, first, end) with end excluded.
     by_stratum : ndarray of uint64, shape (S, (B₁ + 2)·(B₂ + 2) + 1), or None
         With `importance` the events of each stratum: those of ``flow``, row by row, and captured.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+    ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+    >>> run["lab_angle", "energy"].counts.shape
+    (10, 10)
     """
 
     name: tuple[str, ...]
@@ -65,11 +74,31 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         return self.flow[1:-1, 1:-1]
 
     def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
+        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> float(run["lab_angle", "energy"].values().sum())
+        1000.0
+        """
         return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the values: as `Tally.variances`."""
+        """Variances of the values: as `Tally.variances`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["lab_angle", "energy"].variances().shape
+        (10, 10)
+        """
         return variances(self.values(), self._weighted(2), self.n_events)
 
     def _weighted(self, power: int) -> NDArray[np.float64]:
@@ -82,6 +111,14 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         ------
         ImportError
             Without the package hist.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally=[("lab_angle", "energy")],
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> hist = run["lab_angle", "energy"].to_hist() if find_spec("hist") else None
         """
         return to_hist(self, self.name, self.edges, self.flow)
 

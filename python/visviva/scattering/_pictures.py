@@ -6,7 +6,7 @@ toward which the angle grows without bound, and over what is captured; a cross s
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
@@ -58,8 +58,7 @@ def plot_deflection(found: Deflection, kind: object, ax: Any) -> Figure:
     if labels:
         # Beside the lines, which may be anywhere within.
         axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
-    figure: Figure = axes.figure
-    return figure
+    return cast("Figure", axes.figure)
 
 
 def _lines(energies: NDArray[np.float64]) -> Iterator[tuple[float, dict[str, Any]]]:

@@ -48,6 +48,15 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         Which events: sorted (seed, first, end) with end excluded.
     tallies : tuple of Tally or JointTally
         In the order asked for; one of two quantities has the tuple of their names as its name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+    ...     n_events=1000, seed=1, bins=4)
+    >>> list(run), run.n_events, int(run["cm_angle"].counts.sum())
+    (['cm_angle'], 1000, 1000)
     """
 
     beam: Beam
@@ -212,6 +221,22 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         ----------
         path : path-like
             Written exactly as given.
+
+        Raises
+        ------
+        OSError
+            Where the file cannot be written.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+        ...     n_events=1000, seed=1, bins=4)
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "counts.npz"
+        >>> run.save(path)
+        >>> vv.scattering.MonteCarlo.load(path) == run
+        True
         """
         beam = self.beam
         energy = beam.beam_energy
