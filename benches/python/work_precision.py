@@ -16,7 +16,9 @@ ours of the same error. What a peer did not reach for want of patience is told a
 from __future__ import annotations
 
 import argparse
+import os
 import re
+import shlex
 import sys
 import warnings
 from functools import partial
@@ -29,6 +31,7 @@ from _harness import Row, machine
 from _peers import PEERS, Peer
 
 import visviva as vv
+from visviva.plot import new_figure
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -50,6 +53,8 @@ BARS = {"SciPy": 50.0, "REBOUND": 3.0, "heyoka": 1.0}
 # Our methods are taken as far as so many of DOP853's most exact runs would take, and at least some milliseconds; and
 # whatever is asked, as far as so many.
 ENOUGH, LEAST, ASKED_OR = 20.0, 5e-3, 4.0
+# What is farther off than that is no answer, and in no picture.
+ROUGHEST = 1.0
 
 
 class Transformed(Peer):
@@ -131,12 +136,15 @@ def row(what: str, ours: vv.Point | None, theirs: vv.Point | tuple[str, float], 
 
 
 def leaders(found: vv.WorkPrecision) -> tuple[list[str], list[str]]:
-    """Our methods and those of peers that are the fastest of their package to some error: what a picture can hold."""
-    own = [each for each in found.series if each.partition(" ")[0] not in BARS]
+    """Our methods and those of peers that are the fastest of their package to some error: what a picture can hold.
+
+    A closed form, which is the fastest to all, is none of them: it is drawn by itself.
+    """
+    own = [each for each in found.series if each.partition(" ")[0] not in ("auto", *BARS)]
     packages = [own, *([each for each in found.series if each.partition(" ")[0] == peer] for peer in BARS)]
 
     def fastest(series: list[str]) -> list[str]:
-        front = found.only(series).envelope()
+        front = [point for point in found.only(series).envelope() if point.position_error < ROUGHEST]
         return [each for each in series if any(point.series == each for point in front)]
 
     ours, *peers = map(fastest, packages)
@@ -150,24 +158,27 @@ def slug(name: str) -> str:
 
 def picture(name: str, found: vv.WorkPrecision, folder: Path) -> Path:
     """A picture of a problem: the fastest methods of each package, the machine below."""
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(8.0, 4.6), layout="constrained")
-    axes = figure.add_subplot()
+    figure, (axes,) = new_figure(1, (8.0, 4.4))
     ours, peers = leaders(found)
-    found.only([*ours, *peers]).plot(axes, peers=peers)
-    axes.set(title=name, xlim=(1e0, 1e-16))
+    shown = found.only([*ours, *peers])
+    shown.plot(axes, peers=peers)
+    closed = [point for point in found.points if point.series == "auto"]
+    for point in closed:
+        axes.plot(point.position_error, point.seconds, "*", markersize=10, color="black", label="auto, a closed form")
+    seconds = [point.seconds for point in (*shown.points, *closed) if point.position_error < ROUGHEST]
+    axes.set(title=name, xlim=(ROUGHEST, 1e-15), ylim=(0.5 * min(seconds), 2.0 * max(seconds)))
+    axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
     figure.supxlabel("\n".join(wrap(machine(), 130)), fontsize=6, color="0.4")
     path = folder / f"{slug(name)}.png"
-    figure.savefig(path, dpi=100)
+    figure.savefig(path, dpi=90)
     return path
 
 
-def page(sections: list[str], rows: list[Row], folder: Path) -> None:
+def page(sections: list[str], rows: list[Row], load: str, folder: Path) -> None:
     """The page of the site: pictures and tables as they are, and who won."""
-    command = " ".join(["python benches/python/work_precision.py", *sys.argv[1:]])
+    command = " ".join(["python benches/python/work_precision.py", shlex.join(sys.argv[1:])]).strip()
     told = [
-        f"Written with its pictures by `{command}`. {machine()}",
+        f"Written with its pictures by `{command}`. {machine()} {load}",
         "What is timed is the integration alone, the least of several runs; errors are those of places at the end, "
         "against references beyond double precision. Lines are those methods of each package that are its fastest to "
         "some error: ours with full marks, peers dashed with open ones, the fastest of all in grey. Tables have every "
@@ -187,6 +198,8 @@ def main() -> None:
     parser.add_argument("--output", type=Path, default=Path(__file__).parents[2] / "docs" / "work-precision")
     asked = parser.parse_args()
     warnings.simplefilter("ignore", vv.AccuracyWarning)  # rough steps are meant
+    # Of who else was there; on one's own it is below 1.
+    load = f"Load of the machine when it began: {os.getloadavg()[0]:.1f}." if hasattr(os, "getloadavg") else ""
     drawing = find_spec("matplotlib") is not None
     sections: list[str] = []
     rows: list[Row] = []
@@ -211,7 +224,7 @@ def main() -> None:
     for line in rows:
         print(line)
     print(f"\n{machine()}\n")
-    page(sections, rows, asked.output)
+    page(sections, rows, load, asked.output)
 
 
 if __name__ == "__main__":

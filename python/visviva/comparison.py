@@ -250,7 +250,8 @@ class WorkPrecision(Shown):
         )
         for name in self.series:
             own = [p for p in self.points if p.series == name and p.position_error > 0.0]
-            own.sort(key=lambda point: point.seconds)
+            # As it was swept, from the roughest setting on: in the order of times their noise would be drawn as a path.
+            own.sort(key=lambda point: -point.setting)
             style: dict[str, Any] = (
                 {"linestyle": "--", "marker": "s", "markerfacecolor": "none"} if name in others else {"marker": "o"}
             )
