@@ -81,7 +81,7 @@ class Transformed(Peer):
 def limit(problem: vv.problems.Problem, seconds: float) -> float:
     """How long a run of ours may take before its method is taken no further."""
     exact = vv.work_precision(problem, ["dop853"], seconds=seconds, repeats=3)
-    finest = max(point.seconds for point in exact.points)
+    finest = max((point.seconds for point in exact.points), default=seconds)
     return min(max(seconds, ASKED_OR * finest), max(LEAST, ENOUGH * finest))
 
 

@@ -12,6 +12,7 @@ from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, checked_names
 from visviva._text import count
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -78,6 +79,12 @@ class Particles(Shown):
         radius: ArrayLike = 0.0,
     ) -> None:
         sizes: Sizes = {}
+        if isinstance(mass, (int, float)):
+            raise InvalidInput("mass", f"expected shape (N,), got the number {mass}; one body is [{mass}], [[x, y, z]]")
+        if isinstance(position, (list, tuple)) and any(
+            isinstance(row, (list, tuple)) and len(row) == 2 for row in position
+        ):
+            raise InvalidInput("position", "expected shape (N, 3), got places of two numbers; in a plane give z = 0")
         object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
         object.__setattr__(self, "position", read_only(float_array("position", position, ("N", 3), sizes), position))
         if velocity is None:

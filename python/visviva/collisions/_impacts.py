@@ -322,7 +322,8 @@ def _collided(
 ) -> CollisionOutcome:
     if (normal is None) == (direction is None):
         what = "both" if direction is not None else "neither"
-        raise InvalidInput("normal", f"expected either a normal or a direction, got {what}")
+        along_a_line = "; on a line, normal=[1, 0, 0]" if direction is None else ""
+        raise InvalidInput("normal", f"expected either a normal or a direction, got {what}{along_a_line}")
     geometry = "normal" if direction is None else "direction"
     along = normal if direction is None else direction
     given = Together(

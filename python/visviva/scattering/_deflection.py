@@ -10,7 +10,9 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.potentials import Potential
 
@@ -42,8 +44,8 @@ class DeflectionStatus(IntEnum):
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Deflection:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deflection(Shown):
     """Deflections of pairs of an energy and an impact parameter, as arrays of their common shape.
 
     Attributes
@@ -92,6 +94,19 @@ class Deflection:
     status: NDArray[np.int64]
     potential: Potential
     reduced_mass: float | None = None
+
+    def __repr__(self) -> str:
+        captured = int((self.status == DeflectionStatus.CAPTURED).sum())
+        note = f", {captured} captured" if captured else ""
+        shape = np.shape(self.angle)
+        what = count(int(np.size(self.angle)), "motion")
+        return f"Deflection({what} of shape {shape}{note}, {self.potential!r})"
+
+    def _sheet(self) -> Sheet:
+        columns = [np.ravel(each) for each in (self.energy, self.impact_parameter, self.angle, self.closest_approach)]
+        words = [DeflectionStatus(each).name.lower().replace("_", " ") for each in np.ravel(self.status).tolist()]
+        rows, note = first_rows(len(words), lambda at: (*(f"{column[at]:.6g}" for column in columns), words[at]))
+        return Sheet(repr(self), rows, ("energy", "impact parameter", "angle", "closest approach", ""), note)
 
     @property
     def conditioning(self) -> NDArray[np.float64]:
