@@ -16,6 +16,7 @@ import numpy as np
 from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
@@ -213,8 +214,8 @@ def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float6
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Curl:
+@dataclass(frozen=True, slots=True, repr=False)
+class Curl(Record):
     """What `curl` finds.
 
     Attributes

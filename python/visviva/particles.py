@@ -24,6 +24,16 @@ if TYPE_CHECKING:
 __all__ = ["Particles"]
 
 
+def _cure(argument: str, mass: object, position: object) -> str:
+    """What is written first of one body, or of motion in a plane, and how it goes."""
+    if argument == "mass" and isinstance(mass, (int, float)):
+        return f"; one body is [{mass}], [[x, y, z]]"
+    if argument == "position" and isinstance(position, (list, tuple)) and position:
+        flat = all(isinstance(place, (list, tuple)) and len(place) == 2 for place in position)
+        return "; in a plane give z = 0" if flat else ""
+    return ""
+
+
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Particles(Shown):
@@ -79,14 +89,14 @@ class Particles(Shown):
         radius: ArrayLike = 0.0,
     ) -> None:
         sizes: Sizes = {}
-        if isinstance(mass, (int, float)):
-            raise InvalidInput("mass", f"expected shape (N,), got the number {mass}; one body is [{mass}], [[x, y, z]]")
-        if isinstance(position, (list, tuple)) and any(
-            isinstance(row, (list, tuple)) and len(row) == 2 for row in position
-        ):
-            raise InvalidInput("position", "expected shape (N, 3), got places of two numbers; in a plane give z = 0")
-        object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
-        object.__setattr__(self, "position", read_only(float_array("position", position, ("N", 3), sizes), position))
+        try:
+            object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
+            object.__setattr__(
+                self, "position", read_only(float_array("position", position, ("N", 3), sizes), position)
+            )
+        except InvalidInput as refused:
+            cure = _cure(refused.argument, mass, position)
+            raise InvalidInput(refused.argument, refused.message + cure) if cure else refused from None
         if velocity is None:
             velocity = np.zeros(self.position.shape)
         object.__setattr__(self, "velocity", read_only(float_array("velocity", velocity, ("N", 3), sizes), velocity))

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._together import Together
 from visviva.collisions._arguments import masses, vectors
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class CollisionOutcome:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CollisionOutcome(Record):
     """Two bodies after a collision.
 
     Attributes

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ _TABLE = (
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class RutherfordComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class RutherfordComparison(Record):
     """Counts against Rutherford's law, one scale fitted to each metal.
 
     Attributes
@@ -71,8 +72,8 @@ class RutherfordComparison:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class GeigerMarsden:
+@dataclass(frozen=True, eq=False, repr=False)
+class GeigerMarsden(Record):
     """Scintillations counted behind a foil, by angle.
 
     Attributes

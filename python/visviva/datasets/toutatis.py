@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.datasets._bodies import read_only
 from visviva.rigid import FreeRotation, free_rotation, quaternion_from_euler, quaternion_product, rotation_vector
@@ -54,8 +55,8 @@ _RADAR = (
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class RadarAttitudes:
+@dataclass(frozen=True, eq=False, repr=False)
+class RadarAttitudes(Record):
     """How Toutatis stood and turned on seventeen days of December 1992, by radar.
 
     Attributes
@@ -89,8 +90,8 @@ class RadarAttitudes:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class ToutatisComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToutatisComparison(Record):
     """The free rotation from the spin state against what radar saw.
 
     Attributes
@@ -131,8 +132,8 @@ class ToutatisComparison:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Toutatis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Toutatis(Record):
     """The spin state of 4179 Toutatis; times in days, angles in radians.
 
     The body's axes x, y, z are those of the middle, the largest and the smallest moment: z is the long axis.

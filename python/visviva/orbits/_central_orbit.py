@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.orbits._central import core_potentials, terms_of
@@ -25,8 +26,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class CentralOrbit:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class CentralOrbit(Record):
     """An orbit in a central potential; what :func:`central_orbit` returns.
 
     Attributes

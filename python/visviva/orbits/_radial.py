@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.orbits._arguments import fields, shaped
 from visviva.orbits._central import checked, core_potentials
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class RadialMotion:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class RadialMotion(Record):
     """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of what was asked.
 
     Attributes

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from visviva import _core
+from visviva._html import briefly
 from visviva._keywords import known_keywords
 from visviva.rigid._arguments import mapped
 
@@ -47,6 +48,10 @@ class ScrewAxis(NamedTuple):
     rate: NDArray[np.float64]
     speed: NDArray[np.float64]
     pitch: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        told = (f"{name}={briefly(each)}" for name, each in zip(self._fields, self, strict=True))
+        return f"ScrewAxis({', '.join(told)})"
 
 
 @known_keywords

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive_array
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._arguments import angles, encounter, flat, kinematic
@@ -314,8 +315,8 @@ def two_branch_energy(
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Moderation:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Moderation(Record):
     """Averages over one elastic collision that is isotropic in the centre-of-mass frame.
 
     Attributes

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._of_events import is_zero, merged
@@ -107,8 +108,8 @@ def _fraction(sums: NDArray[np.uint64], units: tuple[float, float], n_events: in
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
+@dataclass(frozen=True, eq=False, repr=False)
+class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Attributes

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._exported import needed
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
@@ -26,8 +27,8 @@ __all__ = ["JointTally"]
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
+@dataclass(frozen=True, eq=False, repr=False)
+class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
     Attributes

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._exported import needed
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
@@ -50,8 +51,8 @@ class CrossSection(NamedTuple):
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
+@dataclass(frozen=True, eq=False, repr=False)
+class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
