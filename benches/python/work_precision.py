@@ -2,9 +2,8 @@
 
 Every method is taken through all its steps or tolerances (`visviva.work_precision`), and so is every peer; what is
 timed is the integration alone: compiling, making of objects and output are not in it. SciPy gets its right-hand side in
-NumPy as a careful user writes it; a right-hand side that does nothing would cost it as much. The picture has a panel
-for each problem, errors on x, seconds on y: ours with full marks, peers dashed with open ones, the fastest of all for
-each error in grey. It and the tables are written by
+NumPy as a careful user writes it; a right-hand side that does nothing would cost it as much. The page of the site
+(docs/work-precision/index.md) with a picture for each problem, errors on x, seconds on y, is written by
 
     python benches/python/work_precision.py [--seconds 0.3] [--repeats 3] [--output FOLDER] [PROBLEM …]
 
@@ -17,16 +16,22 @@ ours of the same error. What a peer did not reach for want of patience is told a
 from __future__ import annotations
 
 import argparse
+import os
+import re
+import shlex
+import sys
 import warnings
 from functools import partial
 from importlib.util import find_spec
 from pathlib import Path
+from textwrap import fill, wrap
 from typing import TYPE_CHECKING, Any
 
 from _harness import Row, machine
 from _peers import PEERS, Peer
 
 import visviva as vv
+from visviva.plot import new_figure
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,6 +53,8 @@ BARS = {"SciPy": 50.0, "REBOUND": 3.0, "heyoka": 1.0}
 # Our methods are taken as far as so many of DOP853's most exact runs would take, and at least some milliseconds; and
 # whatever is asked, as far as so many.
 ENOUGH, LEAST, ASKED_OR = 20.0, 5e-3, 4.0
+# What is farther off than that is no answer, and in no picture.
+ROUGHEST = 1.0
 
 
 class Transformed(Peer):
@@ -74,7 +81,7 @@ class Transformed(Peer):
 def limit(problem: vv.problems.Problem, seconds: float) -> float:
     """How long a run of ours may take before its method is taken no further."""
     exact = vv.work_precision(problem, ["dop853"], seconds=seconds, repeats=3)
-    finest = max(point.seconds for point in exact.points)
+    finest = max((point.seconds for point in exact.points), default=seconds)
     return min(max(seconds, ASKED_OR * finest), max(LEAST, ENOUGH * finest))
 
 
@@ -128,22 +135,59 @@ def row(what: str, ours: vv.Point | None, theirs: vv.Point | tuple[str, float], 
     return Row(what, f"{ours.series} {ours.seconds * 1e3:.3g} ms", told, shown, asked, passed)
 
 
-def picture(all_found: dict[str, vv.WorkPrecision], path: Path) -> None:
-    """A panel for each problem."""
-    from matplotlib.figure import Figure
+def leaders(found: vv.WorkPrecision) -> tuple[list[str], list[str]]:
+    """Our methods and those of peers that are the fastest of their package to some error: what a picture can hold.
 
-    columns = 3
-    rows = -(-len(all_found) // columns)
-    figure = Figure(figsize=(5.2 * columns, 4.4 * rows), layout="constrained")
-    for index, (name, found) in enumerate(all_found.items()):
-        axes = figure.add_subplot(rows, columns, index + 1)
-        peers = [each for each in found.series if each.partition(" ")[0] in BARS]
-        found.plot(axes, peers=peers)
-        axes.set_title(name)
-        axes.set_xlim(1e0, 1e-15)
-        axes.legend(fontsize=5.5, ncols=2, loc="upper left")
-    figure.suptitle(machine(), fontsize=8)
-    figure.savefig(path, dpi=110)
+    A closed form, which is the fastest to all, is none of them: it is drawn by itself.
+    """
+    own = [each for each in found.series if each.partition(" ")[0] not in ("auto", *BARS)]
+    packages = [own, *([each for each in found.series if each.partition(" ")[0] == peer] for peer in BARS)]
+
+    def fastest(series: list[str]) -> list[str]:
+        front = [point for point in found.only(series).envelope() if point.position_error < ROUGHEST]
+        return [each for each in series if any(point.series == each for point in front)]
+
+    ours, *peers = map(fastest, packages)
+    return ours, [each for series in peers for each in series]
+
+
+def slug(name: str) -> str:
+    """The name of a problem as that of a file."""
+    return re.sub(r"[^a-z0-9]+", "-", name.lower()).strip("-")
+
+
+def picture(name: str, found: vv.WorkPrecision, folder: Path) -> Path:
+    """A picture of a problem: the fastest methods of each package, the machine below."""
+    figure, (axes,) = new_figure(1, (8.0, 4.4))
+    ours, peers = leaders(found)
+    shown = found.only([*ours, *peers])
+    shown.plot(axes, peers=peers)
+    closed = [point for point in found.points if point.series == "auto"]
+    for point in closed:
+        axes.plot(point.position_error, point.seconds, "*", markersize=10, color="black", label="auto, a closed form")
+    seconds = [point.seconds for point in (*shown.points, *closed) if point.position_error < ROUGHEST]
+    axes.set(title=name, xlim=(ROUGHEST, 1e-15), ylim=(0.5 * min(seconds), 2.0 * max(seconds)))
+    axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+    figure.supxlabel("\n".join(wrap(machine(), 130)), fontsize=6, color="0.4")
+    path = folder / f"{slug(name)}.png"
+    figure.savefig(path, dpi=90)
+    return path
+
+
+def page(sections: list[str], rows: list[Row], load: str, folder: Path) -> None:
+    """The page of the site: pictures and tables as they are, and who won."""
+    command = " ".join(["python benches/python/work_precision.py", shlex.join(sys.argv[1:])]).strip()
+    told = [
+        f"Written with its pictures by `{command}`. {machine()} {load}",
+        "What is timed is the integration alone, the least of several runs; errors are those of places at the end, "
+        "against references beyond double precision. Lines are those methods of each package that are its fastest to "
+        "some error: ours with full marks, peers dashed with open ones, the fastest of all in grey. Tables have every "
+        "method; — is what was not reached.",
+    ]
+    table = "\n".join(["| what | visviva | peer | ratio | bar | |", "|---|---|---|---|---|---|", *map(str, rows)])
+    head = ["# Work against precision", *(fill(each, 120, break_on_hyphens=False) for each in told)]
+    text = "\n\n".join([*head, *sections, "## At equal errors", table]) + "\n"
+    (folder / "index.md").write_text(text, encoding="utf-8")
 
 
 def main() -> None:
@@ -151,10 +195,13 @@ def main() -> None:
     parser.add_argument("problems", nargs="*", help="only those whose names begin so")
     parser.add_argument("--seconds", type=float, default=0.3, help="no method goes on after runs that take longer")
     parser.add_argument("--repeats", type=int, default=3)
-    parser.add_argument("--output", type=Path, default=Path(__file__).parent)
+    parser.add_argument("--output", type=Path, default=Path(__file__).parents[2] / "docs" / "work-precision")
     asked = parser.parse_args()
     warnings.simplefilter("ignore", vv.AccuracyWarning)  # rough steps are meant
-    all_found: dict[str, vv.WorkPrecision] = {}
+    # Of who else was there; on one's own it is below 1.
+    load = f"Load of the machine when it began: {os.getloadavg()[0]:.1f}." if hasattr(os, "getloadavg") else ""
+    drawing = find_spec("matplotlib") is not None
+    sections: list[str] = []
     rows: list[Row] = []
     print("## Work against precision\n")
     for name, problem in PROBLEMS.items():
@@ -168,16 +215,16 @@ def main() -> None:
         peers = {key: peer(problem, found, seconds, asked.repeats) for key, peer in PEERS.items()}
         for peer in peers.values():
             found = found.joined(peer.points())
-        all_found[name] = found
         print(f"### {name}\n\n```\n{found}\n```\n", flush=True)
         rows.extend(verdicts(name, found, peers))
+        asked.output.mkdir(parents=True, exist_ok=True)
+        shown = f"![{name}: seconds against error]({picture(name, found, asked.output).name})\n\n" if drawing else ""
+        sections.append(f"## {name[0].upper()}{name[1:]}\n\n{shown}```\n{found}\n```")
     print("| what | visviva | peer | ratio | bar | |\n|---|---|---|---|---|---|")
     for line in rows:
         print(line)
     print(f"\n{machine()}\n")
-    if find_spec("matplotlib") is not None:
-        asked.output.mkdir(parents=True, exist_ok=True)
-        picture(all_found, asked.output / "work_precision.png")
+    page(sections, rows, load, asked.output)
 
 
 if __name__ == "__main__":

@@ -72,6 +72,15 @@ class Lines(Exported, Shown):
     def of(self, which: int) -> Self:
         """The lines of one event.
 
+        Parameters
+        ----------
+        which : int
+            The event, as counted in ``events=``.
+
+        Returns
+        -------
+        EventTable
+
         Examples
         --------
         >>> import visviva as vv

@@ -28,6 +28,11 @@ def arenstorf() -> Problem:
     is where it was as seen from the turned pair. It begins and ends beside the Moon, at 0.006 of the distance of the
     pair: equal steps do badly.
 
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
     Notes
     -----
     Arenstorf, Amer. J. Math. 85 (1963) 27; numbers of Hairer, Nørsett & Wanner, *Solving Ordinary Differential
@@ -67,6 +72,11 @@ def driven_oscillator() -> Problem:
     Their distance is a damped oscillator of the frequency 2 and the quality factor 40, driven at 1.5; the centre of
     mass is driven, too. The energy comes and goes: errors are of positions.
 
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
     Notes
     -----
     The closed form of the linear equations (Goldstein, Poole & Safko §6.5), in 45 digits.
@@ -97,6 +107,11 @@ def driven_oscillator() -> Problem:
 def crossed_fields() -> Problem:
     """A charge in a magnetic field and an electric one across it, for 32 gyrations: it drifts across both.
 
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
     Notes
     -----
     The closed form of a cycloid (Goldstein, Poole & Safko §1.5; Jackson, *Classical Electrodynamics* §12.3), in 45
@@ -124,6 +139,11 @@ def crossed_fields() -> Problem:
 @known_keywords
 def projectile() -> Problem:
     """A body thrown into a medium that resists by the square of its speed: it comes down almost upright.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
 
     Notes
     -----

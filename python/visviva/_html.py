@@ -6,17 +6,23 @@ else, so that every text is escaped: names of bodies come from whoever wrote the
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from html import escape
 from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Sheet", "Shown", "as_html", "first_rows"]
+__all__ = ["Record", "Sheet", "Shown", "as_html", "briefly", "first_rows"]
 
 # Rows of a long table that are shown; the rest are counted.
 _ROWS = 12
+# Numbers of an array, and of a tuple, that are shown one by one.
+_NUMBERS, _ITEMS = 9, 6
+# Characters of a text.
+_TEXT = 250
 
 
 @dataclass(frozen=True)
@@ -51,6 +57,57 @@ class Shown:
 
     def _repr_html_(self) -> str:
         return as_html(self._sheet())
+
+
+class Record(Shown):
+    """Base of results that are fields (dataclasses with ``repr=False``): short in words, a row for each in a notebook.
+
+    Few numbers are shown as they are; of more, their shape and their ends.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> vv.scattering.moderation(mass_ratio=np.ones(500)).__repr__()[:75]
+    'Moderation(greatest_transfer=<(500,) from 1 to 1>, mean_transfer=<(500,) fr'
+    """
+
+    __slots__ = ()
+
+    def _told(self) -> list[tuple[str, str]]:
+        every = fields(self)  # type: ignore[arg-type]
+        shown = (field.name for field in every if field.repr and not field.name.startswith("_"))
+        return [(name, briefly(getattr(self, name))) for name in shown]
+
+    def __repr__(self) -> str:
+        name, text = type(self).__name__, ", ".join(f"{name}={text}" for name, text in self._told())
+        return f"{name}({text if len(text) <= _TEXT else text[:_TEXT] + '…'})"
+
+    def _sheet(self) -> Sheet:
+        return Sheet(type(self).__name__, self._told())
+
+
+def briefly(value: object) -> str:
+    """A value in one line, however much it holds.
+
+    Examples
+    --------
+    >>> import numpy as np
+    >>> from visviva._html import briefly
+    >>> briefly(np.array([1.0, 2.0])), briefly(np.arange(12.0)), briefly(tuple("abcdefgh"))
+    ('array([1., 2.])', '<(12,) from 0 to 11>', '<8: a, b, …>')
+    """
+    if isinstance(value, np.ndarray) and value.size > _NUMBERS:
+        if value.dtype.kind not in "fiu":
+            return f"<{value.shape}>"
+        known = value[np.isfinite(value)]
+        missing = "" if known.size == value.size else f", {value.size - known.size} not finite"
+        ends = f" from {known.min():.6g} to {known.max():.6g}" if known.size else ""
+        return f"<{value.shape}{ends}{missing}>"
+    if isinstance(value, tuple) and any(isinstance(each, np.ndarray) for each in value):
+        return f"({', '.join(map(briefly, value))})"
+    if isinstance(value, tuple) and len(value) > _ITEMS and not hasattr(value, "_fields"):
+        return f"<{len(value)}: {', '.join(str(each) for each in value[:2])}, …>"
+    return " ".join(repr(value).split())
 
 
 def as_html(sheet: Sheet | str) -> str:

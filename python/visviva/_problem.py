@@ -30,6 +30,13 @@ class Reference:
     bodies : tuple of int
         Which bodies the rows are.
     position : ndarray, shape (len(bodies), 3)
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> where = vv.problems.figure_eight().references[-1]
+    >>> where.bodies, where.position.shape
+    ((0, 1, 2), (3, 3))
     """
 
     t: float
@@ -53,6 +60,13 @@ class Problem(Shown):
         (t, factor): a relative change of the input by ε moves a body by about factor · ε at time t
         (largest of a dozen random changes, unless the problem says how it is known).
     source : str
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> problem = vv.problems.figure_eight()
+    >>> problem.error(problem.scene.run(t=problem.t_end, rtol=1e-12)) < 1e-9
+    True
     """
 
     name: str

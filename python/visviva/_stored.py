@@ -158,7 +158,9 @@ def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
     if not isinstance(header, dict) or not isinstance(header.get("format"), str):
         raise Damaged("expected a run that visviva saved, but the header does not say so")
     if header["format"] != FORMAT:
-        raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}")
+        others = {"visviva scattering": "; visviva.scattering.MonteCarlo.load reads it"}
+        cure = others.get(header["format"], "")
+        raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}{cure}")
     _check_keys("header", header, {"version": int})
     if header["version"] > VERSION:
         raise Damaged(

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
-__all__ = ["BLUE", "COLORS", "FRAME", "VERMILION", "dress"]
+__all__ = ["BLUE", "COLORS", "FRAME", "LINES", "VERMILION", "dress"]
 
 # M. Okabe & K. Ito, *Color Universal Design* (2008), without the yellow, which is not seen on white.
 BLUE, VERMILION = "#0072B2", "#D55E00"
@@ -19,14 +19,14 @@ COLORS = (BLUE, VERMILION, "#009E73", "#E69F00", "#CC79A7", "#56B4E9", "#000000"
 # What only helps the eye: circles, zero lines, frames.
 FRAME = "0.7"
 # After the colors are used up, the next round differs in its lines.
-_LINES = ("-", "--", "-.", ":")
+LINES = ("-", "--", "-.", ":")
 
 
 def dress(axes: Axes, solid: bool) -> None:
     """Give new axes the colors and the frame of all pictures."""
     from cycler import cycler
 
-    axes.set_prop_cycle(cycler(linestyle=_LINES) * cycler(color=COLORS))
+    axes.set_prop_cycle(cycler(linestyle=LINES) * cycler(color=COLORS))
     if not solid:
         axes.spines[["top", "right"]].set_visible(False)
 

@@ -50,6 +50,13 @@ class Option:
     steps : int
     seconds : float
         What it is expected to take.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> option = vv.problems.kepler(e=0.5).scene.advise(t=10.0, accuracy=1e-6).options[0]
+    >>> option.error <= 1e-6, "method" in option.how
+    (True, True)
     """
 
     how: dict[str, Any]
@@ -72,6 +79,14 @@ class Advice(Shown):
         What holds it, the fastest first.
     tried : float
         The part of the span that was tried.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> orbit = vv.problems.kepler(e=0.5).scene
+    >>> advice = orbit.advise(t=10.0, accuracy=1e-6)
+    >>> advice.accuracy, all(option.error <= 1e-6 for option in advice.options)
+    (1e-06, True)
     """
 
     accuracy: float

@@ -16,6 +16,7 @@ import numpy as np
 from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
@@ -213,8 +214,8 @@ def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float6
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Curl:
+@dataclass(frozen=True, slots=True, repr=False)
+class Curl(Record):
     """What `curl` finds.
 
     Attributes
@@ -225,6 +226,14 @@ class Curl:
         The largest, over the largest derivative of the field at its place.
     conservative : bool
         Whether that is no more than what the differences err by (1e-8).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> places = [[1.0, 0.0, 0.0], [0.0, 2.0, 1.0]]
+    >>> found = vv.audit.curl(vv.CentralField(vv.potentials.Coulomb(k=-1.0)), places)
+    >>> found.conservative, found.value.shape
+    (True, (2, 3))
     """
 
     value: NDArray[np.float64]
@@ -246,6 +255,11 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     Returns
     -------
     Curl
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For places of another shape, a force between bodies, or a function whose values have another shape.
 
     Examples
     --------
@@ -289,6 +303,15 @@ class ThirdLaw:
         Whether the force of each body on each other one is opposite to the other's on it.
     strong : bool
         Whether both lie along the line between them, too.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> along = np.zeros((2, 2, 3))
+    >>> along[0, 1], along[1, 0] = [2.0, 0.0, 0.0], [-2.0, 0.0, 0.0]
+    >>> audit = vv.audit.third_law([[0, 0, 0], [1.0, 0, 0]], along)
+    >>> audit.weak, audit.strong
+    (True, True)
     """
 
     force: NDArray[np.float64]

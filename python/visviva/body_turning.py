@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -93,7 +94,9 @@ class BodyTurning(Rotation):
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._motion,)
 
-    def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
+    def plot(
+        self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode", *, ax: Axes | None = None
+    ) -> Figure:
         """Draw how the body turns, as `visviva.rigid.FreeRotation.plot` does.
 
         Parameters
@@ -102,6 +105,8 @@ class BodyTurning(Rotation):
             The path of the angular velocity on the inertia ellipsoid, or on the plane across the angular momentum at
             the start; where the body's three axes point in space (the nutation of a top is that of its axis); or the
             angular velocity along them against time.
+        ax : matplotlib.axes.Axes, optional
+            Where, of three dimensions where the picture has them; a figure of its own if not given.
 
         Raises
         ------
@@ -117,7 +122,7 @@ class BodyTurning(Rotation):
         """
         from visviva.rigid._pictures import plot_free_rotation
 
-        return plot_free_rotation(self, kind)
+        return plot_free_rotation(self, kind, ax)
 
     def animate(
         self,

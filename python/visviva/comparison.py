@@ -19,7 +19,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import positive, whole_number
 from visviva._html import Shown
-from visviva._keywords import known_keywords
+from visviva._keywords import did_you_mean, known_keywords
 from visviva._problem import Problem
 from visviva.errors import AccuracyWarning, Error, InvalidInput
 from visviva.integrators import Method
@@ -40,6 +40,8 @@ _TIGHTEST = 2.3e-14
 _MARKS = (1e-3, 1e-6, 1e-9, 1e-12)
 # After so many steps that got no better, smaller ones are at the rounding.
 _NO_BETTER = 4
+# Lines that a column of a legend names.
+_IN_A_COLUMN = 24
 
 
 @known_keywords
@@ -59,6 +61,13 @@ class Point:
         The largest distance of a body from its reference at the end.
     energy_error : float
         |E − E₀|/|E₀| there; NaN where the scene does not conserve its energy, or a peer did not tell.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> point = vv.Point("rk4", setting=0.01, seconds=2e-3, position_error=1e-8, energy_error=1e-9)
+    >>> point.series, point.position_error
+    ('rk4', 1e-08)
     """
 
     series: str
@@ -104,6 +113,11 @@ class WorkPrecision(Shown):
         series : str, optional
             Of one method only.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For arguments of other names; a series that there is not has no best run.
+
         Examples
         --------
         >>> import visviva as vv
@@ -114,7 +128,16 @@ class WorkPrecision(Shown):
         return min(good, key=lambda point: point.seconds, default=None)
 
     def envelope(self) -> tuple[Point, ...]:
-        """The runs that none beats in both time and error, from the roughest on."""
+        """The runs that none beats in both time and error, from the roughest on.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> three = [("a", 1.0, 1e-3), ("b", 2.0, 1e-6), ("c", 3.0, 1e-5)]
+        >>> points = tuple(vv.Point(name, 0.1, seconds, error, error) for name, seconds, error in three)
+        >>> [point.series for point in vv.WorkPrecision("three", points).envelope()]
+        ['a', 'b']
+        """
         front: list[Point] = []
         for point in sorted(self.points, key=lambda p: (p.seconds, p.position_error)):
             if not front or point.position_error < front[-1].position_error:
@@ -124,6 +147,15 @@ class WorkPrecision(Shown):
     def joined(self, points: Iterable[Point]) -> WorkPrecision:
         """The same with more points, for example of another package.
 
+        Parameters
+        ----------
+        points : iterable of Point
+            What is put behind those that there are.
+
+        Returns
+        -------
+        WorkPrecision
+
         Examples
         --------
         >>> import visviva as vv
@@ -131,6 +163,33 @@ class WorkPrecision(Shown):
         'peer'
         """
         return WorkPrecision(self.name, (*self.points, *points))
+
+    def only(self, series: Iterable[str]) -> WorkPrecision:
+        """The same of some of the series, for a picture in which each line can be followed.
+
+        Parameters
+        ----------
+        series : iterable of str
+            Their names; the order stays.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For a name that is no series of these runs.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> both = vv.WorkPrecision("two", (vv.Point("a", 0.1, 1.0, 1e-3, 1e-4), vv.Point("b", 0.1, 2.0, 1e-6, 1e-7)))
+        >>> both.only(["b"]).series
+        ('b',)
+        """
+        wanted = [series] if isinstance(series, str) else list(series)
+        for name in wanted:
+            if name not in self.series:
+                near = did_you_mean(str(name), self.series)
+                raise InvalidInput("series", f"expected some of {', '.join(self.series)}, got {name!r}{near}")
+        return WorkPrecision(self.name, tuple(point for point in self.points if point.series in wanted))
 
     def __repr__(self) -> str:
         return f"WorkPrecision({self.name!r}, {len(self.series)} methods, {len(self.points)} runs)"
@@ -147,6 +206,8 @@ class WorkPrecision(Shown):
 
     def plot(self, axes: Axes | None = None, *, peers: Iterable[str] = ()) -> Axes:
         """Time against error of places, a line for each method, the envelope marked.
+
+        Exact answers, whose error is 0, are on no logarithmic axis and not drawn.
 
         Parameters
         ----------
@@ -173,10 +234,11 @@ class WorkPrecision(Shown):
         """
         from visviva.plot import new_figure
 
+        columns = 1 + len(self.series) // _IN_A_COLUMN
         if axes is None:
-            _, (axes,) = new_figure(1, (6.5, 5.0))
+            _, (axes,) = new_figure(1, (6.0 + 1.3 * columns, 5.0))
         others = frozenset(peers)
-        front = self.envelope()
+        front = [point for point in self.envelope() if point.position_error > 0.0]
         axes.plot(
             [p.position_error for p in front],
             [p.seconds for p in front],
@@ -188,7 +250,8 @@ class WorkPrecision(Shown):
         )
         for name in self.series:
             own = [p for p in self.points if p.series == name and p.position_error > 0.0]
-            own.sort(key=lambda point: point.seconds)
+            # As it was swept, from the roughest setting on: in the order of times their noise would be drawn as a path.
+            own.sort(key=lambda point: -point.setting)
             style: dict[str, Any] = (
                 {"linestyle": "--", "marker": "s", "markerfacecolor": "none"} if name in others else {"marker": "o"}
             )
@@ -203,7 +266,8 @@ class WorkPrecision(Shown):
         axes.set(xscale="log", yscale="log", xlabel="error of positions", ylabel="seconds", title=self.name)
         axes.invert_xaxis()
         axes.grid(alpha=0.3)
-        axes.legend(fontsize="x-small")
+        # Beside the lines, which are everywhere within.
+        axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0), ncols=columns)
         return axes
 
 

@@ -25,7 +25,15 @@ __all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number",
 @known_keywords
 @dataclass(frozen=True, slots=True)
 class Throw:
-    """What is told of a body thrown straight up, as plain numbers."""
+    """What is told of a body thrown straight up, as plain numbers.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.drag.throw(speed=12.0, g=9.80665, tau=1.75)
+    >>> round(found.return_time, 9)
+    2.054327667
+    """
 
     terminal_speed: float
     """The speed that a long fall approaches."""
@@ -94,6 +102,10 @@ def reynolds_number(*, density: float, radius: float, speed: float, viscosity: f
     density, radius, speed, viscosity : float
         Density of the fluid, radius and speed of the sphere, viscosity of the fluid; positive, in consistent units.
 
+    Returns
+    -------
+    float
+
     Raises
     ------
     visviva.InvalidInput
@@ -132,6 +144,10 @@ def quadratic(
         C, about 0.5 for a smooth sphere where the law holds.
     viscosity, speed : float, optional
         Viscosity of the fluid and speed of the sphere: where both are given, the law is refused where it does not hold.
+
+    Returns
+    -------
+    QuadraticDrag
 
     Raises
     ------
@@ -172,6 +188,10 @@ def stokes(
         Mass and radius of the sphere, viscosity of the fluid.
     density, speed : float, optional
         Density of the fluid and speed of the sphere: where both are given, the law is refused where it does not hold.
+
+    Returns
+    -------
+    LinearDrag
 
     Raises
     ------
@@ -282,6 +302,11 @@ def tabulated(
     radius : float or array_like, not negative
         Of every body, or of each.
 
+    Returns
+    -------
+    SampledDrag
+        For ``Scene``.
+
     Raises
     ------
     visviva.InvalidInput
@@ -311,6 +336,10 @@ def crossover_speed(*, density: float, radius: float, viscosity: float, drag_coe
     ----------
     density, radius, viscosity, drag_coefficient : float
         As in `quadratic`.
+
+    Returns
+    -------
+    float
 
     Raises
     ------

@@ -23,7 +23,17 @@ __all__ = [
 
 
 class Error(Exception):
-    """Base of every exception that visviva raises on purpose, but for `Interrupted`."""
+    """Base of every exception that visviva raises on purpose, but for `Interrupted`.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> try:
+    ...     vv.problems.kepler(e=1.5)
+    ... except vv.Error as error:
+    ...     print(type(error).__name__)
+    InvalidInput
+    """
 
 
 class InvalidInput(Error, ValueError):
@@ -130,6 +140,12 @@ class ConvergenceError(Error, RuntimeError):
         The time it had reached, in the units of the scene.
     trajectory : Trajectory, optional
         What was computed until then.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> issubclass(vv.ConvergenceError, vv.Error), issubclass(vv.ConvergenceError, RuntimeError)
+    (True, True)
     """
 
     def __init__(self, message: str, time: float | None = None, trajectory: Any = None) -> None:
@@ -155,6 +171,16 @@ class CloseEncounter(Error, RuntimeError):
         Their distance, in the units of the scene.
     trajectory : Trajectory, optional
         What was computed until then.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> together = vv.Particles([1.0, 1.0], [[-1, 0, 0], [1, 0, 0]])
+    >>> try:
+    ...     vv.Scene(together, vv.Gravity(1.0)).run(t=5.0, method="dop853")
+    ... except vv.CloseEncounter as error:
+    ...     print(error.trajectory.t[-1] < 5.0)
+    True
     """
 
     def __init__(self, time: float, bodies: tuple[int, int], distance: float, trajectory: Any = None) -> None:
@@ -185,6 +211,12 @@ class Interrupted(KeyboardInterrupt):
         What was computed until then.
     result : MonteCarlo, optional
         The events that a Monte Carlo counted until then.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> issubclass(vv.Interrupted, KeyboardInterrupt), issubclass(vv.Interrupted, Exception)
+    (True, False)
     """
 
     def __init__(self, message: str = "interrupted", trajectory: Any = None, result: Any = None) -> None:
@@ -224,6 +256,12 @@ class InternalError(Error, RuntimeError):
     ----------
     message : str
         What broke.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> issubclass(vv.InternalError, vv.Error)
+    True
     """
 
     def __init__(self, message: str) -> None:

@@ -115,6 +115,11 @@ def distance(
     terminal : bool or int, optional
         Whether the run ends there, or with the zero of which number.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -150,6 +155,11 @@ def plane(
     terminal : bool or int, optional
         As of `distance`.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -183,6 +193,11 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
         1 for pericenters, -1 for apocenters, 0 for both, in runs forwards and backwards.
     terminal : bool or int, optional
         As of `distance`.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
 
     Raises
     ------
@@ -283,6 +298,11 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
     direction, terminal : optional
         As of `plane` and `distance`: 1 where the energy rises in time.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
+
     Raises
     ------
     visviva.InvalidInput
@@ -317,6 +337,11 @@ def function(
     call : callable
     direction, terminal : optional
         As of `plane` and `distance`.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run.
 
     Raises
     ------

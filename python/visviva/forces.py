@@ -25,6 +25,12 @@ class Force(Declared):
     """What every force has: frozen parameters, and how they change with the frame and the units.
 
     Frozen, hashable and picklable. A force of one's own is added to the core: docs/how-to/add-a-force.md.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> isinstance(vv.Gravity(1.0), vv.forces.Force)
+    True
     """
 
     __slots__ = ()
@@ -37,10 +43,26 @@ class Force(Declared):
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,)
+            By what is displaced, and boosted.
+
+        Returns
+        -------
+        Force
+            Of the same kind.
+
         Raises
         ------
         visviva.InvalidInput
             For a boost, if the force has a place or a medium at rest, which would move.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> vv.Harmonic(2.0).shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3))
+        Harmonic(k=2.0, center=(1.0, 0.0, 0.0))
         """
         points = [p.name for p in self._parameters if p.kind == "point"]
         if velocity.any() and self._at_rest:
@@ -60,7 +82,25 @@ class Force(Declared):
         return type(self)(**(self._values() | found)) if found else self
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
-        """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3)."""
+        """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).
+
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            An orthogonal matrix; of determinant −1 a reflection.
+
+        Returns
+        -------
+        Force
+            Of the same kind.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        >>> vv.UniformField([1.0, 0.0, 0.0]).rotated(quarter)
+        UniformField(g=(0.0, 1.0, 0.0))
+        """
         turned = {
             p.name: rotation @ np.array(getattr(self, p.name))
             for p in self._parameters
@@ -79,6 +119,14 @@ class Force(Declared):
         ------
         visviva.InvalidInput
             If there is none: for drag, or a force that goes on with time.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.Gravity(1.0).reversed()
+        Gravity(G=1.0, softening=0.0)
+        >>> vv.UniformMagneticField([0.0, 0.0, 1.0]).reversed()
+        UniformMagneticField(B=(-0.0, -0.0, -1.0), charge=1.0)
         """
         if self._one_way:
             raise InvalidInput("forces", f"{type(self).__name__} cannot be reversed: {self._one_way}")
@@ -87,6 +135,16 @@ class Force(Declared):
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit.
+
+        Parameters
+        ----------
+        length, mass, time : float
+            What one old unit is in new ones; positive.
+
+        Returns
+        -------
+        Force
+            Of the same kind.
 
         Raises
         ------

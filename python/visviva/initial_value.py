@@ -100,6 +100,13 @@ class OdeResult:
         The same in words.
     success : bool
         Whether `status` is not -1.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], rtol=1e-10, atol=1e-12)
+    >>> found.status, found.success, found["y"][:, -1].round(9)
+    (0, True, array([0.36787944]))
     """
 
     t: NDArray[np.float64]
@@ -120,7 +127,14 @@ class OdeResult:
         return getattr(self, name)
 
     def keys(self) -> list[str]:
-        """Names of the fields, so that ``dict(result)`` works."""
+        """Names of the fields, so that ``dict(result)`` works.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> "y" in vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).keys()
+        True
+        """
         return [field.name for field in fields(self)]
 
     def __repr__(self) -> str:

@@ -42,6 +42,13 @@ class Method:
         Order of the states between steps.
     reference : str
         Where it was published.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [leapfrog] = [method for method in vv.methods() if method.name == "leapfrog"]
+    >>> leapfrog.order, leapfrog.stages, leapfrog.symplectic, leapfrog.adaptive
+    (2, 1, True, False)
     """
 
     name: MethodName

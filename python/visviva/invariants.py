@@ -51,6 +51,13 @@ class Invariants(Shown):
         König's split of the kinetic energy: P²/2M and the rest.
     virial : float
         Σ r·F.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.problems.kepler(e=0.5).scene.invariants()
+    >>> round(found.energy, 12), found.momentum.round(12).tolist()
+    (-0.125, [0.0, 0.0, 0.0])
     """
 
     total_mass: float

@@ -12,6 +12,7 @@ from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, checked_names
 from visviva._text import count
+from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -21,6 +22,16 @@ if TYPE_CHECKING:
     from visviva._arrays import Sizes
 
 __all__ = ["Particles"]
+
+
+def _cure(argument: str, mass: object, position: object) -> str:
+    """What is written first of one body, or of motion in a plane, and how it goes."""
+    if argument == "mass" and isinstance(mass, (int, float)):
+        return f"; one body is [{mass}], [[x, y, z]]"
+    if argument == "position" and isinstance(position, (list, tuple)) and position:
+        flat = all(isinstance(place, (list, tuple)) and len(place) == 2 for place in position)
+        return "; in a plane give z = 0" if flat else ""
+    return ""
 
 
 @known_keywords
@@ -78,8 +89,14 @@ class Particles(Shown):
         radius: ArrayLike = 0.0,
     ) -> None:
         sizes: Sizes = {}
-        object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
-        object.__setattr__(self, "position", read_only(float_array("position", position, ("N", 3), sizes), position))
+        try:
+            object.__setattr__(self, "mass", read_only(mass_array(mass, ("N",), sizes), mass))
+            object.__setattr__(
+                self, "position", read_only(float_array("position", position, ("N", 3), sizes), position)
+            )
+        except InvalidInput as refused:
+            cure = _cure(refused.argument, mass, position)
+            raise InvalidInput(refused.argument, refused.message + cure) if cure else refused from None
         if velocity is None:
             velocity = np.zeros(self.position.shape)
         object.__setattr__(self, "velocity", read_only(float_array("velocity", velocity, ("N", 3), sizes), velocity))
@@ -248,6 +265,15 @@ class Particles(Shown):
 
     def index(self, name: str | int) -> int:
         """The index of a body by its name.
+
+        Parameters
+        ----------
+        name : str or int
+            The name, or the index itself.
+
+        Returns
+        -------
+        int
 
         Raises
         ------

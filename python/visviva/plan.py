@@ -30,6 +30,13 @@ class Cost:
         Time, as the trial went.
     exact : bool
         Whether the number of steps is; else it is scaled from the trial.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> cost = vv.problems.figure_eight().scene.plan(t=1.0, method="leapfrog", dt=0.01).cost()
+    >>> cost.steps, cost.exact
+    (100, True)
     """
 
     steps: int

@@ -36,6 +36,8 @@ PLANES = ("xy", "xz", "yz", "xyz")
 """What a picture of places shows."""
 POINTS = 4000
 """More points than this cannot be told apart in a figure and make the file large."""
+# So few outputs are places, and no path.
+_A_PATH = 10
 # A legend of more bodies would hide the picture.
 _LEGEND = 24
 # A relative change of the energy below this is the rounding of its terms, and no drift.
@@ -138,7 +140,9 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
     position: NDArray[np.float64] = trajectory.position[::stride][..., shown]
     for body in bodies:
         label = names[body] if names else None
-        (line,) = axes.plot(*position[:, body].T, linewidth=0.8, label=label)
+        # Of a few places nobody knows the way between: a line would draw chords as an orbit.
+        look = {"marker": ".", "linestyle": "none"} if len(trajectory) < _A_PATH else {}
+        (line,) = axes.plot(*position[:, body].T, linewidth=0.8, label=label, **look)
         axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
     label_places(axes, shown)
     axes.set_title("orbits")

@@ -27,6 +27,12 @@ class Potential(Declared):
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> isinstance(vv.potentials.Coulomb(k=1.0), vv.potentials.Potential)
+    True
     """
 
     __slots__ = ()
@@ -49,6 +55,16 @@ class Potential(Declared):
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The potential in units of which ``length``, ``mass`` and ``time`` make one old unit.
+
+        Parameters
+        ----------
+        length, mass, time : float
+            What one old unit is in new ones; positive.
+
+        Returns
+        -------
+        Potential
+            Of the same kind.
 
         Raises
         ------
@@ -92,6 +108,16 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]:
         """−dV/dr at the distances ``r``: positive where the force repels.
 
+        Parameters
+        ----------
+        r : array_like
+            Distances, of any shape.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``r``.
+
         Raises
         ------
         visviva.InvalidInput
@@ -107,6 +133,16 @@ class Potential(Declared):
 
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]:
         """d²V/dr² at the distances ``r``.
+
+        Parameters
+        ----------
+        r : array_like
+            Distances, of any shape.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``r``.
 
         Raises
         ------
@@ -251,6 +287,22 @@ __all__ += list(_CLASSES)
 @known_keywords
 def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     """The potential of a registry name, as files hold it.
+
+    Parameters
+    ----------
+    name : str
+        As the core's registry has it.
+    parameters : sequence of float
+        In the order of the constructor.
+
+    Returns
+    -------
+    Potential
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a name that there is not, or parameters that do not fit it.
 
     Examples
     --------

@@ -59,6 +59,16 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     variant : {"hairer_lubich_wanner", "applegate"}, optional
         As in `visviva.datasets.outer_solar_system`. Applegate's is put into its centre-of-mass frame.
 
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For another kind of start.
+
     Examples
     --------
     >>> import visviva as vv
@@ -89,6 +99,16 @@ def figure_eight(periods: int = 1) -> Problem:
     ----------
     periods : int, optional
         How many periods to run; the orbit closes after each.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a number of periods that is not whole and positive.
 
     Notes
     -----
@@ -125,6 +145,11 @@ def pythagorean() -> Problem:
     The closest approach of all is 4.138248362587e-4, of bodies 1 and 2 at t = 15.829920271581. By t = 63 the
     problem has amplified its input 3e7 times: compare accuracy up to t = 30, and the outcome beyond.
 
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
     Notes
     -----
     Burrau, Astron. Nachr. 195 (1913) 113; Szebehely & Peters, Astron. J. 72 (1967) 876.
@@ -149,6 +174,11 @@ def pythagorean() -> Problem:
 @known_keywords
 def pleiades() -> Problem:
     """Seven stars in a plane with masses 1 … 7 and several close encounters.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
 
     Notes
     -----
@@ -187,6 +217,11 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
         Mass of the second body over that of the first, not negative.
     periods : int, optional
         How many periods to run; the orbit closes after each.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
 
     Raises
     ------
@@ -232,6 +267,16 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
         Length of a side.
     turn : float, optional
         How far to turn, in full turns.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For masses that are not three numbers, or a side that is not positive.
 
     Notes
     -----
@@ -282,6 +327,16 @@ def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float
         Distance of the first two. That of the last two follows from Euler's equation of the fifth degree.
     turn : float, optional
         How far to turn, in full turns.
+
+    Returns
+    -------
+    Problem
+        With its scene, its end, and where bodies must be there.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For masses that are not three numbers, or a separation that is not positive.
 
     Notes
     -----

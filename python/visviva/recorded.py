@@ -41,7 +41,27 @@ __all__ = ["Recorded", "Stats"]
 @known_keywords
 @dataclass(frozen=True, slots=True)
 class Stats:
-    """What a run cost: steps taken and rejected, force evaluations, seconds, threads, SIMD tier, method."""
+    """What a run cost, and what ran.
+
+    Attributes
+    ----------
+    steps, rejected, evaluations : int
+        Steps taken and rejected, and force evaluations.
+    seconds : float
+        Of the core alone.
+    threads : int
+    simd : str
+        The tier: ``"portable"``, ``"avx2"`` or ``"avx512"``.
+    method : str
+        What ran: where ``"auto"`` was asked for, what it chose.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> stats = vv.problems.figure_eight().scene.run(t=1.0, method="leapfrog", dt=0.01).stats
+    >>> stats.method, stats.steps, stats.rejected
+    ('leapfrog', 100, 0)
+    """
 
     steps: int
     rejected: int

@@ -43,12 +43,38 @@ _Self = TypeVar("_Self")
 _Check = TypeVar("_Check")
 
 
+# What is called so elsewhere, and what does here what it is for.
+_EXACT = "for digits that leave nothing, 'taylor' or 'dop853' with rtol=1e-14"
+_PLANETS = "for planets and many turns, 'kahan_li8' or 'stormer13' with dt"
+_STIFF = "it is implicit, which scipy.integrate.solve_ivp has for stiff equations and visviva has not"
+_OF_OTHERS = {
+    "ias15": _EXACT,
+    "bs": _EXACT,
+    "gbs": _EXACT,
+    "whfast": _PLANETS,
+    "saba": _PLANETS,
+    "eos": _PLANETS,
+    "mercurius": "'dop853' takes smaller steps through encounters, and 'kahan_li8' keeps energies between them",
+    "trace": "'dop853' takes smaller steps through encounters, and 'kahan_li8' keeps energies between them",
+    "rk45": "'dormand_prince54' is that pair",
+    "rk23": "'bogacki_shampine32' is that pair",
+    "verlet": "'leapfrog' is that method",
+    "velocity_verlet": "'leapfrog' is that method",
+    "stormer_verlet": "'leapfrog' is that method",
+    "lsoda": _STIFF,
+    "radau": _STIFF,
+    "bdf": _STIFF,
+}
+
+
 def _method(name: str, value: object) -> str:
     if not isinstance(value, str):
         from visviva.integrators import Method
 
         if isinstance(value, Method):
             return value.name
+    elif (cure := _OF_OTHERS.get(value.lower().replace("-", "_"))) is not None:
+        raise InvalidInput(name, f"{value} is none of visviva.methods(); {cure}")
     return _word(name, value)
 
 

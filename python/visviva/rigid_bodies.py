@@ -287,6 +287,15 @@ class RigidBodies(Shown):
     def index(self, name: str | int) -> int:
         """The index of a body by its name, from 0 among the rigid bodies.
 
+        Parameters
+        ----------
+        name : str or int
+            The name, or the index itself.
+
+        Returns
+        -------
+        int
+
         Raises
         ------
         visviva.InvalidInput
@@ -318,10 +327,26 @@ class RigidBodies(Shown):
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> RigidBodies:
         """The bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,)
+            By what is displaced, and boosted.
+
+        Returns
+        -------
+        RigidBodies
+
         Raises
         ------
         visviva.InvalidInput
             For a boost of a body with a fixed point, which would move.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], name="wheel")
+        >>> vv.Scene(wheel).rigid_bodies.shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3)).position
+        array([[1., 0., 0.]])
         """
         if velocity.any() and self.pivoted.any():
             which = body_label(int(np.flatnonzero(self.pivoted)[0]), self.names)
@@ -334,6 +359,23 @@ class RigidBodies(Shown):
         """The bodies turned (or reflected) about the origin by an orthogonal matrix (3, 3).
 
         A reflected body is the mirrored one, of which all places in the body change sign.
+
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            An orthogonal matrix; of determinant −1 a reflection.
+
+        Returns
+        -------
+        RigidBodies
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], position=[1.0, 0.0, 0.0])
+        >>> quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        >>> vv.Scene(wheel).rigid_bodies.rotated(quarter).position
+        array([[0., 1., 0.]])
         """
         sign = np.sign(np.linalg.det(rotation))
         turn = quaternion_from_matrix(sign * rotation)
@@ -345,7 +387,15 @@ class RigidBodies(Shown):
         )
 
     def reversed(self) -> RigidBodies:
-        """The bodies with their velocities and spins turned round."""
+        """The bodies with their velocities and spins turned round.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], angular_velocity=[0.0, 0.0, 3.0])
+        >>> vv.Scene(wheel).rigid_bodies.reversed().angular_velocity + 0.0
+        array([[ 0.,  0., -3.]])
+        """
         return self._changed(velocity=-self.velocity, angular_velocity=-self.angular_velocity)
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> RigidBodies:

@@ -60,7 +60,24 @@ class AppliedTorque(BodyForce):
             raise InvalidInput("frame", f"expected 'space' or 'body', got {frame!r}{hint}")
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
-        """The torque turned with space, or as it is in the body; an axial vector."""
+        """The torque turned with space, or as it is in the body; an axial vector.
+
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            An orthogonal matrix; of determinant −1 a reflection.
+
+        Returns
+        -------
+        AppliedTorque
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
+        >>> vv.AppliedTorque([1.0, 0.0, 0.0]).rotated(quarter)
+        AppliedTorque(torque=(0.0, 1.0, 0.0), body=None, frame='space')
+        """
         if self.frame == "body":
             return self
         return self._with(torque=np.sign(np.linalg.det(rotation)) * rotation @ np.array(self.torque))

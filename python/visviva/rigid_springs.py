@@ -118,10 +118,26 @@ class AttachedSpring(BodyForce):
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The spring with its anchor displaced.
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,)
+            By what is displaced, and boosted.
+
+        Returns
+        -------
+        AttachedSpring
+
         Raises
         ------
         visviva.InvalidInput
             For a boost, if there is an anchor.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> spring = vv.AttachedSpring("door", [1.0, 0, 0], stiffness=2.0, anchor=[3.0, 0, 0])
+        >>> spring.shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3)).anchor
+        (4.0, 0.0, 0.0)
         """
         if self.anchor is None:
             return self
@@ -133,7 +149,24 @@ class AttachedSpring(BodyForce):
         return self._with(anchor=np.add(self.anchor, position))
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
-        """The spring with its anchor turned; of a mirrored body, points change sign."""
+        """The spring with its anchor turned; of a mirrored body, points change sign.
+
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            An orthogonal matrix; of determinant −1 a reflection.
+
+        Returns
+        -------
+        AttachedSpring
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> spring = vv.AttachedSpring("door", [1.0, 0, 0], stiffness=2.0, anchor=[3.0, 0, 0])
+        >>> spring.rotated(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])).anchor
+        (0.0, 3.0, 0.0)
+        """
         anchor = None if self.anchor is None else rotation @ np.array(self.anchor)
         sign = np.sign(np.linalg.det(rotation))
         return self._with(anchor=anchor, point=np.multiply(sign, self.point), to_point=np.multiply(sign, self.to_point))
@@ -145,6 +178,13 @@ class AttachedSpring(BodyForce):
         ------
         visviva.InvalidInput
             If there is damping.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> spring = vv.AttachedSpring("door", [1.0, 0, 0], stiffness=2.0, anchor=[3.0, 0, 0])
+        >>> spring.reversed() == spring
+        True
         """
         if self.damping:
             raise InvalidInput("forces", "AttachedSpring cannot be reversed: damping takes energy away")

@@ -46,6 +46,27 @@ if TYPE_CHECKING:
 __all__ = ["Scene"]
 
 
+# What people look for from elsewhere, and where it is here.
+_ELSEWHERE = {
+    "integrate": "a scene runs to a time, and stays what it is: out = scene.run(t=…); out.final is the scene there",
+    "solve": "a scene runs to a time: scene.run(t=…)",
+    "simulate": "a scene runs to a time: scene.run(t=…)",
+    "step": "a scene runs to a time: scene.run(t=…)",
+    "add": "parts do not change: make a new Scene of more particles, and of particles and forces",
+    "move_to_com": "it is center_of_mass_frame()",
+    "orbits": "it is elements(about=…)",
+    "energy": "it is invariants().energy",
+    "angular_momentum": "it is invariants().angular_momentum",
+    "t": "it is t0; run(t=…) takes the end",
+    "dt": "it is an argument of run",
+    "position": "it is particles.position",
+    "velocity": "it is particles.velocity",
+    "mass": "it is particles.mass",
+    "plot": "a run has pictures: scene.run(t=…).plot()",
+    "animate": "a run has pictures: scene.run(t=…).animate(…)",
+}
+
+
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
 class Scene(Runnable[Trajectory], Framed):
@@ -96,6 +117,12 @@ class Scene(Runnable[Trajectory], Framed):
     rigid_bodies: RigidBodies | None
     body_forces: tuple[BodyForce, ...]
     _keywords: _core._Scene = field(init=False, repr=False)
+
+    if not TYPE_CHECKING:  # a type checker that saw this function would let every misspelt name pass
+
+        def __getattr__(self, name: str) -> Any:
+            advice = f"; {_ELSEWHERE[name]}" if name in _ELSEWHERE else ""
+            raise AttributeError(f"'Scene' object has no attribute {name!r}{advice}", name=name, obj=self)
 
     def __init__(
         self,
@@ -361,6 +388,11 @@ class Scene(Runnable[Trajectory], Framed):
         Returns
         -------
         Invariants
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For another reference point.
 
         Examples
         --------

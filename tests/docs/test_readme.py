@@ -2,9 +2,13 @@
 
 import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
+
+import visviva as vv
 
 ROOT = Path(__file__).parent.parent.parent
 README = (ROOT / "README.md").read_text(encoding="utf-8")
@@ -37,3 +41,34 @@ def test_the_two_commands_are_on_the_first_screen() -> None:
     for name in ("demo", "test"):
         assert f"<!-- command: {name} -->\n```sh\n" in first
     assert os.access(ROOT / ".ci" / "run", os.X_OK)
+
+
+def test_the_first_screen_has_a_picture_that_a_script_makes(tmp_path: Path) -> None:
+    pytest.importorskip("matplotlib")
+    [picture] = re.findall(r"^!\[[^\]]+\]\(([^)]+)\)$", "\n".join(README.splitlines()[:12]), flags=re.MULTILINE)
+    script = ROOT / "tools" / "readme_picture.py"
+    assert f"{script.relative_to(ROOT)} {picture}`" in script.read_text(encoding="utf-8")
+    subprocess.run([sys.executable, script, tmp_path / "made.png"], check=True)
+    for file in (ROOT / picture, tmp_path / "made.png"):
+        kept = file.read_bytes()
+        assert kept.startswith(b"\x89PNG")
+        assert 10_000 < len(kept) < 100_000
+    # Of the same size, as it says in its header.
+    assert (ROOT / picture).read_bytes()[16:24] == (tmp_path / "made.png").read_bytes()[16:24]
+
+
+def test_no_figure_is_typed() -> None:
+    """The table is what the benches wrote, and counts are those of the package."""
+    subprocess.run([sys.executable, ROOT / "tools" / "readme_figures.py", "--check"], check=True)
+    assert f"lists the {len(vv.methods())} integrators" in README
+
+
+def test_pictures_of_work_against_precision_are_small_and_name_the_machine() -> None:
+    folder = ROOT / "docs" / "work-precision"
+    page = (folder / "index.md").read_text(encoding="utf-8")
+    assert "Machine: " in page
+    assert "| what | visviva | peer |" in page
+    shown = re.findall(r"^!\[[^\]]+\]\(([^)]+)\)$", page, flags=re.MULTILINE)
+    assert len(shown) >= 2
+    assert sorted(shown) == sorted(file.name for file in folder.glob("*.png"))
+    assert all((folder / name).stat().st_size < 100_000 for name in shown)

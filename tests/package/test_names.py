@@ -82,6 +82,13 @@ vv.Drag(0.1)  # wrong
 vv.orbits.stat  # wrong
 copies.animate()  # wrong
 copies.plot("energi")  # wrong
+atom = vv.potentials.LennardJones(1.0, 1.0)
+found: vv.scattering.Deflection = vv.scattering.deflect(atom, energy=1.0, impact_parameter=[1.0, 2.0])
+found.plot("cross_section")
+found.plot("crosssection")  # wrong
+result = vv.scattering.monte_carlo(atom, beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1)
+tally: vv.scattering.Tally = result["cm_angle"]
+result["cm_angle"].couns  # wrong
 """
 
 

@@ -62,8 +62,29 @@ def things() -> dict[str, Any]:
         pendulums.run(t=1.0, events=["theta"]).events,
         vv.RigidBodies([1.0], inertia=np.eye(3)[None]),
         vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0]),
+        *records(),
     ]  # fmt: skip
     return {f"{type(thing).__name__} {index}": thing for index, thing in enumerate(each)}
+
+
+def records() -> list[Any]:
+    """Results that are fields, of many numbers."""
+    sun, many = vv.potentials.Coulomb(-1.0), np.linspace(1.0, 2.0, 500)
+    places = np.column_stack([many, many, many])
+    hard = {"beam_energy": 1.0, "masses": (1.0, 4.0), "b_max": 1.0, "n_events": 100, "seed": 1}
+    run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), tally=["cm_angle", ("lab_angle", "energy")], **hard)
+    foil = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7e6, n_events=10, seed=1)
+    counts, spin = vv.datasets.geiger_marsden_1913(), vv.datasets.toutatis()
+    return [
+        vv.orbits.radial_motion(sun, energy=-0.5, angular_momentum=0.4 * many),
+        vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0]),
+        vv.collisions.elastic(1.0, 2.0, places, [0.0, 0.0, 0.0], normal=[1, 0, 0]),
+        vv.audit.curl(vv.Harmonic(1.0), places), vv.scattering.moderation(mass_ratio=many),
+        vv.systems.henon_heiles().poincare("x", t=50.0), vv.systems.coupled_oscillators().normal_modes(),
+        run["cm_angle"], run["lab_angle", "energy"], foil["transmitted_angle"],
+        counts, counts.compare()[0], spin, spin.radar, spin.compare(),
+        vv.scattering.deflect(vv.potentials.Yukawa(1.0, 1.0), energy=1.0, impact_parameter=many),
+    ]  # fmt: skip
 
 
 THINGS = things()

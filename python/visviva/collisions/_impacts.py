@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._together import Together
 from visviva.collisions._arguments import masses, vectors
@@ -19,8 +20,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class CollisionOutcome:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CollisionOutcome(Record):
     """Two bodies after a collision.
 
     Attributes
@@ -30,6 +31,13 @@ class CollisionOutcome:
         What the first body has received; the second has received as much the other way.
     energy_loss : ndarray
         Kinetic energy that is gone, −Q: the same in every frame; negative where energy was released.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> after = vv.collisions.elastic(1.0, 3.0, [2.0, 0, 0], [0, 0, 0], normal=[1, 0, 0])
+    >>> after.velocity1, after.velocity2, float(after.energy_loss)
+    (array([-1.,  0.,  0.]), array([1., 0., 0.]), 0.0)
     """
 
     velocity1: NDArray[np.float64]
@@ -315,7 +323,8 @@ def _collided(
 ) -> CollisionOutcome:
     if (normal is None) == (direction is None):
         what = "both" if direction is not None else "neither"
-        raise InvalidInput("normal", f"expected either a normal or a direction, got {what}")
+        along_a_line = "; on a line, normal=[1, 0, 0]" if direction is None else ""
+        raise InvalidInput("normal", f"expected either a normal or a direction, got {what}{along_a_line}")
     geometry = "normal" if direction is None else "direction"
     along = normal if direction is None else direction
     given = Together(

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -35,8 +36,8 @@ _TABLE = (
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class RutherfordComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class RutherfordComparison(Record):
     """Counts against Rutherford's law, one scale fitted to each metal.
 
     Attributes
@@ -50,6 +51,13 @@ class RutherfordComparison:
         errors of the experiment were relative.
     ratio : ndarray, shape (11,)
         Counted over scale / sin⁴(φ/2).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> silver, gold = vv.datasets.geiger_marsden_1913().compare()
+    >>> gold.metal, gold.ratio.shape
+    ('gold', (11,))
     """
 
     metal: str
@@ -64,8 +72,8 @@ class RutherfordComparison:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class GeigerMarsden:
+@dataclass(frozen=True, eq=False, repr=False)
+class GeigerMarsden(Record):
     """Scintillations counted behind a foil, by angle.
 
     Attributes
@@ -78,6 +86,13 @@ class GeigerMarsden:
         Scintillations, corrected by the authors for the decay of the source and the natural effect.
     source : str
         The paper and the table.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> data = vv.datasets.geiger_marsden_1913()
+    >>> data.angle.max(), data.gold.shape
+    (np.float64(150.0), (11,))
     """
 
     angle: NDArray[np.float64]

@@ -80,6 +80,13 @@ class OuterSolarSystem(Bodies):
         The bodies, with their names.
     scene : Scene
         The bodies under their gravity, as the arrays have them.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> data = vv.datasets.outer_solar_system()
+    >>> data.names[:3], data.position.shape
+    (('Sun', 'Jupiter', 'Saturn'), (6, 3))
     """
 
 

@@ -93,6 +93,13 @@ class SolarSystem(Bodies):
         The bodies, with their names.
     scene : Scene
         The bodies under their gravity, the Sun at rest at the origin.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> planets = vv.datasets.solar_system()
+    >>> planets.scene.particles.names[:3]
+    ('Sun', 'Mercury', 'Venus')
     """
 
 

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.datasets._bodies import read_only
 from visviva.rigid import FreeRotation, free_rotation, quaternion_from_euler, quaternion_product, rotation_vector
@@ -54,8 +55,8 @@ _RADAR = (
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class RadarAttitudes:
+@dataclass(frozen=True, eq=False, repr=False)
+class RadarAttitudes(Record):
     """How Toutatis stood and turned on seventeen days of December 1992, by radar.
 
     Attributes
@@ -68,6 +69,13 @@ class RadarAttitudes:
         φ, θ, ψ (z–x–z) in radians, from the body to the ecliptic of J2000.
     angular_velocity : ndarray, shape (17, 3)
         Along the body's axes, in radians per day.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> radar = vv.datasets.toutatis().radar
+    >>> len(radar.date), radar.euler_angles.shape
+    (17, (17, 3))
     """
 
     date: tuple[str, ...]
@@ -82,8 +90,8 @@ class RadarAttitudes:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class ToutatisComparison:
+@dataclass(frozen=True, eq=False, repr=False)
+class ToutatisComparison(Record):
     """The free rotation from the spin state against what radar saw.
 
     Attributes
@@ -98,6 +106,13 @@ class ToutatisComparison:
         The angle between the two angular velocities, as the body has them, in degrees.
     spin_ratio : ndarray, shape (17,)
         The angular velocity of the free rotation over that of radar.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.datasets.toutatis().compare()
+    >>> round(found.attitude.min(), 1), round(found.attitude.max(), 1)
+    (np.float64(1.3), np.float64(15.9))
     """
 
     date: tuple[str, ...]
@@ -117,8 +132,8 @@ class ToutatisComparison:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Toutatis:
+@dataclass(frozen=True, eq=False, repr=False)
+class Toutatis(Record):
     """The spin state of 4179 Toutatis; times in days, angles in radians.
 
     The body's axes x, y, z are those of the middle, the largest and the smallest moment: z is the long axis.
@@ -137,6 +152,13 @@ class Toutatis:
         What was seen in December 1992.
     source : str
         Who published the numbers.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> spin = vv.datasets.toutatis()
+    >>> spin.moments.round(2), spin.radar.t.shape
+    (array([3.08, 3.24, 1.  ]), (17,))
     """
 
     moments: NDArray[np.float64]
@@ -163,6 +185,11 @@ class Toutatis:
         -------
         FreeRotation
             See `visviva.rigid.free_rotation`.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
 
         Examples
         --------

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -49,8 +50,8 @@ class Equilibrium:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Linearization:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Linearization(Record):
     """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0.
 
     Attributes
@@ -146,8 +147,8 @@ class Linearization:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class PoincareSection:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class PoincareSection(Record):
     """Where a motion passes through a section.
 
     Attributes

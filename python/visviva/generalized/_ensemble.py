@@ -36,6 +36,11 @@ __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
 class GeneralizedEnsemble(Shown):
     """Copies of a system with starts or parameters of their own. Made by ``ensemble`` of a system.
 
+    Attributes
+    ----------
+    system : GeneralizedSystem
+        Whose copies they are.
+
     Examples
     --------
     >>> import visviva as vv

@@ -63,6 +63,17 @@ class Expression:
     """A number of a system as an expression: arithmetic and NumPy's functions record what is done with it.
 
     Given to the function that is passed to `Lagrangian` or `Hamiltonian` in the place of numbers.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> seen = []
+    >>> def L(q, v, t):
+    ...     seen.append(type(q[0]).__name__)
+    ...     return v[0] ** 2 / 2 + np.cos(q[0])
+    >>> pendulum = vv.Lagrangian(L, ["theta"], position=[0.1])
+    >>> seen[0]
+    'Expression'
     """
 
     __slots__ = ("_nodes", "_place")
@@ -132,7 +143,26 @@ class Expression:
         raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
 
     def arctan2(self, other: object) -> Expression:
-        """Give the angle of the point (other, self) from the first axis: what ``np.arctan2`` calls."""
+        """Give the angle of the point (other, self) from the first axis: what ``np.arctan2`` calls.
+
+        Parameters
+        ----------
+        other : Expression or float
+            The component along the first axis.
+
+        Returns
+        -------
+        Expression
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> free = vv.Lagrangian(
+        ...     lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 - np.arctan2(q[1], q[0]),
+        ...     ["x", "y"], position=[1.0, 0.0])
+        >>> free.run(t=[0.0, 1.0]).energy.round(12)
+        array([0., 0.])
+        """
         return self._with("atan2", other)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:

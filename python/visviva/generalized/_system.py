@@ -36,6 +36,13 @@ class GeneralizedSystem(Runs, Flow):
         Coordinates at the start.
     t0 : float
         The time there.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> system = vv.systems.pendulum()
+    >>> isinstance(system, vv.generalized.GeneralizedSystem), system.coordinates
+    (True, ('theta',))
     """
 
     __slots__ = ()

@@ -269,6 +269,11 @@ class GeneralizedTrajectory(Exported, Shown):
         -------
         matplotlib.axes.Axes
 
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib is not installed.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv

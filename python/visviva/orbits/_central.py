@@ -154,6 +154,13 @@ class CircularOrbits(Shown):
         Of an unstable circle the rate at which a disturbance grows; 0 of a stable one.
     apsidal_angle : ndarray
         π ω over the radial frequency, from pericenter to apocenter of an orbit nearby; NaN where there is none.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> circle = vv.orbits.circular_orbit(vv.potentials.Coulomb(-1.0), 4.0)
+    >>> float(circle.angular_velocity), bool(circle.stable)
+    (0.125, True)
     """
 
     radius: NDArray[np.float64]
@@ -264,6 +271,13 @@ class RadialRange:
     kind : str
         ``"bound"``, ``"circular"``, ``"escapes"``, ``"reaches_the_center"``, ``"reaches_the_center_or_escapes"``, or
         ``"leaves_the_table"`` where the potential is known no farther.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [allowed] = vv.orbits.range_of_motion(vv.potentials.Coulomb(-1.0), energy=-0.5, angular_momentum=0.6)
+    >>> round(allowed.r_min, 9), round(allowed.r_max, 9), allowed.kind
+    (0.2, 1.8, 'bound')
     """
 
     r_min: float

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.orbits._central import core_potentials, terms_of
@@ -17,6 +18,7 @@ from visviva.orbits._radial import RadialMotion, described_motion
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -24,8 +26,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class CentralOrbit:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class CentralOrbit(Record):
     """An orbit in a central potential; what :func:`central_orbit` returns.
 
     Attributes
@@ -38,6 +40,14 @@ class CentralOrbit:
         Turning points, radial period, apsidal angle, precession and kind of this orbit.
     time_since_pericenter, angle_since_pericenter : float
         At the start, from the nearest pericenter, with its sign; NaN of a circle, and where there is no pericenter.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> sun = vv.potentials.Coulomb(-1.0)
+    >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0])
+    >>> round(orbit.energy, 12), round(orbit.angular_momentum, 12)
+    (-0.28, 1.2)
     """
 
     potentials: tuple[Potential, ...]
@@ -104,18 +114,81 @@ class CentralOrbit:
         return self._vectors(places[..., 0], places[..., 1])
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Give velocities at times since the start; as `position`."""
+        """Give velocities at times since the start; as `position`.
+
+        Parameters
+        ----------
+        t : array_like
+            Times since the start.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``t`` and one axis of 3 more.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
+        visviva.ConvergenceError
+            As `radial_motion`.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.0, 0.0])
+        >>> orbit.velocity([0.0, np.pi / 2]).round(12) + 0.0
+        array([[ 0.,  1.,  0.],
+               [-1.,  0.,  0.]])
+        """
         places = self._places("t", t, angles=False)
         radius, angle, outward = np.moveaxis(places, -1, 0)
         across = self.angular_momentum / (self.mass * radius)
         return self._vectors(outward, angle) + self._vectors(across, angle + 0.5 * np.pi)
 
     def angle(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Give the angle gone through since the start, not reduced to a turn; as `position`."""
+        """Give the angle gone through since the start, not reduced to a turn; as `position`.
+
+        Parameters
+        ----------
+        t : array_like
+            Times since the start.
+
+        Returns
+        -------
+        ndarray
+            Radians, of the shape of ``t``.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For NaN or infinity.
+        visviva.ConvergenceError
+            As `radial_motion`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.0, 0.0])
+        >>> orbit.angle([0.0, 1.0, 10.0]).round(12)  # a circle
+        array([ 0.,  1., 10.])
+        """
         return self._places("t", t, angles=False)[..., 1]
 
     def radius(self, angle: ArrayLike) -> NDArray[np.float64]:
         """Give the distance r(θ) at angles since the start: the path.
+
+        Parameters
+        ----------
+        angle : array_like
+            Radians since the start.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``angle``.
 
         Raises
         ------
@@ -148,14 +221,14 @@ class CentralOrbit:
         )
         return length[..., None] * turned
 
-    def plot(self, kind: str = "orbit", *, ax: Any = None) -> Figure:
+    def plot(self, kind: Literal["orbit", "effective_potential"] = "orbit", *, ax: Axes | None = None) -> Figure:
         """Draw the orbit, or the effective potential with the energy and the turning points.
 
         Parameters
         ----------
         kind : {"orbit", "effective_potential"}
             What to draw.
-        ax : matplotlib Axes, optional
+        ax : matplotlib.axes.Axes, optional
             Where; a figure of its own if not given.
 
         Returns
@@ -167,6 +240,14 @@ class CentralOrbit:
         ------
         InvalidInput
             If matplotlib is not installed, and for another kind.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 0.8, 0.0])
+        >>> orbit.plot("effective_potential").axes[0].get_xlabel()
+        'r'
         """
         from visviva.orbits._pictures import plot_orbit
 

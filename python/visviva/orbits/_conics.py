@@ -46,6 +46,13 @@ class Conic(Shown):
         l/2m.
     turning_angle : ndarray
         The angle 2 arcsin(1/e) by which a hyperbola turns the velocity; π for a parabola, NaN if bound.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.orbits.conic(1.0, 1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
+    >>> round(float(found.eccentricity), 12), round(float(found.r_max), 12)
+    (0.44, 2.571428571429)
     """
 
     mass: NDArray[np.float64]

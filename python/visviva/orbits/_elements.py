@@ -151,6 +151,14 @@ class Elements(OfOrbits, Shown):
         ------
         InvalidInput
             For radial motion, which these elements do not determine.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
+        >>> position, velocity = found.state()
+        >>> position.round(12) + 0.0, velocity.round(12) + 0.0
+        (array([1., 0., 0.]), array([0. , 1.2, 0. ]))
         """
         return state(
             self.mu,

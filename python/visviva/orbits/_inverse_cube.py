@@ -35,6 +35,13 @@ class PrecessingConic:
         π/β and 2π(1/β − 1); NaN where the pericenter does not come again.
     radial_period : float
         2π√(ma³/γ) with a = (r_min + r_max)/2, whatever κ is; infinite where the pericenter does not come again.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> orbit = vv.orbits.precessing_conic(1.0, 1.0, 0.1, position=[9 / 13, 0, 0], velocity=[0.0, 13 / 9, 0.0])
+    >>> round(orbit.beta_squared, 12), round(orbit.eccentricity, 12)
+    (0.9, 0.3)
     """
 
     beta_squared: float
@@ -51,6 +58,16 @@ class PrecessingConic:
 
     def radius(self, angle: ArrayLike) -> NDArray[np.float64]:
         """Give the distance r(θ) at angles since the start.
+
+        Parameters
+        ----------
+        angle : array_like
+            Radians since the start.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of ``angle``.
 
         Raises
         ------

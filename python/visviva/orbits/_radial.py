@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.orbits._arguments import fields, shaped
 from visviva.orbits._central import checked, core_potentials
@@ -21,8 +22,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class RadialMotion:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class RadialMotion(Record):
     """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of what was asked.
 
     Attributes
@@ -40,6 +41,13 @@ class RadialMotion:
         What the integrals of `radial_period` and `apsidal_angle` may lack, as estimated.
     kind : ndarray of str
         As in `RadialRange`, or ``"no_motion"``.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.orbits.radial_motion(vv.potentials.Coulomb(-1.0), energy=-0.5, angular_momentum=0.6)
+    >>> round(float(found.r_min), 9), round(float(found.r_max), 9), str(found.kind)
+    (0.2, 1.8, 'bound')
     """
 
     r_min: NDArray[np.float64]
@@ -121,6 +129,27 @@ def radial_period(
 ) -> NDArray[np.float64]:
     """Find the time from one pericenter to the next; see `radial_motion`.
 
+    Parameters
+    ----------
+    potential : Potential or sequence of Potential
+        V(r); several are added.
+    energy, angular_momentum : array_like
+        E and l of the motion; broadcast against each other.
+    mass : array_like
+        m > 0.
+    near : array_like, optional
+        As of `radial_motion`.
+
+    Returns
+    -------
+    ndarray
+        A time; infinite where the motion escapes.
+
+    Raises
+    ------
+    InvalidInput, ConvergenceError
+        As `radial_motion`.
+
     Examples
     --------
     >>> import visviva as vv
@@ -143,6 +172,27 @@ def apsidal_angle(
 ) -> NDArray[np.float64]:
     """Find the angle from pericenter to apocenter; see `radial_motion`.
 
+    Parameters
+    ----------
+    potential : Potential or sequence of Potential
+        V(r); several are added.
+    energy, angular_momentum : array_like
+        E and l of the motion; broadcast against each other.
+    mass : array_like
+        m > 0.
+    near : array_like, optional
+        As of `radial_motion`.
+
+    Returns
+    -------
+    ndarray
+        Radians; NaN where there is no such angle.
+
+    Raises
+    ------
+    InvalidInput, ConvergenceError
+        As `radial_motion`.
+
     Examples
     --------
     >>> import visviva as vv
@@ -164,6 +214,27 @@ def precession(
     near: ArrayLike | None = None,
 ) -> NDArray[np.float64]:
     """Find the angle by which the pericenter moves on in a radial period; see `radial_motion`.
+
+    Parameters
+    ----------
+    potential : Potential or sequence of Potential
+        V(r); several are added.
+    energy, angular_momentum : array_like
+        E and l of the motion; broadcast against each other.
+    mass : array_like
+        m > 0.
+    near : array_like, optional
+        As of `radial_motion`.
+
+    Returns
+    -------
+    ndarray
+        Radians in a radial period; NaN where the pericenter does not come again.
+
+    Raises
+    ------
+    InvalidInput, ConvergenceError
+        As `radial_motion`.
 
     Examples
     --------
@@ -233,6 +304,27 @@ def swept_angle(
     mass: ArrayLike = 1.0,
 ) -> NDArray[np.float64]:
     """Find the angle about the center between two distances of one range; as `time_of_flight`.
+
+    Parameters
+    ----------
+    potential : Potential or sequence of Potential
+        V(r); several are added.
+    start, end : array_like
+        Two distances of one range of motion.
+    energy, angular_momentum : array_like
+        E and l of the motion; broadcast against each other.
+    mass : array_like
+        m > 0.
+
+    Returns
+    -------
+    ndarray
+        Radians.
+
+    Raises
+    ------
+    InvalidInput, ConvergenceError
+        As `time_of_flight`.
 
     Examples
     --------

@@ -26,6 +26,13 @@ class ConeAngles(NamedTuple):
         (C > A), around.
     axis : float
         Between the body's axis and the angular momentum: the cone of the precession.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> cones = vv.rigid.cone_angles([2.0, 2.0, 1.0], [0.5, 0.0, 1.25])  # a long body: its cone rolls on the outside
+    >>> round(abs(cones.body + cones.space - cones.axis), 12)
+    0.0
     """
 
     body: float

@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from os import PathLike
 
     from matplotlib.animation import FuncAnimation
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
@@ -40,6 +41,13 @@ class FreeRotation(Rotation):
         Quaternions (x, y, z, w), from the body to space; |q| is 1 to 4 ε.
     body_angular_momentum : ndarray, shape (T, 3)
         Along the body's principal axes.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> turning = vv.rigid.free_rotation([1.0, 2.0, 3.0], [0.1, 1.0, 0.1], np.linspace(0.0, 20.0, 201))
+    >>> turning.orientation.shape, bool(np.ptp(turning.energy) < 1e-14)
+    ((201, 4), True)
     """
 
     t: NDArray[np.float64]
@@ -48,7 +56,9 @@ class FreeRotation(Rotation):
     orientation: NDArray[np.float64]
     body_angular_momentum: NDArray[np.float64]
 
-    def plot(self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode") -> Figure:
+    def plot(
+        self, kind: Literal["polhode", "herpolhode", "axes", "components"] = "polhode", *, ax: Axes | None = None
+    ) -> Figure:
         """Draw the motion, as a matplotlib Figure.
 
         Parameters
@@ -57,17 +67,19 @@ class FreeRotation(Rotation):
             The path of the angular velocity on the inertia ellipsoid Σ I x² = 1 in the body, or on the plane across the
             angular momentum in space (Poinsot); where the body's three axes point in space; or the angular velocity
             along them against time.
+        ax : matplotlib.axes.Axes, optional
+            Where, of three dimensions where the picture has them; a figure of its own if not given.
 
         Returns
         -------
         matplotlib.figure.Figure
-            With one panel.
+            With one panel; that of ``ax`` if that is given.
 
         Raises
         ------
         visviva.InvalidInput
-            For another kind, fewer than two times, no matplotlib, a body at rest where a direction is asked for, or the
-            inertia ellipsoid of a rod, which has no end.
+            For another kind, axes of other dimensions, fewer than two times, no matplotlib, a body at rest where a
+            direction is asked for, or the inertia ellipsoid of a rod, which has no end.
 
         Notes
         -----
@@ -82,7 +94,7 @@ class FreeRotation(Rotation):
         """
         from visviva.rigid._pictures import plot_free_rotation
 
-        return plot_free_rotation(self, kind)
+        return plot_free_rotation(self, kind, ax)
 
     def animate(
         self,

@@ -25,6 +25,14 @@ class SteadyPrecession(NamedTuple):
     ----------
     slow, fast : float
         Rates about the vertical, signed as the spin is. The slow one is M g R/(C ω) for a fast top.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> rates = top.steady_precession(0.3, 50.0)
+    >>> round(rates.slow, 9), round(rates.fast, 9)
+    (0.416578701, 10.050937315)
     """
 
     slow: float
@@ -58,6 +66,14 @@ class Nutation:
     turning : float
         The height u = p_φ/p_ψ at which the precession turns round; not always one that is reached, and infinite or NaN
         without spin.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> found = top.nutation(0.3, psi_dot=50.0)
+    >>> found.kind, round(found.theta_max, 9)
+    ('cusp', 0.326733715)
     """
 
     theta_min: float
@@ -126,6 +142,21 @@ class HeavyTop:
     def least_spin(self, theta: float) -> float:
         """Give the least spin of a steady precession at an angle: 2√(A M g R cos θ)/C, and 0 from the horizontal down.
 
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical.
+
+        Returns
+        -------
+        float
+            Radians per unit of time.
+
+        Raises
+        ------
+        InvalidInput
+            For NaN or infinity.
+
         Examples
         --------
         >>> import visviva as vv
@@ -170,6 +201,16 @@ class HeavyTop:
         It is the limit of the slow steady precession for (C ω₃)² ≫ A M g R, off by about A M g R cos θ/(C ω₃)² of
         itself; see `steady_precession` for the rate itself.
 
+        Parameters
+        ----------
+        spin : float
+            ω₃, of either sign.
+
+        Returns
+        -------
+        float
+            Radians per unit of time.
+
         Raises
         ------
         InvalidInput
@@ -196,6 +237,15 @@ class HeavyTop:
             Angle of the axis from the vertical, in [0, π].
         psi_dot, phi_dot : float
             Rates of Euler's angles.
+
+        Returns
+        -------
+        TopMomenta
+
+        Raises
+        ------
+        InvalidInput
+            For an angle outside [0, π], NaN or infinity.
 
         Examples
         --------
@@ -251,6 +301,23 @@ class HeavyTop:
 
     def nutation_frequency(self, theta: float, spin: float) -> SteadyPrecession:
         """Give the frequencies of small nutations about the slow and the fast steady precession.
+
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical.
+        spin : float
+            ω₃, of either sign.
+
+        Returns
+        -------
+        SteadyPrecession
+            ``slow`` and ``fast``: the frequency about each.
+
+        Raises
+        ------
+        InvalidInput
+            As `steady_precession`.
 
         Examples
         --------
@@ -311,6 +378,23 @@ class HeavyTop:
         self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0
     ) -> tuple[float, float]:
         """Give the least and the greatest angle from the vertical; see `nutation`.
+
+        Parameters
+        ----------
+        theta : float
+            Angle of the axis from the vertical, in [0, π].
+        psi_dot, theta_dot, phi_dot : float
+            Rates of Euler's angles.
+
+        Returns
+        -------
+        tuple of float
+            Radians.
+
+        Raises
+        ------
+        InvalidInput
+            As `nutation`.
 
         Examples
         --------

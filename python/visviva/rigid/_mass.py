@@ -33,6 +33,13 @@ class PrincipalAxes(NamedTuple):
     axes : ndarray, shape (3, 3)
         As columns, right-handed: ``axes @ np.diag(moments) @ axes.T`` is the tensor, and the rotation matrix from the
         principal axes to those of the tensor.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> found = vv.rigid.principal_axes([[2.0, 1.0, 0.0], [1.0, 2.0, 0.0], [0.0, 0.0, 3.5]])
+    >>> found.moments.round(12), bool(np.isclose(np.linalg.det(found.axes), 1.0))
+    (array([1. , 3. , 3.5]), True)
     """
 
     moments: NDArray[np.float64]
@@ -251,20 +258,97 @@ class MassProperties:
             object.__setattr__(self, name, array)
 
     def about(self, point: ArrayLike) -> NDArray[np.float64]:
-        """Give the tensor about a point of the coordinates, by Steiner's theorem."""
+        """Give the tensor about a point of the coordinates, by Steiner's theorem.
+
+        Parameters
+        ----------
+        point : array_like, shape (3,)
+            In the coordinates of ``center``.
+
+        Returns
+        -------
+        ndarray, shape (3, 3)
+            Mass times area.
+
+        Raises
+        ------
+        InvalidInput
+            For another shape, NaN or infinity.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> rod = vv.rigid.box(12.0, 1.0, 2.0, 3.0)
+        >>> np.diag(rod.about([1.0, 0.0, 0.0]))  # 12 · 1² more across
+        array([13., 22., 17.])
+        """
         return parallel_axis(self.tensor, self.mass, float_array("point", point, (3,)) - self.center)
 
     def moved(self, offset: ArrayLike) -> MassProperties:
-        """Give the body somewhere else."""
+        """Give the body somewhere else.
+
+        Parameters
+        ----------
+        offset : array_like, shape (3,)
+            By which it is moved.
+
+        Returns
+        -------
+        MassProperties
+            With the same tensor about its center.
+
+        Raises
+        ------
+        InvalidInput
+            For another shape, NaN or infinity.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> rod = vv.rigid.box(12.0, 1.0, 2.0, 3.0)
+        >>> rod.moved([1.0, 0.0, 0.0]).center
+        array([1., 0., 0.])
+        """
         return MassProperties(self.mass, self.center + float_array("offset", offset, (3,)), self.tensor)
 
     def rotated(self, quaternion: ArrayLike) -> MassProperties:
-        """Give the body rotated about the origin."""
+        """Give the body rotated about the origin.
+
+        Parameters
+        ----------
+        quaternion : array_like, shape (4,)
+            (x, y, z, w), of length 1 within 1e-6.
+
+        Returns
+        -------
+        MassProperties
+
+        Raises
+        ------
+        InvalidInput
+            For another shape or length, NaN or infinity.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> rod = vv.rigid.box(12.0, 1.0, 2.0, 3.0)
+        >>> quarter = vv.rigid.quaternion_from_rotation_vector([0.0, 0.0, np.pi / 2])
+        >>> np.diag(rod.rotated(quarter).tensor).round(12)
+        array([10., 13.,  5.])
+        """
         center = rotate(quaternion, self.center)
         return MassProperties(self.mass, center, rotate_tensor(self.tensor, quaternion))
 
     def principal_axes(self) -> PrincipalAxes:
-        """Give the principal moments about the center and their axes; see `principal_axes`."""
+        """Give the principal moments about the center and their axes; see `principal_axes`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> rod = vv.rigid.box(12.0, 1.0, 2.0, 3.0)
+        >>> rod.principal_axes().moments
+        array([ 5., 10., 13.])
+        """
         return principal_axes(self.tensor)
 
     def __add__(self, other: object) -> MassProperties:

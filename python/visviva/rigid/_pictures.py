@@ -16,6 +16,7 @@ from visviva.rigid._orientation import matrix, rotate
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -30,28 +31,36 @@ _LETTERS = "xyz"
 _POINTS = 4000
 
 
-def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str) -> Figure:
+def plot_free_rotation(motion: FreeRotation | BodyTurning, kind: str, ax: Axes | None) -> Figure:
     """A picture of a free rotation; see `FreeRotation.plot`."""
-    return _plotted(motion, kind, {"polhode": polhode, "herpolhode": herpolhode, "axes": traces, "components": spin})
+    known: dict[str, Callable[[Any, Any], None]]
+    known = {"polhode": polhode, "herpolhode": herpolhode, "axes": traces, "components": spin}
+    return _plotted(motion, kind, known, ax)
 
 
-def plot_top(motion: TopMotion, kind: str) -> Figure:
+def plot_top(motion: TopMotion, kind: str, ax: Axes | None) -> Figure:
     """A picture of the motion of a heavy top; see `TopMotion.plot`."""
-    return _plotted(motion, kind, {"nutation": nutation, "theta": theta, "effective_potential": potential})
+    return _plotted(motion, kind, {"nutation": nutation, "theta": theta, "effective_potential": potential}, ax)
 
 
 _SOLID = ("polhode", "axes", "nutation")
 
 
-def _plotted(motion: Any, kind: str, pictures: dict[str, Callable[[Any, Any], None]]) -> Figure:
+def _plotted(motion: Any, kind: str, pictures: dict[str, Callable[[Any, Any], None]], ax: Any) -> Figure:
     if not isinstance(kind, str) or kind not in pictures:
         hint = did_you_mean(str(kind), tuple(pictures))
         expected = ", ".join(repr(name) for name in pictures)
         raise InvalidInput("kind", f"expected one of {expected}, got {kind!r}{hint}")
     if motion.t.ndim != 1 or len(motion.t) < 2:
         raise InvalidInput("plot", f"expected a path along several times, got {count(motion.t.size, 'time')}")
-    figure, (axes,) = new_figure(1, (5.5, 5.0), solid=(0,) if kind in _SOLID else ())
-    pictures[kind](axes, motion)
+    solid = kind in _SOLID
+    if ax is None:
+        _, (ax,) = new_figure(1, (5.5, 5.0), solid=(0,) if solid else ())
+    elif solid is not hasattr(ax, "get_zlim"):
+        wanted = "three" if solid else "two"
+        raise InvalidInput("ax", f"expected axes of {wanted} dimensions for kind={kind!r}, got {ax!r}")
+    pictures[kind](ax, motion)
+    figure: Figure = ax.figure
     return figure
 
 

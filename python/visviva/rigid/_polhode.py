@@ -45,6 +45,13 @@ class Polhode:
         The mean rate at which the body's `axis` goes round the angular momentum; of a steady motion, |ω|.
     largest : ndarray, shape (3,)
         The largest angular momentum along each axis of the body, with the sign that it has at time 0.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.rigid.polhode([1.0, 2.0, 3.0], [0.1, 1.0, 0.3])
+    >>> found.kind, found.axis, found.middle_axis
+    ('about_largest', 2, 1)
     """
 
     kind: _Kind

@@ -12,6 +12,7 @@ from visviva.rigid._euler import angular_velocity_from_euler, quaternion_from_eu
 from visviva.rigid._orientation import rotate, rotate_back
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -36,6 +37,14 @@ class TopMotion:
         jumps by π, and ψ with it.
     theta_dot, phi_dot, psi_dot : ndarray, shape (T,)
         Their rates.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> motion = top.solve(np.linspace(0.0, 3.0, 301), theta=0.3, psi_dot=50.0)
+    >>> motion.theta.shape, round(motion.theta.min(), 9)
+    ((301,), np.float64(0.3))
     """
 
     top: HeavyTop
@@ -95,7 +104,9 @@ class TopMotion:
     def _rates(self) -> NDArray[np.float64]:
         return np.stack([self.phi_dot, self.theta_dot, self.psi_dot], axis=-1)
 
-    def plot(self, kind: Literal["nutation", "theta", "effective_potential"] = "nutation") -> Figure:
+    def plot(
+        self, kind: Literal["nutation", "theta", "effective_potential"] = "nutation", *, ax: Axes | None = None
+    ) -> Figure:
         """Draw the motion, as a matplotlib Figure.
 
         Parameters
@@ -103,16 +114,18 @@ class TopMotion:
         kind : {"nutation", "theta", "effective_potential"}
             Where the axis points, on the unit sphere, with the two circles that it nods between; its angle from the
             vertical against time; or the potential in which it nods, with the energy.
+        ax : matplotlib.axes.Axes, optional
+            Where, of three dimensions where the picture has them; a figure of its own if not given.
 
         Returns
         -------
         matplotlib.figure.Figure
-            With one panel.
+            With one panel; that of ``ax`` if that is given.
 
         Raises
         ------
         visviva.InvalidInput
-            For another kind, fewer than two times, or no matplotlib.
+            For another kind, axes of other dimensions, fewer than two times, or no matplotlib.
 
         Examples
         --------
@@ -124,7 +137,7 @@ class TopMotion:
         """
         from visviva.rigid._pictures import plot_top
 
-        return plot_top(self, kind)
+        return plot_top(self, kind, ax)
 
     def __repr__(self) -> str:
         return f"TopMotion(t of shape {self.t.shape})"

@@ -23,6 +23,13 @@ class TopMomenta(NamedTuple):
         About the vertical.
     p_psi : float
         About the top's axis, C ω₃.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    >>> top.momenta(np.pi / 2, psi_dot=50.0).p_psi
+    50.0
     """
 
     p_phi: float

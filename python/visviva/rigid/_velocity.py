@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 import numpy as np
 
 from visviva import _core
+from visviva._html import briefly
 from visviva._keywords import known_keywords
 from visviva.rigid._arguments import mapped
 
@@ -33,6 +34,13 @@ class ScrewAxis(NamedTuple):
         The velocity along the direction, which all points share.
     pitch : ndarray, shape (…)
         How far the body goes along the axis in one radian, ω·v/ω²; infinite where it does not turn.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> screw = vv.rigid.screw_axis([0.0, 0.0, 1.0], [0.0, 0.0, 2.0])
+    >>> float(screw.rate), float(screw.speed), float(screw.pitch)
+    (2.0, 1.0, 0.5)
     """
 
     point: NDArray[np.float64]
@@ -40,6 +48,10 @@ class ScrewAxis(NamedTuple):
     rate: NDArray[np.float64]
     speed: NDArray[np.float64]
     pitch: NDArray[np.float64]
+
+    def __repr__(self) -> str:
+        told = (f"{name}={briefly(each)}" for name, each in zip(self._fields, self, strict=True))
+        return f"ScrewAxis({', '.join(told)})"
 
 
 @known_keywords

@@ -181,6 +181,14 @@ class Beam:
         Rings of impact parameters with parts of the events of their own; None where events fill the disc evenly.
     channels : tuple of Channel
         Reactions with their parts of the events; what is left of them is elastic.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1, bins=4)
+    >>> run.beam.b_max, run.beam.masses
+    (1.0, (1.0, 4.0))
     """
 
     potential: Potential

@@ -11,9 +11,10 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from visviva.scattering._joint_tally import JointTally
     from visviva.scattering._tally import Tally
 
-__all__ = ["plot_tally", "poisson_interval"]
+__all__ = ["plot_joint", "plot_tally", "poisson_interval"]
 
 # The normal distribution beyond one standard deviation: (1 - erf(1/√2))/2.
 _TAIL = 0.15865525393145705
@@ -102,4 +103,26 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     if tally.edges[0] > 0.0 and widths[-1] > 30.0 * widths[0]:
         axes.set_xscale("log")
     axes.legend(frameon=False)
+    return axes
+
+
+def plot_joint(tally: JointTally, ax: Axes | None) -> Axes:
+    """A picture of a histogram of two quantities; see `JointTally.plot`."""
+    from matplotlib.colors import LogNorm, Normalize
+
+    from visviva.errors import InvalidInput
+    from visviva.plot import axes_or_new
+
+    if len(tally.name) != 2:
+        raise InvalidInput("plot", f"expected a tally of two quantities, got {len(tally.name)}: sum over the others")
+    axes = axes_or_new(ax)
+    across, up = (np.degrees(e) if n.endswith("angle") else e for n, e in zip(tally.name, tally.edges, strict=True))
+    values = tally.values()
+    seen = values[values > 0.0]
+    wide = bool(seen.size) and seen.max() > 30.0 * seen.min()
+    norm: Any = LogNorm(seen.min(), seen.max()) if wide else Normalize(0.0, float(seen.max()) if seen.size else 1.0)
+    # What counted nothing is left white, and is no color of the scale.
+    shown = axes.pcolormesh(across, up, np.where(values > 0.0, values, np.nan).T, norm=norm, cmap="viridis_r")
+    axes.figure.colorbar(shown, ax=axes, label="events per bin")
+    axes.set(xlabel=_AXES[tally.name[0]][0], ylabel=_AXES[tally.name[1]][0])
     return axes

@@ -4,17 +4,21 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.potentials import Potential
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Deflection", "DeflectionStatus", "deflect", "deflection_angle"]
@@ -40,8 +44,8 @@ class DeflectionStatus(IntEnum):
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Deflection:
+@dataclass(frozen=True, eq=False, repr=False)
+class Deflection(Shown):
     """Deflections of pairs of an energy and an impact parameter, as arrays of their common shape.
 
     Attributes
@@ -67,6 +71,15 @@ class Deflection:
         `DeflectionStatus`.
     reduced_mass : float or None
         As given.
+    potential : Potential
+        As given.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.scattering.deflect(vv.potentials.Coulomb(1.0), energy=0.5, impact_parameter=[0.0, 1.0])
+    >>> found.angle, found.closest_approach
+    (array([3.14159265, 1.57079633]), array([2.        , 2.41421356]))
     """
 
     energy: NDArray[np.float64]
@@ -79,7 +92,21 @@ class Deflection:
     error: NDArray[np.float64]
     turning_points: NDArray[np.int64]
     status: NDArray[np.int64]
+    potential: Potential
     reduced_mass: float | None = None
+
+    def __repr__(self) -> str:
+        captured = int((self.status == DeflectionStatus.CAPTURED).sum())
+        note = f", {captured} captured" if captured else ""
+        shape = np.shape(self.angle)
+        what = count(int(np.size(self.angle)), "motion")
+        return f"Deflection({what} of shape {shape}{note}, {self.potential!r})"
+
+    def _sheet(self) -> Sheet:
+        columns = [np.ravel(each) for each in (self.energy, self.impact_parameter, self.angle, self.closest_approach)]
+        words = [DeflectionStatus(each).name.lower().replace("_", " ") for each in np.ravel(self.status).tolist()]
+        rows, note = first_rows(len(words), lambda at: (*(f"{column[at]:.6g}" for column in columns), words[at]))
+        return Sheet(repr(self), rows, ("energy", "impact parameter", "angle", "closest approach", ""), note)
 
     @property
     def conditioning(self) -> NDArray[np.float64]:
@@ -98,6 +125,43 @@ class Deflection:
         if self.reduced_mass is None:
             raise InvalidInput("reduced_mass", "expected a number, as times depend on it, got None; pass it to deflect")
         return self.path_delay / np.sqrt(2.0 * self.energy / self.reduced_mass)
+
+    def plot(
+        self, kind: Literal["angle", "closest_approach", "cross_section"] = "angle", *, ax: Axes | None = None
+    ) -> Figure:
+        """Draw what depends on the impact parameter, or the cross section that it makes: a line for each energy.
+
+        Parameters
+        ----------
+        kind : {"angle", "closest_approach", "cross_section"}
+            ψ(b) with its rainbows, glories and orbits, toward which it grows without bound; the outermost turning
+            point, beside that of a straight line; or dσ/dΩ at each energy from 1° on, with its rainbows. Of what is
+            captured nothing is drawn.
+        ax : matplotlib.axes.Axes, optional
+            Where; a figure of its own if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            The caller's; pyplot's state is not touched.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed; for another kind, no energy at all, or more than 28 of them.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> pair = vv.potentials.LennardJones(epsilon=1.0, sigma=1.0)
+        >>> found = vv.scattering.deflect(pair, energy=[[0.5], [2.0]], impact_parameter=np.linspace(0.0, 3.0, 301))
+        >>> found.plot().axes[0].get_ylabel()
+        'deflection ψ [degrees]'
+        >>> figure = found.plot("cross_section")
+        """
+        from visviva.scattering._pictures import plot_deflection
+
+        return plot_deflection(self, kind, ax)
 
 
 @known_keywords
@@ -170,6 +234,7 @@ def deflect(
         error,
         turning_points,
         status,
+        potential,
         reduced_mass=mass,
     )
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive_array
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._arguments import angles, encounter, flat, kinematic
@@ -314,8 +315,8 @@ def two_branch_energy(
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Moderation:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Moderation(Record):
     """Averages over one elastic collision that is isotropic in the centre-of-mass frame.
 
     Attributes
@@ -329,6 +330,13 @@ class Moderation:
         ⟨ln(E₀/E₁)⟩ = 1 + ((1 − q)/q) ln(1 − q).
     mean_cosine : ndarray
         ⟨cos θ₁⟩ in the laboratory: 2m₁/3m₂, or 1 − (m₂/m₁)²/3 for a heavy projectile.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> found = vv.scattering.moderation(mass_ratio=1.0)  # neutrons in hydrogen
+    >>> float(found.greatest_transfer), float(found.mean_transfer), float(found.mean_logarithmic_decrement)
+    (1.0, 0.5, 1.0)
     """
 
     greatest_transfer: NDArray[np.float64]

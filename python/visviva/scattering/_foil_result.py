@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._of_events import is_zero, merged
@@ -36,7 +37,16 @@ _AXES = {
 
 
 class Fraction(NamedTuple):
-    """A part of all ions, and its standard error."""
+    """A part of all ions, and its standard error.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+    >>> part = out.fraction("transmitted")
+    >>> round(part.value * 1000) == out.transmitted, bool(part.error < 0.02)
+    (True, True)
+    """
 
     value: Any
     """As a part of the events."""
@@ -63,6 +73,13 @@ class Bombardment:
         ``"multiple"`` or ``"single"``.
     forced_angle : float or None
         Least center-of-mass angle of the collision that every ion was made to have.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+    >>> out.bombardment.ion, out.bombardment.collisions
+    (Ion(atomic_number=2.0, mass=4.001506179127), 'multiple')
     """
 
     foil: Foil
@@ -91,8 +108,8 @@ def _fraction(sums: NDArray[np.uint64], units: tuple[float, float], n_events: in
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
+@dataclass(frozen=True, eq=False, repr=False)
+class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Attributes
@@ -107,6 +124,14 @@ class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
         Of weights and of squares; 1 where nothing is forced.
     n_events : int
         Of the run.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+    >>> tally = out["transmitted_angle"]
+    >>> int(tally.counts.sum()) <= out.transmitted
+    True
     """
 
     name: str
@@ -139,15 +164,41 @@ class FoilTally:  # noqa: PLW1641 — it holds arrays, which have no hash
         return int(self.sums[-1, 0])
 
     def values(self) -> NDArray[np.float64]:
-        """How many ions each bin stands for: counts, or with a forced collision the sums of their weights."""
+        """How many ions each bin stands for: counts, or with a forced collision the sums of their weights.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> tally = out["transmitted_angle"]
+        >>> bool((tally.values() == tally.counts).all())
+        True
+        """
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[0])
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of these: the number of events is fixed."""
+        """Variances of these: the number of events is fixed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out["transmitted_angle"].variances().shape == out["transmitted_angle"].counts.shape
+        True
+        """
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
 
     def fraction(self) -> Fraction:
-        """As a part of all ions that came, bin by bin, with its standard error."""
+        """As a part of all ions that came, bin by bin, with its standard error.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> part = out["transmitted_angle"].fraction()
+        >>> bool((part.value == out["transmitted_angle"].counts / 1000).all())
+        True
+        """
         return Fraction(self.values() / self.n_events, np.sqrt(self.variances()) / self.n_events)
 
     def __eq__(self, other: object) -> bool:
@@ -185,6 +236,13 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         How many collisions a straight way through takes on the average, at the beam's energy.
     table_error : float
         The largest error of sin²(ψ/2) of the tables, of all places that were tried.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+    >>> out.transmitted + out.reflected + out.stopped
+    1000
     """
 
     bombardment: Bombardment
@@ -315,6 +373,14 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         ------
         InvalidInput
             If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> figure = out.plot()
+        >>> figure.axes[0].get_ylabel()
+        'part of the ions per bin'
         """
         from visviva.plot import new_figure
 

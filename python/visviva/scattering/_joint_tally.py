@@ -8,12 +8,15 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._exported import needed
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.scattering._counts import plot_joint
 from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
     from xarray import Dataset
@@ -24,8 +27,8 @@ __all__ = ["JointTally"]
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
+@dataclass(frozen=True, eq=False, repr=False)
+class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
     Attributes
@@ -44,6 +47,15 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         Which events: sorted (seed, first, end) with end excluded.
     by_stratum : ndarray of uint64, shape (S, (B₁ + 2)·(B₂ + 2) + 1), or None
         With `importance` the events of each stratum: those of ``flow``, row by row, and captured.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+    ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+    >>> run["lab_angle", "energy"].counts.shape
+    (10, 10)
     """
 
     name: tuple[str, ...]
@@ -63,11 +75,31 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         return self.flow[1:-1, 1:-1]
 
     def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
+        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> float(run["lab_angle", "energy"].values().sum())
+        1000.0
+        """
         return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the values: as `Tally.variances`."""
+        """Variances of the values: as `Tally.variances`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), tally=[("lab_angle", "energy")], bins=10,
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["lab_angle", "energy"].variances().shape
+        (10, 10)
+        """
         return variances(self.values(), self._weighted(2), self.n_events)
 
     def _weighted(self, power: int) -> NDArray[np.float64]:
@@ -80,6 +112,14 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         ------
         ImportError
             Without the package hist.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally=[("lab_angle", "energy")],
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> hist = run["lab_angle", "energy"].to_hist() if find_spec("hist") else None
         """
         return to_hist(self, self.name, self.edges, self.flow)
 
@@ -138,6 +178,34 @@ class JointTally(OfEvents):  # noqa: PLW1641 — as Tally
         told = {"captured": self.captured, "n_events": self.n_events}
         columns = {"counts": self.counts, **weighted_columns(self)}
         return dataset(dict(zip(self.name, self.edges, strict=True)), columns, told)
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the events of each bin as its color, on a logarithmic scale where they differ much.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure, ``.figure`` of what is returned.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Bins without an event are left white.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
+        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["lab_angle", "energy"].plot().get_ylabel()
+        'energy afterwards'
+        """
+        return plot_joint(self, ax)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, JointTally):

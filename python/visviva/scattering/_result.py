@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
@@ -23,6 +23,8 @@ from visviva.scattering._tally import Tally
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from os import PathLike
+
+    from matplotlib.figure import Figure
 
     from visviva._progress import Progress
     from visviva.potentials import Potential
@@ -47,6 +49,15 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         Which events: sorted (seed, first, end) with end excluded.
     tallies : tuple of Tally or JointTally
         In the order asked for; one of two quantities has the tuple of their names as its name.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+    ...     n_events=1000, seed=1, bins=4)
+    >>> list(run), run.n_events, int(run["cm_angle"].counts.sum())
+    (['cm_angle'], 1000, 1000)
     """
 
     beam: Beam
@@ -86,7 +97,11 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
         return self.events[-1][2]
 
-    def __getitem__(self, name: str | tuple[str, ...]) -> Any:
+    @overload
+    def __getitem__(self, name: str) -> Tally: ...
+    @overload
+    def __getitem__(self, name: tuple[str, ...]) -> JointTally: ...
+    def __getitem__(self, name: str | tuple[str, ...]) -> Tally | JointTally:
         for tally in self.tallies:
             if tally.name == name:
                 return tally
@@ -127,6 +142,35 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             f"<MonteCarlo: {self.n_events} events on {self.potential!r}, {what}, "
             f"masses {self.masses}, b_max {self.b_max:g}: {sizes}>"
         )
+
+    def plot(self) -> Figure:
+        """Draw every tally, each beside what is expected of it where that is known: see `Tally.plot`.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            With a panel for each tally; the caller's, pyplot's state is not touched.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> result = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
+        ...     tally=["cm_angle", "recoil_energy"])
+        >>> [axes.get_xlabel() for axes in result.plot().axes]
+        ['angle in the centre-of-mass frame [degrees]', 'recoil energy']
+        """
+        from visviva.plot import new_figure
+
+        figure, panels = new_figure(len(self.tallies), (5.5 * len(self.tallies), 4.0))
+        for axes, tally in zip(panels, self.tallies, strict=True):
+            tally.plot(ax=axes)
+        return figure
 
     @known_keywords
     def resume(
@@ -178,6 +222,22 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         ----------
         path : path-like
             Written exactly as given.
+
+        Raises
+        ------
+        OSError
+            Where the file cannot be written.
+
+        Examples
+        --------
+        >>> import pathlib, tempfile, visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+        ...     n_events=1000, seed=1, bins=4)
+        >>> path = pathlib.Path(tempfile.mkdtemp()) / "counts.npz"
+        >>> run.save(path)
+        >>> vv.scattering.MonteCarlo.load(path) == run
+        True
         """
         beam = self.beam
         energy = beam.beam_energy

@@ -30,6 +30,13 @@ class Rainbow:
         b, where dψ/db = 0.
     angle : float
         ψ there, signed and not folded.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [rainbow] = vv.scattering.rainbows(vv.potentials.LennardJones(1.0, 1.0), energy=10.0)
+    >>> round(rainbow.impact_parameter, 6), round(rainbow.angle, 6)
+    (1.250655, -0.20656)
     """
 
     impact_parameter: float
@@ -49,6 +56,13 @@ class Glory:
         ψ = kπ: straight on for even k, straight back for odd.
     derivative : float
         dψ/db.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [glory] = vv.scattering.glories(vv.potentials.LennardJones(1.0, 1.0), energy=10.0)
+    >>> glory.forward, round(glory.impact_parameter, 9)
+    (True, 1.100666112)
     """
 
     impact_parameter: float
@@ -74,6 +88,13 @@ class Orbit:
         Of the orbit; 0 where there is none but at the center, as for −C/r².
     captures : bool
         Whether what comes with less falls into the center.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [orbit] = vv.scattering.orbiting(vv.potentials.PowerLaw(-1.0, 4), energy=1.0)
+    >>> orbit.captures, round(orbit.radius, 9), round(orbit.impact_parameter, 9)
+    (True, 1.0, 1.414213562)
     """
 
     impact_parameter: float

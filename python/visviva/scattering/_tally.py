@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._exported import needed
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
@@ -30,7 +31,18 @@ _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
 
 class CrossSection(NamedTuple):
-    """A cross section by bin and its standard error; NaN in a bin that the beam does not reach."""
+    """A cross section by bin and its standard error; NaN in a bin that the beam does not reach.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+    ...     n_events=1000, seed=1, bins=4)
+    >>> sigma = run["cm_angle"].cross_section()
+    >>> sigma.value.shape, bool((abs(sigma.value - 0.25) < 4.0 * sigma.error)[1:].all())  # R²/4
+    ((4,), True)
+    """
 
     value: NDArray[np.float64]
     """Area per steradian for angles, else area per unit of the quantity."""
@@ -39,8 +51,8 @@ class CrossSection(NamedTuple):
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
+@dataclass(frozen=True, eq=False, repr=False)
+class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -73,6 +85,16 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         Radius of the disc of impact parameters.
     by_stratum : ndarray of uint64, shape (S, B + 3), or None
         With `importance` the events of each stratum: below the first edge, in the bins, above the last, and captured.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> run = vv.scattering.monte_carlo(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+    ...     n_events=1000, seed=1, bins=4)
+    >>> tally = run["cm_angle"]
+    >>> tally.name, tally.edges.round(3), int(tally.counts.sum())
+    ('cm_angle', array([0.   , 0.785, 1.571, 2.356, 3.142]), 1000)
     """
 
     name: str
@@ -91,13 +113,33 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         read_only(self.edges, self.counts, self.reachable, self.by_stratum)
 
     def values(self) -> NDArray[np.float64]:
-        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights."""
+        """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+        ...     n_events=1000, seed=1, bins=4)
+        >>> float(run["cm_angle"].values().sum())
+        1000.0
+        """
         return weighted(self, 1, self.counts, (slice(1, -2),))
 
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, n·(1 − n/N), binomial: the number N of events is fixed.
 
         With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all weights are 1.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+        ...     n_events=1000, seed=1, bins=4)
+        >>> n = run["cm_angle"].counts
+        >>> bool(np.allclose(run["cm_angle"].variances(), n * (1.0 - n / 1000.0)))
+        True
         """
         return variances(self.values(), weighted(self, 2, self.counts, (slice(1, -2),)), self.n_events)
 
@@ -179,6 +221,15 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         ------
         InvalidInput
             If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
+        ...     n_events=1000, seed=1, bins=4)
+        >>> run["cm_angle"].plot().get_xlabel()
+        'angle in the centre-of-mass frame [degrees]'
         """
         return plot_tally(self, ax)
 
@@ -235,6 +286,14 @@ class Tally(OfEvents):  # noqa: PLW1641 — it holds arrays, which have no hash
         ------
         ImportError
             Without the package hist.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally="cm_angle",
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> hist = run["cm_angle"].to_hist() if find_spec("hist") else None
         """
         flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
         return to_hist(self, (self.name,), (self.edges,), flow)

@@ -33,6 +33,13 @@ class Report:
     verdicts : list of Verdict
     failures : list of Verdict
         Those of which something is wrong.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> report = vv.stress.run(["dop853"], cases=["two bodies in one place"])
+    >>> len(report.verdicts), report.failures
+    (1, [])
     """
 
     def __init__(self, verdicts: Sequence[Verdict]) -> None:

@@ -47,6 +47,13 @@ class Verdict:
     position_error, energy_error : float
         Relative to the size of the motion and of the energies; NaN where they are not known.
     seconds : float
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> verdict = vv.stress.run(["dop853"], cases=["two bodies in one place"]).verdicts[0]
+    >>> verdict.method, verdict.word
+    ('dop853', 'refused')
     """
 
     case: str

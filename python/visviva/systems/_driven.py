@@ -37,6 +37,10 @@ def rod(
     position, velocity : array_like, shape (1,)
         Distance r from the axis, and its rate.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -87,6 +91,10 @@ def hoop(
         Gravity, mass of the bead, radius and rate of the hoop.
     position, velocity : array_like, shape (1,)
         θ from the downward vertical, and θ̇.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -143,6 +151,10 @@ def moving_pivot(
     position, velocity : array_like, shape (1,)
         θ from the downward vertical, and θ̇.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -194,6 +206,10 @@ def kapitza(
         Amplitude and rate of the pivot.
     position, velocity : array_like, shape (1,)
         θ from the downward vertical, and θ̇.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------

@@ -46,6 +46,10 @@ def charged_particle(
     position, velocity : array_like, shape (3,)
         Cartesian coordinates, and their rates.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -104,6 +108,10 @@ def central_force(
         Parameters of the potential.
     position, velocity : array_like, shape (2,)
         Polar coordinates r and φ, and their rates.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -165,6 +173,16 @@ def henon_heiles(
     ----------
     position, momentum : array_like, shape (2,)
         x and y, and their momenta.
+
+    Returns
+    -------
+    Hamiltonian
+        Of the coordinates x and y.
+
+    Raises
+    ------
+    InvalidInput
+        For positions or momenta of another shape, NaN or infinity.
 
     References
     ----------

@@ -36,6 +36,10 @@ def oscillator(
     position, velocity : array_like, shape (1,)
         x from the place of rest, and ẋ.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -79,6 +83,10 @@ def constant_force(
         Force and mass.
     position, velocity : array_like, shape (1,)
         x and ẋ.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -129,6 +137,10 @@ def coupled_oscillators(
         Stiffness of each alone and of the springs between two, and mass.
     position, velocity : array_like, shape (n,), optional
         Places from rest, and their rates; the first at 1 if not given.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -183,6 +195,10 @@ def foucault(
         Rate of the Earth in 1/s; λ in radians. Paris if not given.
     position, velocity : array_like, shape (2,)
         Places x to the east and y to the north of the place of rest, and their rates.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------

@@ -37,6 +37,10 @@ def pendulum(
     position, velocity : array_like, shape (1,)
         θ from the downward vertical, and θ̇.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -88,6 +92,10 @@ def double_pendulum(
     position, velocity : array_like, shape (2,)
         θ₁ and θ₂, and their rates.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -138,6 +146,10 @@ def spherical_pendulum(
         Gravity, length and mass.
     position, velocity : array_like, shape (2,)
         θ from the downward vertical and the azimuth φ, and their rates.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -194,6 +206,10 @@ def chain(
     position, velocity : array_like, shape (n,), optional
         Angles of the links from the downward vertical, the upmost first, and their rates; from 1/2 on by 1/16, and at
         rest, if not given.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
@@ -253,6 +269,10 @@ def spring_pendulum(
     position, velocity : array_like, shape (2,)
         The length r and θ from the downward vertical, and their rates.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -306,6 +326,10 @@ def cart_pendulum(
         Gravity; length and mass of the pendulum; mass M of the cart.
     position, velocity : array_like, shape (2,)
         The place x of the cart and θ from the downward vertical, and their rates.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------

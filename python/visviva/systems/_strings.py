@@ -40,6 +40,10 @@ def atwood(
     position, velocity : array_like, shape (2,), optional
         How far the masses are below the pulley, and their rates; in the middle and at rest if not given.
 
+    Returns
+    -------
+    Lagrangian
+
     Raises
     ------
     InvalidInput
@@ -93,6 +97,10 @@ def swinging_atwood(
         Gravity, the mass that swings, and the other.
     position, velocity : array_like, shape (2,)
         Distance r from the pulley and θ from the downward vertical, and their rates.
+
+    Returns
+    -------
+    Lagrangian
 
     Raises
     ------
