@@ -85,3 +85,71 @@ def test_a_transformation_is_judged_at_its_own_size(width: float) -> None:
     H = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"], position=[width], momentum=[0.0])
     assert not H.is_canonical(lambda q, p, t: [q[0] * (1 + np.exp(-((q[0] / width) ** 2))), p[0]])
     assert H.is_canonical(lambda q, p, t: [q[0] * 3.0 * width, p[0] / (3.0 * width)])
+
+
+SIZES = [1e-15, 1e-9, 1.0, 1e9]
+
+
+def well(a: float, *, position: float = 1.5) -> vv.Lagrangian:
+    """V = (x² − a²)²/4a²: at rest at ±a, where ω = √2, and at 0."""
+    return vv.Lagrangian(
+        lambda q, v, t, a: v[0] ** 2 / 2 - (q[0] ** 2 - a * a) ** 2 / (4 * a * a),
+        ["x"],
+        parameters={"a": a},
+        position=[position * a],
+    )
+
+
+@pytest.mark.parametrize("a", SIZES)
+def test_equilibria_of_a_well_of_any_size(a: float) -> None:
+    found = well(a).equilibria(near=[[-1.1 * a], [0.1 * a], [1.2 * a], [1.3 * a]])
+    assert np.array([one.position[0] / a for one in found]) == pytest.approx([-1.0, 0.0, 1.0], abs=1e-14)
+    assert [one.stable for one in found] == [True, False, True]
+    assert found[2].frequencies == pytest.approx([np.sqrt(2.0)], rel=1e-14)
+    for place in (1.5, 1.001, 1e-3):
+        with pytest.raises(vv.InvalidInput, match="expected an equilibrium"):
+            well(a, position=place).linearize()
+
+
+def test_forces_that_balance_but_for_rounding_are_an_equilibrium() -> None:
+    """At x = 0 of springs that pull by 0.1 + 0.2 and 0.3; a place that is not known better than to its last digit."""
+    L = vv.Lagrangian(
+        lambda q, v, t, a, b, c: v[0] ** 2 / 2 - q[0] ** 2 / 2 + a * q[0] + b * q[0] - c * q[0],
+        ["x"],
+        parameters={"a": 0.1, "b": 0.2, "c": 0.3},
+    )
+    assert L.linearize(at=[0.0]).frequencies == pytest.approx([1.0])
+    assert not vv.systems.pendulum().linearize(at=[np.pi]).stable
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_start_off_its_constraint_is_refused_in_all_units(size: float) -> None:
+    def ring(x: float, y: float, *, velocity: Any = (0.0, 0.0)) -> vv.Lagrangian:
+        return vv.Lagrangian(
+            lambda q, v, t, l: (v[0] ** 2 + v[1] ** 2) / 2 - l * q[1],
+            ["x", "y"],
+            parameters={"l": size},
+            position=[x * size, y * size],
+            velocity=np.array(velocity) * size,
+            constraints=[lambda q, v, t, l: q[0] ** 2 + q[1] ** 2 - l * l],
+        )
+
+    for off in (1.3, 1.0 + 1e-8):
+        with pytest.raises(vv.InvalidInput, match="constraint 0 is .* at the start and not 0") as caught:
+            ring(off, 0.0).run(1.0)
+        assert caught.value.argument == "position"
+    with pytest.raises(vv.InvalidInput, match="the rate of constraint 0 is .* at the start") as caught:
+        ring(1.0, 0.0, velocity=(1e-6, 1.0)).run(1.0)
+    assert caught.value.argument == "velocity"
+    # What rounding leaves is none: of sines and cosines, and of what should be 0.
+    for angle in (0.3, np.pi / 2, np.pi):
+        start = ring(np.cos(angle), np.sin(angle), velocity=(-np.sin(angle), np.cos(angle)))
+        out = start.run(1.0)
+        assert np.hypot(out["x"], out["y"])[-1] == pytest.approx(size, rel=1e-14)
+
+
+@pytest.mark.parametrize("goal", [1e-300, 1e-13, 1e-6])
+def test_a_boundary_value_has_all_its_digits(goal: float) -> None:
+    """Of a pendulum next to rest: θ' = goal / sin t, to the square of the angle."""
+    found = vv.systems.pendulum(g=1.0, position=[0.0]).boundary_value(1.0, [goal])
+    assert found.velocity[0] == pytest.approx(goal / np.sin(1.0), rel=1e-11)

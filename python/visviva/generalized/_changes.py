@@ -180,17 +180,27 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
     n = len(system.coordinates)
     goal = float_array("position", position, (n,))
 
+    # Relative to the places themselves: systems may be of any size.
+    scale = np.maximum(np.abs(goal), np.abs(system._start()[:n]))
+
     def missed(other: GeneralizedSystem) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         try:
             reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
         except (ConvergenceError, InvalidInput):
             return np.inf, np.full(n, np.nan), np.eye(2 * n)
         miss = reached[:n] - goal
-        return float(np.abs(miss).max()), miss, jacobian
+        return relative(miss), miss, jacobian
+
+    def relative(miss: NDArray[np.float64]) -> float:
+        sizes = np.where(scale > 0.0, scale, scale.max(initial=0.0))
+        return float((np.abs(miss) / np.where(sizes > 0.0, sizes, 1.0)).max())
 
     other, (size, miss, jacobian) = system, missed(system)
+    if np.isfinite(size):
+        scale = np.maximum(scale, np.abs(miss + goal))
+        size = relative(miss)
     for _ in range(50):
-        if size <= 1e-13 * (1.0 + np.abs(goal).max()):
+        if size <= 1e-13:
             return other
         try:
             change = np.linalg.solve(jacobian[:n, n:], miss)
@@ -205,7 +215,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
             change = 0.5 * change
         else:
             # Nearer is what round-off does not allow.
-            if size <= 1e-10 * (1.0 + np.abs(goal).max()):
+            if size <= 1e-10:
                 return other
             break
         other, size, miss, jacobian = trial, new_size, new_miss, new_jacobian

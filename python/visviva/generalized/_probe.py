@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from visviva.generalized._nodes import Expression
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["VANISHES", "Finding", "Probe"]
+__all__ = ["VANISHES", "Finding", "Probe", "terms_of"]
 
 #: A sum that is less than this of what it is made of, at all states that are looked at, vanishes.
 VANISHES = 1e-12
@@ -81,7 +81,7 @@ class Probe:
     def look(self, parts: list[Expression]) -> Finding:
         """Look at a sum."""
         c = self._calculus
-        terms = _terms(c, parts)
+        terms = terms_of(c, parts)
         if not terms:
             return Finding(True, 0.0, True, 0.0)
         with np.errstate(all="ignore"):
@@ -151,7 +151,7 @@ def _own(start: NDArray[np.float64]) -> NDArray[np.float64]:
     return sizes
 
 
-def _terms(c: Calculus, parts: list[Expression]) -> list[Expression]:
+def terms_of(c: Calculus, parts: list[Expression]) -> list[Expression]:
     """Give what a sum is made of, products of sums multiplied out."""
     nodes = c._nodes
     from visviva.generalized._nodes import Expression
