@@ -10,6 +10,7 @@ use super::linear_motion::LinearMotion;
 use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
+use super::sizes::sizes;
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -129,13 +130,32 @@ fn delta(rtol: f64) -> f64 {
     (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
 }
 
-/// What errors are measured by, of so many numbers.
+/// What errors are measured by, of so many numbers; of embedded methods absolute tolerances are still to be given.
 pub(super) fn norm<S: Controlled>(request: &Request, numbers: usize) -> Norm<S> {
+    let rtol = S::splat(request.rtol);
     if request.series.is_some() {
-        return Norm::of_numbers(S::splat(request.rtol));
+        return Norm::of_numbers(rtol);
     }
-    let (atol, rtol) = (S::splat(request.rtol * 1e-3), S::splat(request.rtol));
-    Norm::root_mean_square(RootMeanSquare { atol: vec![atol; numbers], rtol: vec![rtol; numbers] })
+    Norm::root_mean_square(RootMeanSquare { atol: vec![S::zero(); numbers], rtol: vec![rtol; numbers] })
+}
+
+/// Absolute tolerances beside the relative one, as parts of it: what vanishes on the way is seldom asked for to all digits.
+const ABSOLUTE: f64 = 1e-3;
+
+impl Request {
+    /// The absolute tolerances of a trajectory, if its method looks at them.
+    pub(super) fn absolute_tolerances(
+        &self,
+        model: &Model,
+        parameters: &[f64],
+        y0: &[f64],
+    ) -> Option<Vec<f64>> {
+        let Integrator::Table(Method { scheme: Scheme::Embedded(_), .. }) = self.integrator else {
+            return None;
+        };
+        let sizes = sizes(model, parameters, self.span, y0);
+        Some(sizes.into_iter().map(|size| ABSOLUTE * self.rtol * size).collect())
+    }
 }
 
 /// What ends a run that takes too many steps.
@@ -203,7 +223,10 @@ pub fn solve(
         Form::FirstOrder(_) => State::first_order(y0.to_vec()),
         Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
     };
-    let norm = norm(request, y0.len());
+    let mut norm = norm(request, y0.len());
+    if let (Some(mean), Some(atol)) = (&mut norm.mean, request.absolute_tolerances(model, parameters, y0)) {
+        mean.atol = atol;
+    }
     let max_step = request.longest_step(model);
     let machines = request.sections.iter().map(|section| Machine::new(section.code.clone(), parameters));
     let mut crossings = Crossings { machines: machines.collect() };
