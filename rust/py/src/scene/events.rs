@@ -77,6 +77,15 @@ fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised)
     Ok(Event { what, direction: item("direction")?.extract()?, last: item("last")?.extract()? })
 }
 
+/// What an event function gave instead of a number.
+fn not_a_number(value: &Bound<'_, PyAny>) -> Error {
+    let class = value.get_type().name().map_or_else(|_| "object".to_owned(), |name| name.to_string());
+    let message = format!(
+        "expected functions of (t, position, velocity) that give a number, got {class}; end with float(…)"
+    );
+    Error::invalid("events", message)
+}
+
 fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
     let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
         if exceptions.with(|exception| exception.is_some()) {
@@ -86,7 +95,8 @@ fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
             let shape = [particles, 3];
             let position = moved(py, position.to_vec(), &shape)?;
             let velocity = moved(py, velocity.to_vec(), &shape)?;
-            function.call1(py, (t, position, velocity))?.extract::<f64>(py)
+            let value = function.call1(py, (t, position, velocity))?;
+            value.extract::<f64>(py).map_err(|_| raised(py, not_a_number(value.bind(py))))
         });
         match called {
             Ok(value) => Ok(value),
