@@ -111,6 +111,13 @@ def _joined(parts: list[dict[str, Any]], bounds: list[int], plan: dict[str, Any]
     ]
     if errors:
         result["energy_error"] = max(reversed(errors), key=lambda error: error[1])
+    turns = [
+        (part["too_long"][0] + start, *part["too_long"][1:])
+        for part, start in zip(parts, bounds, strict=False)
+        if "too_long" in part
+    ]
+    if turns:
+        result["too_long"] = min(turns, key=lambda turn: turn[2])
     return result
 
 

@@ -34,7 +34,7 @@ def joined(parts: list[dict[str, Any]], asked: list[int]) -> dict[str, Any]:
     else:
         for name in ("held", "node", "begun_position", "begun_velocity"):
             result["final"].pop(name, None)
-    for name in ("energy_error", "dt_beyond"):
+    for name in ("energy_error", "dt_beyond", "too_long"):
         told = [part[name] for part in parts if name in part]
         if told:
             result[name] = told[-1]

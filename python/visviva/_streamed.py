@@ -92,3 +92,7 @@ def _keep_worst(worst: dict[str, Any], result: dict[str, Any], start: int) -> No
         copy, *error = result["energy_error"]
         if "energy_error" not in worst or error[0] >= worst["energy_error"][1]:
             worst["energy_error"] = (copy + start, *error)
+    if "too_long" in result:
+        copy, bodies, steps, fewest = result["too_long"]
+        if "too_long" not in worst or steps < worst["too_long"][2]:
+            worst["too_long"] = (copy + start, bodies, steps, fewest)

@@ -113,3 +113,20 @@ def test_refusals() -> None:
         vv.audit.curl(turning, np.zeros((0, 3)))
     with pytest.raises(vv.ConvergenceError, match="jumps or is singular"):
         vv.audit.work(lambda r: np.sign(r - 0.123456789), [[0.0, 0, 0], [1.0, 0.7, 0.3]])
+
+
+def test_curl_at_places_of_all_sizes_together() -> None:
+    """One step for all places called a central field rotational near its center."""
+    field = vv.CentralField(vv.potentials.Coulomb(-1.0))
+    places = np.array([[0.01, 0.02, 0.005], [1.0, 1.0, 1.0], [1e5, 3e5, 0.0], [0.0, 0.0, 1e-6]])
+    assert vv.audit.curl(field, places).conservative
+
+
+def test_third_law_far_from_the_origin() -> None:
+    """Places at 1e11 are rounded to 1e-5: that is no torque."""
+    place = np.array([[1.5e11, 0.3, 0.0], [1.5e11 + 3.0, 1.7, -0.1]])
+    along = np.array([-3.00001, -1.4, 0.1])
+    forces = np.zeros((2, 2, 3))
+    forces[0, 1], forces[1, 0] = along, -along
+    assert vv.audit.third_law(place, forces).strong
+    assert not vv.audit.third_law(place - [1.5e11, 0.0, 0.0], forces).strong

@@ -9,13 +9,16 @@ import visviva as vv
 
 
 def planets(eccentricity: float, *, sign: float = 1.0) -> vv.Scene:
-    """A sun and two planets, the inner one at its pericenter; periods 2 pi and 27 of them."""
+    """A sun and eight planets, the innermost at its pericenter; periods 2 pi, 27 of them, and 150 and more."""
     near = 1.0 - eccentricity
     speed = np.sqrt(1.001 * (1.0 + eccentricity) / near)
-    place = [[0, 0, 0], [near, 0, 0], [9.0, 0, 0]]
-    return vv.Scene(
-        vv.Particles([1.0, 1e-3, 1e-4], place, [[0, 0, 0], [0, speed, 0], [0, 1 / 3, 0.02]]), vv.Gravity(sign)
-    )
+    far = 28.0 + 8.0 * np.arange(6)
+    place = np.zeros((9, 3))
+    velocity = np.zeros((9, 3))
+    place[1:, 0] = [near, 9.0, *far]
+    velocity[1:, 1] = [speed, 1 / 3, *far**-0.5]
+    velocity[2, 2] = 0.02
+    return vv.Scene(vv.Particles([1.0, 1e-3, 1e-4, *[1e-9] * 6], place, velocity), vv.Gravity(sign))
 
 
 def told(scene: vv.Scene, t: float, **how: Any) -> dict[str, float] | None:
@@ -58,5 +61,5 @@ def test_of_others_nothing_is_told() -> None:
     bodies = scene.particles
     for forces in ([vv.Gravity(1.0, softening=0.01)], [vv.Gravity(1.0), vv.LinearDrag(1e9)]):
         assert told(vv.Scene(bodies, *forces), long) is None
-    flung = vv.Particles(bodies.mass, bodies.position, bodies.velocity * [[1.0], [1.0], [9.0]])
+    flung = vv.Particles(bodies.mass, bodies.position, bodies.velocity * np.array([1, 1, 9, 1, 1, 1, 1, 1, 1])[:, None])
     assert told(vv.Scene(flung, vv.Gravity(1.0)), long) is None

@@ -11,6 +11,8 @@ from visviva._arrays import float_array
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.generalized._calculus import Calculus
+from visviva.generalized._probe import terms_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -22,6 +24,13 @@ __all__ = ["Equilibrium", "Linearization", "PoincareSection"]
 
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
 _ON_THE_AXIS = 1e-7
+#: Forces below this part of what they are made of are round-off, or that of the place.
+_BALANCED = 1e-8
+#: Places that differ by less than this part of their sizes are one.
+_SAME = 1e-8
+#: Starts of a search for equilibria, and their number times the work of a step from one.
+_MOST_STARTS = 2000
+_MOST_WORK = 2_000_000
 
 
 @known_keywords
@@ -216,9 +225,11 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
     n = len(system.coordinates)
     place = system._start()[:n] if at is None else float_array("at", at, (n,))
     found = system._model.linearized(system.t0, place, system._values)
-    scale = np.abs(found["stiffness"]).max() * (1.0 + np.abs(place).max())
-    if np.abs(found["forces"]).max() > 1e-8 * max(scale, 1e-300):
-        worst = int(np.argmax(np.abs(found["forces"])))
+    # What rounding of the place, and of what a force is the sum of, makes of it: in any units, and next to zero too.
+    scale = np.abs(found["stiffness"]) @ np.abs(place) + _sizes_of_forces(system, place)
+    off = np.abs(found["forces"]) > _BALANCED * scale
+    if off.any():
+        worst = int(np.argmax(np.abs(found["forces"]) * off))
         raise InvalidInput(
             "at",
             f"expected an equilibrium, but a force of {found['forces'][worst]:.3g} acts on "
@@ -236,30 +247,71 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
     )
 
 
+def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is nothing but itself."""
+    c, n = Calculus(system), len(place)
+    slopes = [terms_of(c, [slope]) for slope in c.of_system("slopes")]
+    further = c.taken(system._source.description["nodes"], system._source.description["forces"])
+    for terms, force in zip(slopes, further, strict=False):
+        terms += terms_of(c, [force])
+    several = [terms if len(terms) > 1 else [] for terms in slopes]
+    flat = [term for terms in several for term in terms]
+    if not flat:
+        return np.zeros(n)
+    state = np.concatenate([place, np.zeros(n)])[None]
+    values = np.abs(c.values(flat, np.array([system.t0]), state, system._values)[0])
+    parts = np.split(values, np.cumsum([len(terms) for terms in several])[:-1])
+    return np.array([np.where(np.isfinite(part), part, 0.0).sum() for part in parts])
+
+
+def _starts(n: int) -> NDArray[np.float64]:
+    """Give places (S, n) over a turn from which equilibria are looked for: a grid or, for many coordinates, fewer than one."""
+    side = int(_MOST_STARTS ** (1.0 / n))
+    if side >= 2:
+        line = np.linspace(-np.pi, np.pi, min(side, 25))
+        # Not on the symmetry lines themselves, where Newton's method may be caught.
+        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
+        return np.stack([axis.ravel() for axis in grid], axis=1)
+    count = max(64, min(_MOST_STARTS, _MOST_WORK // n**3))
+    # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (n + 1))
+    spread = (0.5 + np.arange(1, count + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
+    places = np.pi * (2.0 * spread - 1.0)
+    # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
+    places[::2] = np.pi * np.rint(places[::2] / np.pi) + 1e-3 * np.arange(1, n + 1)
+    return places
+
+
 def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
     n = len(system.coordinates)
     if near is None:
-        side = max(2, int(2000 ** (1.0 / n)))
-        line = np.linspace(-np.pi, np.pi, min(side, 25))
-        # Not on the symmetry lines themselves, where Newton's method may be caught.
-        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
-        starts = np.stack([axis.ravel() for axis in grid], axis=1)
+        starts = _starts(n)
     else:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
             raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
     found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
+    reached = np.array([place for place in found if place is not None]).reshape(-1, n)
+    if near is None:
+        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
+    # Sizes of coordinates: those of the places that are looked at and found.
+    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
+    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
+    # What is 0 but for round-off is shown as such.
+    reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
     places: list[NDArray[np.float64]] = []
-    for reached in found:
-        if reached is None or (near is None and np.abs(reached).max() > np.pi + 1e-6):
-            continue
-        # What is 0 but for round-off is shown as such.
-        candidate = np.where(np.abs(reached) < 1e-14, 0.0, reached)
-        if not any(np.allclose(candidate, other, rtol=1e-8, atol=1e-8) for other in places):
-            places.append(candidate)
+    while len(reached):
+        places.append(reached[0])
+        reached = reached[(np.abs(reached - reached[0]) > _SAME * size).any(axis=1)]
     results = []
     for place in sorted(places, key=tuple):
-        small = linearization(system, place)
+        try:
+            small = linearization(system, place)
+        except InvalidInput:
+            # Where Newton's method has stopped, but forces are left.
+            continue
         results.append(Equilibrium(place, small.stable, small.frequencies))
     return results

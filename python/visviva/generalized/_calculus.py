@@ -22,11 +22,7 @@ if TYPE_CHECKING:
     from visviva.generalized._nodes import Node
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["VANISHES", "Calculus", "listed", "random_states"]
-
-#: A sum that is less than this of what it is made of, at all states that are looked at, vanishes.
-VANISHES = 1e-12
-_STATES = 64
+__all__ = ["Calculus", "listed"]
 
 
 class Calculus:
@@ -83,13 +79,6 @@ class Calculus:
     def shown(self, expressions: Sequence[Expression]) -> list[Any]:
         """Give expressions as trees of SymPy."""
         return self._system._trees(self._nodes.all, [each._place for each in expressions])
-
-
-def random_states(system: GeneralizedSystem) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """Give times (N) and states (N, 2n) about the start, always the same."""
-    n, rng = len(system.coordinates), np.random.default_rng(20260728)
-    around = np.zeros(2 * n) if system.position is None else system._start()
-    return system.t0 + rng.normal(size=_STATES), around + rng.normal(size=(_STATES, 2 * n))
 
 
 def listed(argument: str, given: Any, count: int, what: str) -> list[Any]:

@@ -1,4 +1,4 @@
-"""Whether a transformation (q, p) → (Q, P) is canonical: Lagrange's brackets, as expressions and at random states."""
+"""Whether a transformation (q, p) → (Q, P) is canonical: Lagrange's brackets, as expressions and at states of many sizes."""
 
 from __future__ import annotations
 
@@ -9,7 +9,8 @@ import numpy as np
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._calculus import VANISHES, Calculus, listed, random_states
+from visviva.generalized._calculus import Calculus, listed
+from visviva.generalized._probe import VANISHES, Probe
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -29,7 +30,7 @@ class CanonicalTest:
     holds : bool
         Whether the transformation is canonical.
     proved : bool
-        Whether that follows from the expressions, whatever the parameters; else it was seen at random states.
+        Whether that follows from the expressions, whatever the parameters; else it was seen at states of many sizes.
     residual : float
         The largest entry of MᵀJM − J there, relative to what it is made of.
     matrix : ndarray, shape (2n, 2n)
@@ -58,7 +59,7 @@ def canonical_test(system: Hamiltonian, transformation: Any) -> CanonicalTest:
     c, n = Calculus(system), len(system.coordinates)
     what = f"Q and P of {list(system.coordinates)}: {2 * n} expressions"
     rows = c.derived(c.of_user("transformation", listed("transformation", transformation, 2 * n, what)))
-    states = random_states(system)
+    probe, undecided = Probe(c), False
     pairs = [(a, b) for a in range(2 * n) for b in range(a + 1, 2 * n)]
     matrix, proved, worst = np.zeros((2 * n, 2 * n)), True, 0.0
     for a, b in pairs:
@@ -68,13 +69,17 @@ def canonical_test(system: Hamiltonian, transformation: Any) -> CanonicalTest:
         if c.is_zero(c.derived([sum(parts, c.constant(0.0))])[0][0]):
             continue
         proved = False
-        values = c.values(parts, *states, system._values)
-        values = values[np.isfinite(values).all(axis=1)]
-        if len(values) < len(states[0]) // 8:
+        found = probe.look(parts)
+        if not found.known:
             raise InvalidInput("transformation", "it has values at too few states near the start to test it there")
-        sums, sizes = values.sum(axis=1), np.abs(values).sum(axis=1)
-        worst = max(worst, float((np.abs(sums) / np.where(sizes > 0.0, sizes, 1.0)).max()))
-        matrix[a, b] = sums[np.argmax(np.abs(sums))]
+        worst, undecided = max(worst, found.residual), undecided or not found.seen
+        matrix[a, b] = found.largest
         matrix[b, a] = -matrix[a, b]
+    if worst <= VANISHES and undecided:
+        raise InvalidInput(
+            "transformation",
+            "not decided: some of the terms of its brackets are nowhere to be seen, 0 or drowned by others at all states "
+            "that were tried, of the sizes of the start, the parameters and 1; start where they are large, or take other units",
+        )
     matrix.flags.writeable = False
     return CanonicalTest(worst <= VANISHES, proved, worst, matrix)

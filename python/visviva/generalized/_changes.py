@@ -23,6 +23,8 @@ __all__ = ["boundary_value", "flow_jacobian", "legendre", "lyapunov_exponents", 
 #: The most steps of a run, and of one that tries a velocity.
 MOST_STEPS = 100_000_000
 _MOST_STEPS_OF_A_TRIAL = 20_000
+#: Where the least growth of neighbors is below this part of the most, it has lost half of its digits.
+_DROWNED = 1e-7
 
 
 def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
@@ -150,10 +152,14 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
     parts = max(1, round(abs(t - system.t0) / interval))
     times = np.linspace(system.t0, t, parts + 1)
     state, frame, sums = system._start(), np.eye(n), np.zeros(n)
-    for begin, end in pairwise(times):
+    # Parts that are still to come, the next one last.
+    pending = [(float(begin), float(end)) for begin, end in pairwise(times)][::-1]
+    shortest = 1e-6 * abs(t - system.t0) / parts
+    while pending:
+        begin, end = pending.pop()
         asked = {
             "method": "gauss16",
-            "span": (float(begin), float(end)),
+            "span": (begin, end),
             "rtol": rtol,
             "atol": None,
             "dt": None,
@@ -165,11 +171,22 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         both = np.concatenate([state, frame.ravel()])
         result = model.run(asked, both[None, :], system._values[None, :], 1, None)
         if result["failures"][0] is not None:
-            raise ConvergenceError(result["failures"][0], float(begin))
+            raise ConvergenceError(result["failures"][0], begin)
         last = result["y"][-1]
-        state = last[:n]
-        frame, sizes = np.linalg.qr(last[n:].reshape(n, n))
-        sums += np.log(np.abs(np.diag(sizes)))
+        if not np.isfinite(last).all():
+            stretch = np.zeros(n)
+        else:
+            turned, sizes = np.linalg.qr(last[n:].reshape(n, n))
+            stretch = np.abs(np.diag(sizes))
+        # What grows most drowns what grows least: the frame is made orthonormal again before that.
+        if stretch.min() <= _DROWNED * stretch.max():
+            if abs(end - begin) <= shortest:
+                raise ConvergenceError("what neighbors do differs too much in the shortest time to be told apart", begin)
+            middle = begin + 0.5 * (end - begin)
+            pending += [(middle, end), (begin, middle)]
+            continue
+        state, frame = last[:n], turned
+        sums += np.log(stretch)
     return np.sort(sums / (t - system.t0))[::-1]
 
 
@@ -181,17 +198,27 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
     n = len(system.coordinates)
     goal = float_array("position", position, (n,))
 
+    # Relative to the places themselves: systems may be of any size.
+    scale = np.maximum(np.abs(goal), np.abs(system._start()[:n]))
+
     def missed(other: GeneralizedSystem) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         try:
             reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
         except (ConvergenceError, InvalidInput):
             return np.inf, np.full(n, np.nan), np.eye(2 * n)
         miss = reached[:n] - goal
-        return float(np.abs(miss).max()), miss, jacobian
+        return relative(miss), miss, jacobian
+
+    def relative(miss: NDArray[np.float64]) -> float:
+        sizes = np.where(scale > 0.0, scale, scale.max(initial=0.0))
+        return float((np.abs(miss) / np.where(sizes > 0.0, sizes, 1.0)).max())
 
     other, (size, miss, jacobian) = system, missed(system)
+    if np.isfinite(size):
+        scale = np.maximum(scale, np.abs(miss + goal))
+        size = relative(miss)
     for _ in range(50):
-        if size <= 1e-13 * (1.0 + np.abs(goal).max()):
+        if size <= 1e-13:
             return other
         try:
             change = np.linalg.solve(jacobian[:n, n:], miss)
@@ -206,7 +233,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
             change = 0.5 * change
         else:
             # Nearer is what round-off does not allow.
-            if size <= 1e-10 * (1.0 + np.abs(goal).max()):
+            if size <= 1e-10:
                 return other
             break
         other, size, miss, jacobian = trial, new_size, new_miss, new_jacobian

@@ -178,7 +178,7 @@ class Flow:
         t : float
             The end.
         interval : float
-            The time after which small differences are made orthonormal again.
+            The longest time after which small differences are made orthonormal again; sooner where they grow apart.
         rtol : float
             As in `run`.
 

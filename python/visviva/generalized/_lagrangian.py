@@ -9,6 +9,7 @@ import numpy as np
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._changes import legendre, routhian
+from visviva.generalized._consistency import check_on_constraints
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
@@ -24,9 +25,6 @@ if TYPE_CHECKING:
     from visviva.generalized._hamiltonian import Hamiltonian
 
 __all__ = ["Lagrangian"]
-
-#: Residuals of constraints above this, relative to the largest number of the state, are no round-off.
-_CONSISTENT = 1e-10
 
 
 @known_keywords
@@ -211,16 +209,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     def _check_start(self) -> None:
         state = self._start()
         if self._constraints():
-            places, velocities, _ = self._model.projected(self.t0, state, self._values)
-            scale = max(1.0, float(np.abs(state).max()))
-            for what, residuals in (("constraint", places), ("the rate of constraint", velocities)):
-                for index, residual in enumerate(residuals):
-                    if not abs(residual) <= _CONSISTENT * scale:
-                        raise InvalidInput(
-                            "position" if what == "constraint" else "velocity",
-                            f"{what} {index} is {residual:.3g} at the start and not 0; "
-                            "pass consistent='project' to Lagrangian",
-                        )
+            check_on_constraints(self, state)
         rates = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
         if not np.isfinite(rates).all():
             index = int(np.argmin(np.isfinite(rates)))

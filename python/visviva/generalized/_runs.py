@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+import math
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -59,7 +60,7 @@ class Runs(States):
             "method": name,
             "span": (self.t0, float(outputs[-1])),
             "rtol": rtol,
-            "atol": None if atol is None else self._absolute(atol, name, rtol),
+            "atol": None if atol is None else self._absolute(atol, name),
             "dt": None if dt is None else number("dt", dt),
             "max_step": None if max_step is None else number("max_step", max_step),
             "max_steps": MOST_STEPS if max_steps is None else whole_number("max_steps", max_steps, low=1),
@@ -74,7 +75,7 @@ class Runs(States):
             asked |= {"looked_for": looked_for, "events": told(self, looked_for)}
         return asked, outputs
 
-    def _absolute(self, atol: Any, method: str, rtol: float) -> list[float]:
+    def _absolute(self, atol: Any, method: str) -> list[float]:
         """Give the absolute tolerance of each number of a state."""
         check_atol(method)
         n, kinds = len(self.coordinates), ("position", self._second_name)
@@ -84,7 +85,10 @@ class Runs(States):
             raise InvalidInput("atol", f"expected {kinds[0]!r} and {kinds[1]!r}, got {unknown[0]!r}")
         found: list[float] = []
         for kind in kinds:
-            each = given.get(kind, rtol * 1e-3)
+            if kind not in given:
+                found += [math.nan] * n  # from the sizes of the motion
+                continue
+            each = given[kind]
             values = [number("atol", each)] * n if np.ndim(each) == 0 else float_array("atol", each, (n,)).tolist()
             if min(values) <= 0.0:
                 raise InvalidInput("atol", f"expected positive tolerances, got {min(values):g}")
@@ -143,8 +147,8 @@ class Runs(States):
         atol : float, array_like of shape (n,), or dict, optional
             Absolute tolerance of methods that estimate their error in a step, as ``dop853``: the root mean square of
             the errors, each divided by ``atol + rtol·|number|``, is at most 1. ``{"position": ..., "velocity": ...}``
-            (of a Hamiltonian ``"momentum"``) has one for each kind; a thousandth of `rtol` where none is given. Other
-            methods refuse it.
+            (of a Hamiltonian ``"momentum"``) has one for each kind. Where none is given it is a thousandth of `rtol`
+            times how fast or far the motion goes from the start. Other methods refuse it.
         dt : float, optional
             The step of every step.
         max_step : float, optional

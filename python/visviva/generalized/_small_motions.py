@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._arrays import number
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import Equilibrium, Linearization, equilibria, linearization
@@ -49,7 +50,7 @@ class SmallMotions:
         Parameters
         ----------
         near : array_like, shape (S, n), optional
-            Where Newton's method starts; a grid over −π … π if not given, which may miss some.
+            Where Newton's method starts; a grid over −π … π if not given, of at most 2000 places, which may miss some.
 
         Raises
         ------
@@ -110,8 +111,7 @@ class SmallMotions:
         >>> abs(vv.systems.oscillator(k=4.0, m=1.0, position=[1.0]).period() - math.pi) < 1e-14
         True
         """
-        self._conserves()
-        return float(self._model.oscillation(self.t0, self._start(), self._values, turn)[2])
+        return float(self._oscillation(turn)[2])
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
         """The action variable ∮ p dq / 2π of a motion of one degree of freedom.
@@ -133,8 +133,14 @@ class SmallMotions:
         >>> abs(oscillator.action_variable() - oscillator.energy / 2.0) < 1e-14
         True
         """
+        return float(self._oscillation(turn)[3])
+
+    def _oscillation(self: Any, turn: float | None) -> tuple[float, float, float, float]:
         self._conserves()
-        return float(self._model.oscillation(self.t0, self._start(), self._values, turn)[3])
+        if turn is not None and not number("turn", turn):
+            raise InvalidInput("turn", "expected how far the coordinate goes in a period, as 2π, got 0")
+        found: tuple[float, float, float, float] = self._model.oscillation(self.t0, self._start(), self._values, turn)
+        return found
 
     def _conserves(self: Any) -> None:
         if not self._structure["conserves_energy"]:

@@ -104,10 +104,8 @@ fn swarm() -> Problem<Lanes> {
     let q: Vec<Lanes> =
         (0..shape.len()).map(|k| Lanes(core::array::from_fn(|lane| (8 * k + lane) as f64))).collect();
     let v = vec![Lanes::zero(); shape.len()];
-    let mut strength = vec![Lanes::one(); 3];
-    strength[2].0[4..].fill(0.0);
     Problem {
-        dynamics: Dynamics::new(shape, vec![Box::new(Tiles::new(shape, strength, 20, 0.1, 1))]),
+        dynamics: Dynamics::new(shape, vec![Box::new(Tiles::new(shape, &[1.0; 20], 0.1, 1))]),
         state: State::new(&q, &v),
         mass: Vec::new(),
     }

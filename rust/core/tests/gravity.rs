@@ -1,7 +1,7 @@
 //! The gravity kernels against a plain sum in double-double, and against each other to the bit.
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
-use visviva_core::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles};
+use visviva_core::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles, TwoRows};
 use visviva_core::forces::{Force, Phase};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::numerics::element::Shape;
@@ -43,6 +43,7 @@ fn bodies(active: usize, passive: usize, softening: f64, components: usize) -> B
 enum Kernel {
     Few,
     Ring,
+    TwoRows,
     Tiles(usize),
 }
 
@@ -92,10 +93,9 @@ impl Bodies {
         }
         let mut a = vec![Lanes::splat(start); shape.len()];
         let mut force: Box<dyn Force<Lanes>> = match kernel {
-            Kernel::Tiles(threads) => {
-                let mut strength = vec![Lanes::zero(); active_rows];
-                as_numbers_mut(&mut strength)[..active].copy_from_slice(&self.strength);
-                Box::new(Tiles::new(shape, strength, active, self.softening, threads))
+            Kernel::Tiles(threads) => Box::new(Tiles::new(shape, &self.strength, self.softening, threads)),
+            Kernel::TwoRows => {
+                Box::new(TwoRows::new(&self.strength, self.softening, self.components).unwrap())
             }
             _ => Box::new(Ring::new(shape, self.strength.clone(), self.softening)),
         };
@@ -132,6 +132,9 @@ impl Bodies {
         let mut kernels = vec![Kernel::Tiles(1)];
         if self.active() <= RING_MAX {
             kernels.extend([Kernel::Few, Kernel::Ring]);
+        }
+        if self.active() == self.count() && (9..=16).contains(&self.active()) {
+            kernels.push(Kernel::TwoRows);
         }
         kernels
     }
@@ -236,6 +239,25 @@ fn eight_trajectories_at_once_have_the_bits_of_each_alone() {
             }
         }
     }
+}
+
+#[test]
+fn two_rows_have_the_bits_that_they_have_beside_massless_bodies() {
+    for active in 9..=16 {
+        for (softening, components) in [(0.0, 3), (0.3, 3), (0.0, 2), (0.3, 2)] {
+            let alone = bodies(active, 0, softening, components);
+            let found = bits(&alone.accelerations(Kernel::TwoRows, None));
+            for passive in [0, 5, 70] {
+                let mut among = bodies(active, passive, softening, components);
+                among.position[..active].copy_from_slice(&alone.position);
+                among.strength.clone_from(&alone.strength);
+                let among = among.accelerations(Kernel::Tiles(2), None);
+                assert_eq!(found, bits(&among[..active]), "{active} and {passive}");
+            }
+        }
+    }
+    let none = |count: usize| TwoRows::new(&vec![1.0; count], 0.0, 3).is_none();
+    assert!(none(8) && none(17) && !none(9) && !none(16));
 }
 
 #[test]

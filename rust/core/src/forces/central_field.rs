@@ -1,7 +1,8 @@
 //! A fixed center: the force −dV/dr along the line to it, on every particle.
 
+use super::approach::{self, Moving};
 use super::bodies::{Of, PreciseBodies, Vector};
-use super::context::{Context, System};
+use super::context::{Arrangement, Context, System};
 use super::limits::{check_force, outside};
 use super::term::{About, Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
@@ -64,7 +65,9 @@ impl ForceTerm for CentralField {
             numbers: context.potentials(&*potential, |system| &context.own(self, system).potential),
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
         };
-        Box::new(Kernel { potential, field })
+        let length2 = approach::lengths2(context, |system| &context.own(self, system).potential);
+        let together = context.arrangement == Arrangement::Packed;
+        Box::new(Kernel { potential, field, length2, together })
     }
     fn potential_and_virial(
         &self,
@@ -167,6 +170,10 @@ impl ForceTerm for CentralField {
 struct Kernel {
     potential: Arc<dyn Potential>,
     field: Around,
+    /// The squared lengths of the potentials of the systems in the lanes, if they have lengths.
+    length2: Option<Lanes>,
+    /// Whether the lanes are bodies of one system.
+    together: bool,
 }
 
 impl Force<Lanes> for Kernel {
@@ -179,6 +186,11 @@ impl Force<Lanes> for Kernel {
     ) -> Result<()> {
         self.potential.around(&self.field, phase.q, a, first);
         Ok(())
+    }
+    fn longest_step(&self, (q, v): (&[Lanes], &[Lanes]), a: &[Lanes]) -> Option<Lanes> {
+        let (length2, center) = (self.length2.as_ref()?, self.field.center.first()?);
+        let steps = approach::to_point(&Moving { shape: self.field.shape, q, v, a }, center, length2);
+        Some(if self.together { approach::shortest(steps) } else { steps })
     }
     fn adds(&self) -> Adds {
         Adds::Once

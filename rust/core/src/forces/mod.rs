@@ -7,6 +7,7 @@
 //! A force is described by a [`ForceTerm`], which makes its kernel; to add one, write a file with both and add its
 //! line to [`registry::FORCES`](crate::registry::FORCES).
 
+mod approach;
 pub mod bodies;
 pub mod central_field;
 pub mod context;
@@ -95,6 +96,13 @@ pub trait Force<S: Element>: Send {
     /// How it adds to an acceleration.
     fn adds(&self) -> Adds {
         Adds::Severally
+    }
+
+    /// How long a step from this state, with these accelerations, may be, if bodies come to where the force acts and steps
+    /// do not feel it before.
+    fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {
+        let _ = (state, a);
+        None
     }
 
     /// Turns velocities exactly as the force does in the time `h`, if that is all that it does ([`Needs::rotation`]).
@@ -197,6 +205,11 @@ impl<S: ClosedKernel> System<S> for Dynamics<S> {
             a.fill(S::zero());
         }
         Ok(())
+    }
+
+    fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {
+        let longest = self.forces.iter().filter_map(|force| force.longest_step(state, a));
+        longest.reduce(|one, other| one.min(other))
     }
 
     fn expand(&mut self, jet: &mut Jet<S>, ticker: &mut Ticker<'_>) -> Result<()> {

@@ -7,6 +7,7 @@
 //!   its terms from bodies before it in order of index, then the horizontal sum over those of its row and after; the
 //!   shards are added in ascending order. Threads do not enter.
 
+use super::approach::{self, Moving};
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::{Arrangement, Context};
 use super::gravity::RING_MAX;
@@ -78,8 +79,10 @@ impl ForceTerm for PairPotential {
         };
         let potential = self.potential.scaled(context.units);
         let numbers = context.potentials(&*potential, |system| &context.own(self, system).potential);
+        let length2 = approach::lengths2(context, |system| &context.own(self, system).potential);
         Box::new(Kernel {
             potential,
+            length2,
             pairs: Pairs { shape, blocks: context.blocks(), bodies, numbers },
             way,
             inverse_mass: context.per_body(|system, slot| 1.0 / system.mass[slot]),
@@ -214,6 +217,8 @@ struct Kernel {
     inverse_mass: Vec<Lanes>,
     force: Vec<Lanes>,
     threads: usize,
+    /// The squared lengths of the potentials of the systems in the lanes, if they have lengths.
+    length2: Option<Lanes>,
 }
 
 impl Force<Lanes> for Kernel {
@@ -258,6 +263,14 @@ impl Force<Lanes> for Kernel {
             *a = if first { term } else { *a + term };
         }
         Ok(())
+    }
+    fn longest_step(&self, (q, v): (&[Lanes], &[Lanes]), a: &[Lanes]) -> Option<Lanes> {
+        let length2 = self.length2.as_ref()?;
+        let moving = Moving { shape: self.pairs.shape, q, v, a };
+        Some(match self.way {
+            Way::Systems => approach::between_systems(&moving, length2),
+            Way::Few | Way::Shards(_) => approach::between_bodies(&moving, self.pairs.bodies, length2),
+        })
     }
     fn stops_midway(&self) -> bool {
         self.pairs.shape.rows >= LONG_ROWS && matches!(self.way, Way::Shards(_))

@@ -143,10 +143,6 @@ fn difference<S: Real>(to: [S; 3], from: [S; 3]) -> [S; 3] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2]]
 }
 
-/// The other lanes of a sum over eight lanes, turn by turn.
-const TURNS: [[i64; WIDTH]; 3] =
-    [[1, 0, 3, 2, 5, 4, 7, 6], [2, 3, 0, 1, 6, 7, 4, 5], [4, 5, 6, 7, 0, 1, 2, 3]];
-
 /// What a source gives to a row of bodies, at places and speeds: zero where nobody is or the source itself.
 #[inline(always)]
 fn on_row<V: Vector8 + InverseCube, L: Law>(
@@ -169,16 +165,6 @@ fn on_row<V: Vector8 + InverseCube, L: Law>(
         pull[c] = V::select(there, pull[c], V::zero());
     }
     pull
-}
-
-/// Σ mᵢ aᵢ of a row of bodies, in every lane.
-#[inline(always)]
-fn sum_of_eight<V: Vector8>(mass: V, a: V) -> V {
-    let mut sum = mass * a;
-    for turn in &TURNS {
-        sum += sum.permute(turn);
-    }
-    sum
 }
 
 /// Bodies of one system: a row of them at a time, or `ONE` row alone. What is known when compiled stays in registers.
@@ -221,7 +207,7 @@ fn packed<V: Vector8 + InverseCube, L: Law, const PLANAR: bool, const ONE: bool>
                     a[c * rows + row] += term[c];
                 }
                 if row < massive {
-                    sum[c] += sum_of_eight(mass[row], term[c]);
+                    sum[c] += (mass[row] * term[c]).sum_in_every_lane();
                 }
             }
         }

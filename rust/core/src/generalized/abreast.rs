@@ -61,6 +61,7 @@ struct Slot {
 
 /// What is at work.
 struct Abreast<'a> {
+    model: &'a Model,
     request: &'a Request,
     outputs: &'a [f64],
     system: Motion<Lanes>,
@@ -117,7 +118,7 @@ pub fn solve_together(
 impl<'a> Abreast<'a> {
     /// For runs like that of the first member, which stands in idle lanes.
     fn new(
-        model: &Model,
+        model: &'a Model,
         request: &'a Request,
         (y0, parameters): (&[f64], &[f64]),
         members: usize,
@@ -150,6 +151,7 @@ impl<'a> Abreast<'a> {
             }
         };
         Ok(Self {
+            model,
             request,
             outputs: request.outputs.as_deref().unwrap_or_default(),
             cost: trial.cost(),
@@ -194,6 +196,12 @@ impl<'a> Abreast<'a> {
             }
             for (own, &value) in self.parameters.iter_mut().zip(parameters) {
                 own.0[lane] = value;
+            }
+            let atol = self.request.absolute_tolerances(self.model, parameters, y0);
+            if let (Some(mean), Some(atol)) = (&mut self.norm.mean, atol) {
+                for (own, value) in mean.atol.iter_mut().zip(atol) {
+                    own.0[lane] = value;
+                }
             }
             fresh = fresh.or(Bits(1 << lane));
             let solution = Solution::at(t0);

@@ -24,6 +24,7 @@ pub mod motion;
 pub mod one_freedom;
 pub mod projection;
 pub mod run;
+mod sizes;
 pub mod structure;
 pub mod variation;
 

@@ -11,6 +11,7 @@ use super::linear_motion::LinearMotion;
 use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
+use super::sizes::sizes;
 use crate::error::{Error, Result};
 use crate::expressions::{Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -91,15 +92,33 @@ pub struct Solution {
     pub found: Vec<Found>,
 }
 
-/// What errors are measured by, of so many numbers.
+/// What errors are measured by, of so many numbers; of embedded methods absolute tolerances are still to be given.
 pub(super) fn norm<S: Controlled>(request: &Request, numbers: usize) -> Norm<S> {
+    let rtol = S::splat(request.rtol);
     if request.series.is_some() {
-        return Norm::of_numbers(S::splat(request.rtol));
+        return Norm::of_numbers(rtol);
     }
-    let usual = request.rtol * 1e-3;
-    let of = |index: usize| request.atol.as_ref().and_then(|each| each.get(index)).copied().unwrap_or(usual);
-    let atol = (0..numbers).map(|index| S::splat(of(index))).collect();
-    Norm::root_mean_square(RootMeanSquare { atol, rtol: vec![S::splat(request.rtol); numbers] })
+    Norm::root_mean_square(RootMeanSquare { atol: vec![S::zero(); numbers], rtol: vec![rtol; numbers] })
+}
+
+/// Absolute tolerances beside the relative one, as parts of it: what vanishes on the way is seldom asked for to all digits.
+const ABSOLUTE: f64 = 1e-3;
+
+impl Request {
+    /// The absolute tolerances of a trajectory, if its method looks at them.
+    pub(super) fn absolute_tolerances(
+        &self,
+        model: &Model,
+        parameters: &[f64],
+        y0: &[f64],
+    ) -> Option<Vec<f64>> {
+        let Integrator::Table(Method { scheme: Scheme::Embedded(_), .. }) = self.integrator else {
+            return None;
+        };
+        let own = sizes(model, parameters, self.span, y0).into_iter().map(|size| ABSOLUTE * self.rtol * size);
+        let Some(given) = &self.atol else { return Some(own.collect()) };
+        Some(own.zip(given).map(|(own, &given)| if given.is_nan() { own } else { given }).collect())
+    }
 }
 
 /// What ends a run that takes too many steps.
@@ -164,7 +183,10 @@ pub fn solve(
         Form::FirstOrder(_) => State::first_order(y0.to_vec()),
         Form::SecondOrder(n) => State::new(&y0[..n], &y0[n..]),
     };
-    let norm = norm(request, y0.len());
+    let mut norm = norm(request, y0.len());
+    if let (Some(mean), Some(atol)) = (&mut norm.mean, request.absolute_tolerances(model, parameters, y0)) {
+        mean.atol = atol;
+    }
     let max_step = request.longest_step(model);
     let mut table = Table::new(request.outputs.as_deref(), false, None, Unwatched::new(vec![]));
     if t0 == end {

@@ -80,6 +80,17 @@ pub trait Vector8: Real<Mask = Bits> + sealed::Sealed {
     fn store(self) -> Lanes;
     /// Lane `i` of the result is lane `index[i]` of `self` (`index[i] < 8`).
     fn permute(self, index: &[i64; WIDTH]) -> Self;
+    /// The sum of the lanes, in every lane: of neighbors, of pairs of those, of the halves. The order is the same in each.
+    #[inline(always)]
+    fn sum_in_every_lane(self) -> Self {
+        const TURNS: [[i64; WIDTH]; 3] =
+            [[1, 0, 3, 2, 5, 4, 7, 6], [2, 3, 0, 1, 6, 7, 4, 5], [4, 5, 6, 7, 0, 1, 2, 3]];
+        let mut sum = self;
+        for turn in &TURNS {
+            sum += sum.permute(turn);
+        }
+        sum
+    }
     /// `x0 y0 z0 x1 y1 z1 …`: eight points, coordinate after coordinate.
     fn interleave(x: Self, y: Self, z: Self) -> [Self; 3];
     /// Writes the lanes of the mask, lane `i` to the `i`-th number from `to` on.

@@ -224,6 +224,12 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         if let Some(mean) = &norm.mean {
             return S::pass(Attempt { method: self, running, system, state, clock, mean, ticker });
         }
+        if matches!(self.stages.form(), Form::SecondOrder(_))
+            && let Some(longest) =
+                system.longest_step((state.q(), state.v()), &self.stages.k[..self.stages.len()])
+        {
+            clock.shorten(longest);
+        }
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
         let end_stage = self.end_stage();
         self.stages.step((&from, &h), (state, &mut self.next), system, ticker)?;

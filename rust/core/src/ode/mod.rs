@@ -143,6 +143,21 @@ pub struct Multistep {
     pub velocity: &'static [DoubleDouble],
     /// The one-step method of the first steps, and of the steps to times between nodes.
     pub start: &'static Tableau,
+    /// Steps in a period of an oscillator, below which its amplitude grows from step to step.
+    pub fewest_steps: f64,
+}
+
+/// Steps in a period below which a one-step method tells nothing of an oscillator: leapfrog is unstable below π.
+const FEWEST_STEPS: f64 = 6.0;
+
+impl Method {
+    /// How many equal steps a period must have for the method to tell anything of it.
+    pub fn fewest_steps(&self) -> f64 {
+        match &self.scheme {
+            Scheme::Multistep(table) => table.fewest_steps,
+            _ => FEWEST_STEPS,
+        }
+    }
 }
 
 /// A coefficient, as the generated tables write it.

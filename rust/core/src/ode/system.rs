@@ -131,6 +131,13 @@ pub trait System<S: Element>: Send {
         None
     }
 
+    /// How long a step of a system of the second order may be from a state with these accelerations, if something on the
+    /// way acts that no step feels before it is there.
+    fn longest_step(&self, state: (&[S], &[S]), a: &[S]) -> Option<S> {
+        let _ = (state, a);
+        None
+    }
+
     /// Turns velocities exactly as what rotates them does in the time `h`.
     fn rotate(&mut self, h: f64, v: PairMut<'_, S>) {
         let _ = (h, v);

@@ -10,12 +10,14 @@ mod quiet;
 mod refusals;
 mod series;
 mod solutions;
+mod turn;
 mod turning;
 mod units;
 
 pub use coupling::Groups;
 pub use explain::Row;
 pub use solutions::{Solutions, member};
+pub use turn::TooLong;
 pub(in crate::scene) use turning::with_method;
 pub use turning::{Turning, steps_bodies};
 
@@ -46,6 +48,9 @@ const PAIRS_FOR_THREADS: u64 = 60_000;
 const WORK_FOR_THREADS: u64 = 64;
 /// From this many states of bodies on, closed forms are shared out over threads.
 const STATES_FOR_THREADS: usize = 4_096;
+/// The relative tolerance at which what has a closed form is integrated for its events: the errors of thousands of turns are
+/// then those of rounding.
+const AS_KNOWN: f64 = 3e-14;
 /// Massless bodies in one unit with the massive ones, where they cannot follow them.
 const PASSIVE_PER_UNIT: usize = 64;
 
@@ -62,6 +67,8 @@ pub struct Plan {
     pub direction: f64,
     /// How the motion of each ensemble member is found.
     pub solutions: Solutions,
+    /// How it would be found if no events were looked for, where that is asked of steps alone.
+    known: Option<Solutions>,
     /// The forces that do something, in order; those of the first copy, if copies have their own.
     pub forces: Vec<Arc<dyn ForceTerm>>,
     /// Those of each copy, if they differ.
@@ -104,6 +111,8 @@ pub struct Plan {
     pub record: Vec<String>,
     /// What might serve a long run better than the method that was chosen for it.
     quiet: Option<Quiet>,
+    /// Its step, if that tells nothing of an orbit on which a body is at the start.
+    pub too_long: Option<TooLong>,
     /// The time of the scene.
     pub t0: f64,
     /// The node that the run goes on from; 0 is the scene.
@@ -164,10 +173,21 @@ impl Plan {
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
         series::check(method, &forces, &active, &passive, &groups)?;
+        let chosen = if automatic && !turning.steps() {
+            series::first_choice(scene.particles, &forces, (&active, &passive), &groups)
+        } else {
+            None
+        };
+        let method = chosen.unwrap_or(method);
         // Events are looked for on steps.
         let closed_forms = automatic && request.events.is_empty() && !turning.steps();
         let solutions =
             if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
+        let known = if automatic && !closed_forms && !turning.steps() {
+            Some(Solutions::of(scene, ticker)?)
+        } else {
+            None
+        };
         let end = request.times[request.times.len() - 1];
         let integrated = solutions.integrates().then_some([scene.t0, end]);
         if let (Some(times), None) = (integrated, &scene.own_forces) {
@@ -208,6 +228,7 @@ impl Plan {
             transformed,
             direction,
             solutions,
+            known,
             planar,
             alike,
             span,
@@ -229,6 +250,7 @@ impl Plan {
             events: request.events.clone().into(),
             record: request.record.clone(),
             quiet: None,
+            too_long: None,
             t0: scene.t0,
             from: 0,
             sets_of_forces: scene.own_forces.as_ref().map_or(1, |own| own.sets.len()),
@@ -246,10 +268,27 @@ impl Plan {
         };
         plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
-        if automatic && plan.solutions.integrates() {
+        if !plan.turning.steps() {
+            plan.too_long = turn::too_long(scene, &plan.forces, method, (dt, whole));
+        }
+        if automatic && chosen.is_none() && plan.solutions.integrates() {
             plan.quiet = quiet::quiet(scene, &plan.forces, direction * whole);
         }
         Ok(plan)
+    }
+
+    /// Whether the motion of a copy is integrated for its events alone: without any it would be known.
+    pub fn knows(&self, copy: usize) -> bool {
+        self.known.as_ref().is_some_and(|known| known.of_member(copy).is_some())
+    }
+
+    /// The relative tolerance of a run: events do not cost the digits that a closed form has.
+    pub fn rtol(&self, request: &Request) -> f64 {
+        if self.known.as_ref().is_some_and(|known| !known.integrates()) {
+            request.rtol.min(AS_KNOWN)
+        } else {
+            request.rtol
+        }
     }
 
     /// The units for a copy by itself.

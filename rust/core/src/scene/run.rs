@@ -270,7 +270,7 @@ fn run_part(
         scene,
         plan,
         times: &request.times,
-        rtol: request.rtol,
+        rtol: plan.rtol(request),
         atol: request.atol.as_ref(),
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),

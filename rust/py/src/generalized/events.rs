@@ -3,7 +3,7 @@
 use super::GeneralizedModel;
 use super::nodes::{NodeParts, added, chosen};
 use crate::arrays::moved;
-use crate::scene::events::Raised;
+use crate::scene::events::{Raised, number};
 use pyo3::prelude::*;
 use std::sync::Arc;
 use visviva_core::Result;
@@ -54,7 +54,7 @@ fn called(function: Py<PyAny>, raised: Raised) -> Function {
             let (first, second) = y.split_at(y.len() / 2);
             let first = moved(py, first.to_vec(), &[first.len()])?;
             let second = moved(py, second.to_vec(), &[second.len()])?;
-            function.call1(py, (t, first, second))?.extract::<f64>(py)
+            number(function.call1(py, (t, first, second))?.bind(py))
         })
     }))
 }

@@ -88,13 +88,27 @@ fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised)
     Ok(Event { what, direction: item("direction")?.extract()?, last: item("last")?.extract()? })
 }
 
+/// The number that an event function gave.
+///
+/// # Errors
+/// `InvalidInput` for anything else.
+pub(crate) fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
+    value.extract().map_err(|_| {
+        let class = value.get_type().name().map_or_else(|_| "object".to_owned(), |name| name.to_string());
+        let message = format!(
+            "expected functions of time and state that give a number, got {class}; end with float(…)"
+        );
+        raised(value.py(), Error::invalid("events", message))
+    })
+}
+
 fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
     let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
         exceptions.called(|py| {
             let shape = [particles, 3];
             let position = moved(py, position.to_vec(), &shape)?;
             let velocity = moved(py, velocity.to_vec(), &shape)?;
-            function.call1(py, (t, position, velocity))?.extract::<f64>(py)
+            number(function.call1(py, (t, position, velocity))?.bind(py))
         })
     };
     What::Function(Arc::new(call))

@@ -10,7 +10,7 @@ use visviva_core::scene::collisions::{Collision, Table};
 use visviva_core::scene::columns::Derived;
 use visviva_core::scene::continuation::FORM;
 use visviva_core::scene::integrate::Ending;
-use visviva_core::scene::plan::Plan;
+use visviva_core::scene::plan::{Plan, TooLong};
 use visviva_core::scene::request::Request;
 use visviva_core::scene::run::{Kept, Outcome, Output};
 
@@ -184,6 +184,9 @@ pub(super) fn output_dict<'py>(
         if span > 0.0 && span < step {
             dict.set_item("dt_beyond", (step, span))?;
         }
+    }
+    if let Some(TooLong { copy, bodies, steps, fewest }) = output.plan.too_long {
+        dict.set_item("too_long", (copy, bodies, steps, fewest))?;
     }
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());

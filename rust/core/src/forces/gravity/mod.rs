@@ -6,6 +6,7 @@
 //!
 //! - up to eight massive bodies ([`few`]): partners `i+1, i-1, i+2, i-2, …` around the ring of indices,
 //!   whether the lanes are bodies ([`ring`]) or trajectories ([`few`]): the same bits alone and in a batch;
+//! - up to sixteen ([`two_rows`]): two such rings, and each body of the second with the eight of the first;
 //! - more ([`tiles`]): by third-law tiles in fixed shards, the same on any number of threads;
 //! - a massless body adds the massive ones in order of index ([`passive`]).
 //!
@@ -22,10 +23,12 @@ mod relative;
 pub mod ring;
 pub mod series;
 pub mod tiles;
+pub mod two_rows;
 
 pub use few::FewBodies;
 pub use ring::Ring;
 pub use tiles::Tiles;
+pub use two_rows::TwoRows;
 
 /// The most massive bodies that the ring order serves.
 pub const RING_MAX: usize = 8;

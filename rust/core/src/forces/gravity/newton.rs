@@ -1,15 +1,14 @@
 //! Newton's law between all pairs: what a scene describes.
 
-use super::{FewBodies, RING_MAX, Ring, Tiles, energy, series};
+use super::{FewBodies, RING_MAX, Ring, Tiles, TwoRows, energy, series};
 use crate::error::{Error, Result};
 use crate::forces::Force;
 use crate::forces::bodies::PreciseBodies;
 use crate::forces::context::{Arrangement, Context, System};
 use crate::forces::series::Series;
 use crate::forces::term::{Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
-use crate::numerics::lanes::{Lanes, WIDTH, as_numbers_mut};
+use crate::numerics::lanes::Lanes;
 use crate::numerics::power_of_two::exponent;
-use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 use crate::potentials::parameters::{Declaration, Kind, Parameter, Sign};
@@ -96,13 +95,14 @@ pub fn attraction(
     }
     let softening = context.units.take(softening, [1, 0, 0]);
     let system = context.first();
-    let numbers = (0..active).map(|slot| strength(&system, slot));
+    let numbers: Vec<f64> = (0..active).map(|slot| strength(&system, slot)).collect();
     if active <= RING_MAX {
-        return Box::new(Ring::new(shape, numbers.collect(), softening));
+        return Box::new(Ring::new(shape, numbers, softening));
     }
-    let mut rows = vec![Lanes::zero(); active.div_ceil(WIDTH)];
-    as_numbers_mut(&mut rows).iter_mut().zip(numbers).for_each(|(into, number)| *into = number);
-    Box::new(Tiles::new(shape, rows, active, softening, context.threads))
+    match TwoRows::new(&numbers, softening, shape.components).filter(|_| shape.rows == 2) {
+        Some(rows) => Box::new(rows),
+        None => Box::new(Tiles::new(shape, &numbers, softening, context.threads)),
+    }
 }
 
 impl ForceTerm for Gravity {

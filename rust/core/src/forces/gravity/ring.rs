@@ -55,6 +55,11 @@ pub struct Ring {
 }
 
 impl Ring {
+    /// Of the bodies of one row, from their `G·m`.
+    pub(super) fn of_row(strength: &[f64], softening: f64) -> Self {
+        Self::new(Shape { rows: 1, components: 3 }, strength.to_vec(), softening)
+    }
+
     /// From `G·m` of the massive bodies, at most [`RING_MAX`](super::RING_MAX) of them.
     pub fn new(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
         let n = strength.len();

@@ -6,10 +6,12 @@
 //!
 //! Canonical order: the triangle of tiles is cut into shards by the number of bodies alone. In a shard,
 //! body `j` receives its terms in ascending `i`; body `i` then the horizontal sum of its lanes. The
-//! shards' results are added in ascending order. Threads and SIMD tiers do not enter.
+//! shards' results are added in ascending order. Threads and SIMD tiers do not enter. Up to sixteen massive bodies that have
+//! massless ones beside them are summed as they are [without](super::two_rows).
 
 use super::pair::squared_distance;
 use super::passive::packed_attraction;
+use super::two_rows::TwoRows;
 use crate::error::Result;
 use crate::forces::{Force, Phase};
 use crate::numerics::binary::Binary;
@@ -63,12 +65,18 @@ pub struct Tiles {
     /// Those of the massive bodies, then those of the massless ones.
     shards: Vec<Shard>,
     threads: usize,
+    /// The massive bodies, if they are so few that they are summed otherwise.
+    two_rows: Option<TwoRows>,
 }
 
 impl Tiles {
-    /// From `G·m` of the massive bodies in blocks of eight (zero in the lanes without a body).
-    pub fn new(shape: Shape, strength: Vec<Lanes>, bodies: usize, softening: f64, threads: usize) -> Self {
-        let active_rows = strength.len();
+    /// From `G·m` of the massive bodies.
+    pub fn new(shape: Shape, numbers: &[f64], softening: f64, threads: usize) -> Self {
+        let (bodies, active_rows) = (numbers.len(), numbers.len().div_ceil(WIDTH));
+        // Zero in the lanes without a body.
+        let mut strength = vec![Lanes::zero(); active_rows];
+        as_numbers_mut(&mut strength)[..bodies].copy_from_slice(numbers);
+        let two_rows = TwoRows::new(numbers, softening, shape.components);
         let count = (bodies / BODIES_PER_SHARD).clamp(1, SHARDS_MAX);
         let bound = |shard: usize| active_rows * shard / count;
         // Of equal rows, not of equal work, which falls from the first to the last: so threads end at about one time.
@@ -78,7 +86,16 @@ impl Tiles {
             let end = (start + PASSIVE_ROWS).min(shape.rows);
             shards.push(Shard::new(shape, start, end, end));
         }
-        Self { shape, active_rows, strength, bodies, softening2: softening * softening, shards, threads }
+        Self {
+            shape,
+            active_rows,
+            strength,
+            bodies,
+            softening2: softening * softening,
+            shards,
+            threads,
+            two_rows,
+        }
     }
 }
 
@@ -310,6 +327,14 @@ impl Force<Lanes> for Tiles {
             let mut pull = pull.write().unwrap_or_else(PoisonError::into_inner);
             if start >= this.active_rows {
                 passive_rows_tier(this, q, start, end, &mut pull);
+                return tick(ticker);
+            }
+            if let Some(rows) = &this.two_rows {
+                for (row, sum) in rows.sums(q, this.shape.rows).into_iter().enumerate() {
+                    for c in 0..this.shape.components {
+                        pull[2 * c + row] = -sum[c];
+                    }
+                }
                 return tick(ticker);
             }
             pull.fill(Lanes::zero());

@@ -1,6 +1,6 @@
 //! One source beside gravity between few bodies, which has found r⁻³ of all pairs.
 
-use super::{Kernel, Law, Relative, Source, difference, squared, sum_of_eight};
+use super::{Kernel, Law, Relative, Source, difference, squared};
 use crate::forces::context::Context;
 use crate::forces::gravity::beside::{Beside, beside};
 use crate::forces::gravity::ring::Turns;
@@ -81,7 +81,7 @@ impl<L: Law> Beside for OneSource<L> {
         let itself = V::zero().less(inverse_mass);
         for c in 0..3 {
             let other = V::select(source.others[0], pull[c], V::zero());
-            let sum = sum_of_eight(V::load(self.mass), other);
+            let sum = (V::load(self.mass) * other).sum_in_every_lane();
             // As where both are added to zeros.
             pull[c] = V::select(itself, V::zero() - sum * inverse_mass, V::zero() + other);
         }

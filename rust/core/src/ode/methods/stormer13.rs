@@ -23,6 +23,7 @@ pub static METHOD: Method = Method {
         second_differences: SECOND_DIFFERENCES,
         velocity: VELOCITY,
         start: &dop853::TABLEAU,
+        fewest_steps: 75.0,
     }),
 };
 

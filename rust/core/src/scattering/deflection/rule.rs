@@ -208,8 +208,8 @@ fn integrands<V: Vector8>(
             off = one / root - one / compared.sqrt();
             below = -off;
         } else {
-            let series =
-                V::splat(c3).multiply_add(squared, V::splat(c2)).multiply_add(squared, V::splat(c1)) * squared;
+            let series = V::splat(c3).multiply_add(squared, V::splat(c2)).multiply_add(squared, V::splat(c1))
+                * squared;
             off = series - p;
         }
         out[0][row] = (scale * (off * u)).store();

@@ -4,7 +4,7 @@ use super::super::layout::Layout;
 use super::super::request::columns;
 use super::quiet::{METHOD, Quiet};
 use super::turning::PARTS;
-use super::{Groups, Plan};
+use super::{AS_KNOWN, Groups, Plan, TooLong};
 use crate::forces::term::Coupling;
 use crate::ode::Scheme;
 use crate::ode::transformation::Transformation;
@@ -57,6 +57,11 @@ impl Plan {
                 (None, None, _) => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
+            if self.known.as_ref().is_some_and(|known| !known.integrates()) {
+                let why =
+                    "the motion has a closed form; events are looked for on steps, which are to be as exact";
+                row("relative tolerance", format!("at most {AS_KNOWN:e}"), why.to_owned());
+            }
             if let Some((by, _)) = self.transformed {
                 let told = match by {
                     Transformation::PotentialEnergy => {
@@ -75,6 +80,10 @@ impl Plan {
                     number(dt)
                 );
                 row("long span", format!("{periods:.0} of the shortest period"), why);
+            }
+            if let Some(TooLong { bodies: (body, about), steps, fewest, .. }) = self.too_long {
+                let why = format!("the method tells nothing of an orbit with fewer than {fewest}");
+                row("step too long", format!("{steps:.0} in a turn of body {body} about body {about}"), why);
             }
             if self.from > 0 {
                 let why = "the scene ended a run with this method and step: its bits are those of one run";

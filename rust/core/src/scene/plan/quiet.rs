@@ -1,16 +1,16 @@
 //! Long quiet runs: bodies on orbits about one another that are far from an encounter at the start, for hundreds
 //! of the shortest period.
 //!
-//! For them a multistep method with equal steps is more exact in less time than steps that the error chooses. Nothing
+//! For more bodies than series serve (`auto` takes those for few) a multistep method with equal steps is more exact in less time than steps that the error chooses. Nothing
 //! known at the start keeps an encounter from coming later, though, and equal steps go through it without a word: so it
 //! is told, not done.
 //! Measured: a sun with two planets, 1000 periods of the inner one, and the outer Solar System for 10⁶ days. Steps of a
 //! hundredth of the period that goes with the pericenter are off by 1e-9 to 2e-5 of the orbit for eccentricities from 0
 //! to 0.6; DOP853 with rtol 1e-9 by 2e-4 to 1e-2 in 1.2 to 2.4 times the time.
 
-use super::super::{Scene, distance};
+use super::super::Scene;
+use super::turn::turn;
 use crate::forces::ForceTerm;
-use core::f64::consts::TAU;
 use std::sync::Arc;
 
 /// The method that is told, and how many of its steps go into the shortest period.
@@ -41,38 +41,13 @@ pub(super) fn quiet(scene: &Scene, forces: &[Arc<dyn ForceTerm>], signed_span: f
     }
     let mut shortest = f64::INFINITY;
     for body in 0..scene.particles {
-        shortest = shortest.min(time_at_pericenter(scene, constant, body)?);
+        let Some(turn) = turn(scene, 0, constant, body)? else { continue };
+        (turn.eccentricity <= ECCENTRIC).then_some(())?;
+        shortest = shortest.min(turn.at_pericenter);
     }
     let periods = signed_span.abs() / shortest;
     let dt = signed_span / periods / STEPS;
     // Two digits are enough to be typed.
     let dt = format!("{dt:.1e}").parse().unwrap_or(dt);
     (periods >= PERIODS && periods.is_finite()).then_some(Quiet { periods, dt })
-}
-
-/// The period of a circle through the pericenter of the orbit of a body about the one that pulls it most; infinite for one
-/// that is pulled by none more than it pulls; nothing if it is not bound, or on an orbit of more than that eccentricity.
-fn time_at_pericenter(scene: &Scene, constant: f64, body: usize) -> Option<f64> {
-    let (mass, places, velocities) = (scene.masses(0), scene.positions(0), scene.velocities(0));
-    let pull = |other: &usize| {
-        let apart = distance(places[body], places[*other]);
-        constant * mass[*other] / apart / apart
-    };
-    let others = (0..scene.particles).filter(|&other| other != body);
-    let about = others.max_by(|a, b| pull(a).total_cmp(&pull(b)))?;
-    if mass[about] < mass[body] {
-        return Some(f64::INFINITY);
-    }
-    let strength = constant * (mass[about] + mass[body]);
-    let r = distance(places[body], places[about]);
-    let [x, v] =
-        [places, velocities].map(|of| -> [f64; 3] { core::array::from_fn(|c| of[body][c] - of[about][c]) });
-    let speed = distance(velocities[body], velocities[about]);
-    let axis = 1.0 / (2.0 / r - speed * speed / strength);
-    let radial = x[0] * v[0] + x[1] * v[1] + x[2] * v[2];
-    // e cos E and e sin E.
-    let (along, across) = (1.0 - r / axis, radial / (strength * axis).sqrt());
-    let eccentricity = (along * along + across * across).sqrt();
-    let pericenter = axis * (1.0 - eccentricity);
-    (axis > 0.0 && eccentricity <= ECCENTRIC).then(|| TAU * pericenter * (pericenter / strength).sqrt())
 }

@@ -1,14 +1,35 @@
-//! What a method of Taylor series cannot take, told before anything runs.
+//! What a method of Taylor series cannot take, told before anything runs, and where `auto` takes it.
 
 use super::coupling::Groups;
 use crate::error::{Error, Result};
 use crate::forces::ForceTerm;
+use crate::forces::gravity::RING_MAX;
 use crate::forces::term::Coupling;
 use crate::ode::{Method, Scheme};
+use crate::registry;
 use std::sync::Arc;
 
 /// The series of all pairs of more bodies leave the caches, and other methods are faster.
 const MOST_BODIES: usize = 64;
+
+/// The method of series, where few bodies are coupled and forces can be expanded wherever they are finite: there it takes
+/// about the time of DOP853 and is off by a tenth to a ten thousandth of its errors. Measured on sixteen scenes of 3 to 8
+/// bodies, of one body in fields, and of ensembles, with tolerances of 1e-6 to 1e-12: 0.6 to 1.6 times the time; of more
+/// bodies up to five times.
+///
+/// How many bodies have mass does not enter: copies that differ in that are run apart, and by one method.
+pub(super) fn first_choice(
+    particles: usize,
+    forces: &[Arc<dyn ForceTerm>],
+    (active, passive): (&[usize], &[usize]),
+    groups: &Groups,
+) -> Option<&'static Method> {
+    let method = registry::methods_for(false).find(|method| matches!(method.scheme, Scheme::Taylor(_)))?;
+    let serves = groups.largest(particles) <= RING_MAX
+        && forces.iter().all(|force| force.has_series_everywhere())
+        && check(method, forces, active, passive, groups).is_ok();
+    serves.then_some(method)
+}
 
 /// Refuses forces without series, and bodies that they do not serve.
 ///

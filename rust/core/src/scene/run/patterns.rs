@@ -11,8 +11,8 @@ use std::collections::BTreeMap;
 /// Some copies, by their places among all, and the scene that they make.
 pub(super) type Pattern = (Vec<usize>, Scene);
 
-/// Which bodies have mass, the kind of the forces and the units.
-type Key = (Vec<bool>, (usize, Units));
+/// Which bodies have mass, the kind of the forces, the units, and whether the motion is known.
+type Key = (Vec<bool>, (usize, Units, bool));
 
 /// Copies that have closed forms, and copies that are integrated with forces of one kind, the same set of massless bodies
 /// and the same units, and their scenes; `None` if that is all of them.
@@ -28,7 +28,7 @@ pub(super) fn patterns(scene: &Scene, plan: &Plan, ticker: &mut Ticker<'_>) -> R
     let pattern = |copy: usize| scene.masses(copy).iter().map(|&mass| mass > 0.0);
     let units = |copy| ticker.tick().map(|()| plan.units_of(scene, copy));
     let units: Vec<Units> = (0..scene.copies).map(units).collect::<Result<_>>()?;
-    let kind = |copy: usize| (plan.kinds.get(copy).copied().unwrap_or(0), units[copy]);
+    let kind = |copy: usize| (plan.kinds.get(copy).copied().unwrap_or(0), units[copy], plan.knows(copy));
     let alike = |copy: usize| kind(copy) == kind(0) && pattern(copy).eq(pattern(0));
     if plan.solutions.integrates_all() && (1..scene.copies).all(alike) {
         return Ok(None);

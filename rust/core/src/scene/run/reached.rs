@@ -182,7 +182,7 @@ fn again(
         scene: part.scene,
         plan: part.plan,
         times: &times,
-        rtol: request.rtol,
+        rtol: part.plan.rtol(request),
         atol: request.atol.as_ref(),
         max_step: request.max_step.unwrap_or(f64::MAX),
         max_steps: u64::MAX,

@@ -1,0 +1,155 @@
+"""Answers that depend on no unit: symmetries, equilibria, periods and starts of systems of any size."""
+
+from typing import Any
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+
+def trap(width: float, ratio: float, *, position: Any = None) -> vv.Lagrangian:
+    """A Gaussian trap of a width, wider in one direction."""
+
+    def L(q: Any, v: Any, t: Any, s: Any) -> Any:
+        return (v[0] ** 2 + v[1] ** 2) / 2 + np.exp(-(q[0] ** 2 + ratio * q[1] ** 2) / (2 * s * s))
+
+    place = [width, 0.0] if position is None else position
+    return vv.Lagrangian(L, ["x", "y"], parameters={"s": width}, position=place, velocity=[0.0, 0.1])
+
+
+def turn(q: Any, v: Any, t: Any, **parameters: Any) -> list[Any]:
+    return [-q[1], q[0]]
+
+
+@pytest.mark.parametrize("width", [1e-12, 1e-3, 1.0, 1e6, 1e11])
+def test_a_broken_symmetry_is_broken_in_all_units(width: float) -> None:
+    """Angular momentum of an anisotropic trap changes, whatever its width; of an isotropic one it does not."""
+    assert not trap(width, 1.5).noether(turn).holds
+    assert not trap(width, 1.0 + 1e-6).noether(turn).holds
+    assert trap(width, 1.0).noether(turn).holds
+    # The start need not be in the trap: parameters are lengths too.
+    assert not trap(width, 1.5, position=[0.0, 0.0]).noether(turn).holds
+
+
+def test_the_oblate_earth_turns_about_one_axis_only() -> None:
+    """J₂ in SI units, from 7000 km: a thousandth of the attraction, which is 1e-6 of what random metres would see."""
+    GM, radius = 3.986e14, 6.378e6
+    J = 1.08e-3 * GM * radius**2
+
+    def L(q: Any, v: Any, t: Any) -> Any:
+        r2 = q[0] ** 2 + q[1] ** 2 + q[2] ** 2
+        attraction = GM / np.sqrt(r2) + J / 2 * (r2 - 3 * q[2] ** 2) / r2**2.5
+        return (v[0] ** 2 + v[1] ** 2 + v[2] ** 2) / 2 + attraction
+
+    earth = vv.Lagrangian(L, ["x", "y", "z"], position=[7e6, 0, 0], velocity=[0, 5e3, 5e3])
+    assert earth.noether(lambda q, v, t: [-q[1], q[0], 0.0]).holds
+    about_x = earth.noether(lambda q, v, t: [0.0, -q[2], q[1]])
+    assert not about_x.holds
+    assert np.ptp(about_x.conserved(earth.run(np.linspace(0.0, 6e3, 4)))) > 1e8
+
+
+def test_a_small_term_that_breaks_a_symmetry_is_not_drowned() -> None:
+    """A pull of 1e-14 beside an attraction of 1: seen where it is as large as what it adds to."""
+
+    def pulled(pull: float) -> vv.Lagrangian:
+        return vv.Lagrangian(
+            lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 - (q[0] ** 2 + q[1] ** 2) - pull * q[0],
+            ["x", "y"],
+            position=[1.0, 0.2],
+            velocity=[0.3, 0.8],
+        )
+
+    assert not pulled(1e-14).noether(turn).holds
+    assert pulled(0.0).noether(turn).holds
+
+
+def test_what_cannot_be_seen_is_not_called_a_symmetry() -> None:
+    """A trap of a width that nothing tells: no state of a size at hand sees its slope."""
+    hidden = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 + np.exp(-((q[0] - 0.5) ** 2) / 1e-40),
+        ["x", "y"],
+        position=[1.0, 0.2],
+        velocity=[0.3, 0.8],
+    )
+    with pytest.raises(vv.InvalidInput, match="not decided"):
+        hidden.noether(turn)
+    H = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"], position=[1.0])
+    with pytest.raises(vv.InvalidInput, match="not decided"):
+        H.is_canonical(lambda q, p, t: [q[0] + 1e-20 * np.exp(-((q[0] - 0.5) ** 2) / 1e-40), p[0]])
+
+
+@pytest.mark.parametrize("width", [1e-9, 1.0, 1e9])
+def test_a_transformation_is_judged_at_its_own_size(width: float) -> None:
+    """Q = x (1 + exp(−x²/a²)): dQ/dx is 1 far away only, and at x = a it is 1 − 1/e."""
+    H = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"], position=[width], momentum=[0.0])
+    assert not H.is_canonical(lambda q, p, t: [q[0] * (1 + np.exp(-((q[0] / width) ** 2))), p[0]])
+    assert H.is_canonical(lambda q, p, t: [q[0] * 3.0 * width, p[0] / (3.0 * width)])
+
+
+SIZES = [1e-15, 1e-9, 1.0, 1e9]
+
+
+def well(a: float, *, position: float = 1.5) -> vv.Lagrangian:
+    """V = (x² − a²)²/4a²: at rest at ±a, where ω = √2, and at 0."""
+    return vv.Lagrangian(
+        lambda q, v, t, a: v[0] ** 2 / 2 - (q[0] ** 2 - a * a) ** 2 / (4 * a * a),
+        ["x"],
+        parameters={"a": a},
+        position=[position * a],
+    )
+
+
+@pytest.mark.parametrize("a", SIZES)
+def test_equilibria_of_a_well_of_any_size(a: float) -> None:
+    found = well(a).equilibria(near=[[-1.1 * a], [0.1 * a], [1.2 * a], [1.3 * a]])
+    assert np.array([one.position[0] / a for one in found]) == pytest.approx([-1.0, 0.0, 1.0], abs=1e-14)
+    assert [one.stable for one in found] == [True, False, True]
+    assert found[2].frequencies == pytest.approx([np.sqrt(2.0)], rel=1e-14)
+    for place in (1.5, 1.001, 1e-3):
+        with pytest.raises(vv.InvalidInput, match="expected an equilibrium"):
+            well(a, position=place).linearize()
+
+
+def test_forces_that_balance_but_for_rounding_are_an_equilibrium() -> None:
+    """At x = 0 of springs that pull by 0.1 + 0.2 and 0.3; a place that is not known better than to its last digit."""
+    L = vv.Lagrangian(
+        lambda q, v, t, a, b, c: v[0] ** 2 / 2 - q[0] ** 2 / 2 + a * q[0] + b * q[0] - c * q[0],
+        ["x"],
+        parameters={"a": 0.1, "b": 0.2, "c": 0.3},
+    )
+    assert L.linearize(at=[0.0]).frequencies == pytest.approx([1.0])
+    assert not vv.systems.pendulum().linearize(at=[np.pi]).stable
+
+
+@pytest.mark.parametrize("size", SIZES)
+def test_a_start_off_its_constraint_is_refused_in_all_units(size: float) -> None:
+    def ring(x: float, y: float, *, velocity: Any = (0.0, 0.0)) -> vv.Lagrangian:
+        return vv.Lagrangian(
+            lambda q, v, t, l: (v[0] ** 2 + v[1] ** 2) / 2 - l * q[1],
+            ["x", "y"],
+            parameters={"l": size},
+            position=[x * size, y * size],
+            velocity=np.array(velocity) * size,
+            constraints=[lambda q, v, t, l: q[0] ** 2 + q[1] ** 2 - l * l],
+        )
+
+    for off in (1.3, 1.0 + 1e-8):
+        with pytest.raises(vv.InvalidInput, match="constraint 0 is .* at the start and not 0") as caught:
+            ring(off, 0.0).run(1.0)
+        assert caught.value.argument == "position"
+    with pytest.raises(vv.InvalidInput, match="the rate of constraint 0 is .* at the start") as caught:
+        ring(1.0, 0.0, velocity=(1e-6, 1.0)).run(1.0)
+    assert caught.value.argument == "velocity"
+    # What rounding leaves is none: of sines and cosines, and of what should be 0.
+    for angle in (0.3, np.pi / 2, np.pi):
+        start = ring(np.cos(angle), np.sin(angle), velocity=(-np.sin(angle), np.cos(angle)))
+        out = start.run(1.0)
+        assert np.hypot(out["x"], out["y"])[-1] == pytest.approx(size, rel=1e-14)
+
+
+@pytest.mark.parametrize("goal", [1e-300, 1e-13, 1e-6])
+def test_a_boundary_value_has_all_its_digits(goal: float) -> None:
+    """Of a pendulum next to rest: θ' = goal / sin t, to the square of the angle."""
+    found = vv.systems.pendulum(g=1.0, position=[0.0]).boundary_value(1.0, [goal])
+    assert found.velocity[0] == pytest.approx(goal / np.sin(1.0), rel=1e-11)
