@@ -56,7 +56,11 @@ def test_what_rests_at_first_has_the_size_that_others_give_it() -> None:
     start = {"position": [1e-9, 0, 0], "velocity": [0, 3e4, 0]}
     space = vv.Lagrangian(L, ["x", "y", "z"], **start).run(t=1e-12, method="dop853")
     tilt = vv.Lagrangian(
-        lambda q, v, t: L([q[0], (q[1] + q[2]) / 2**0.5, (q[1] - q[2]) / 2**0.5], [v[0], (v[1] + v[2]) / 2**0.5, (v[1] - v[2]) / 2**0.5], t),
+        lambda q, v, t: L(
+            [q[0], (q[1] + q[2]) / 2**0.5, (q[1] - q[2]) / 2**0.5],
+            [v[0], (v[1] + v[2]) / 2**0.5, (v[1] - v[2]) / 2**0.5],
+            t,
+        ),
         ["x", "y", "z"],
         position=[1e-9, 0, 0],
         velocity=[0, 3e4 / 2**0.5, 3e4 / 2**0.5],

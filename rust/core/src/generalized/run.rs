@@ -51,7 +51,8 @@ pub struct Request {
     pub span: (f64, f64),
     /// Relative tolerance.
     pub rtol: f64,
-    /// Absolute tolerance of each number, of methods that estimate their error; a thousandth of the relative one if not given.
+    /// Absolute tolerance of each number, of methods that estimate their error; if not given, or no number, a
+    /// thousandth of the relative one times its size in the motion.
     pub atol: Option<Vec<f64>>,
     /// The step, of methods without step control and of others that are to hold theirs.
     pub dt: Option<f64>,
