@@ -118,6 +118,11 @@ def digest() -> dict[str, str]:
         out = copies()[name].run(T, method=method, **HOW[method])
         whole = b"".join(np.ascontiguousarray(column).tobytes() for column in columns(out))
         found[f"{name} {method}"] = hashlib.sha256(whole).hexdigest()
+    for method in (*METHODS, "variational_midpoint"):
+        marks = vv.events.expression(lambda q, v, _t, **_: np.sin(7 * q[1]) + v[0] / 9)
+        table = copies()["double"].run(T, method=method, events=["theta1", marks], **HOW[method]).events
+        whole = b"".join(column.tobytes() for column in (table.which, table.t, table.position, table.momentum))
+        found[f"events {method}"] = hashlib.sha256(whole).hexdigest()
     return found
 
 

@@ -307,6 +307,14 @@ def test_tables_are_what_those_of_scenes_are() -> None:
     assert [event.kind for event in table.definitions] == ["coordinate", "coordinate"]
     again = pickle.loads(pickle.dumps(out)).events
     assert np.array_equal(again.t, table.t)
+    # A function of one's own goes nowhere; its name does.
+    own = vv.systems.pendulum(position=[1.0]).run(5.0, events=[speed, events.function(lambda t, q, v: q[0])])
+    first, second = pickle.loads(pickle.dumps(own)).events.definitions
+    assert first.parameters == (("name", "speed"),)
+    assert "<lambda>" in dict(second.parameters)["name"]
+    for event in (first, second):
+        with pytest.raises(vv.InvalidInput, match="a run keeps its name alone; give it again"):
+            PENDULUM.run(1.0, events=[event])
     assert table.to_xarray().momentum.dims == ("event", "coordinate")
     assert len(table.to_pandas()) == len(table)
     assert f"Events: {len(table)}" in table._repr_html_()

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from visviva.generalized._nodes import Node
     from visviva.generalized._states import States
 
-__all__ = ["GeneralizedEventTable", "events_of", "found_events", "told"]
+__all__ = ["GeneralizedEventTable", "described", "events_of", "found_events", "told"]
 
 _OF_BODIES = ("apsis", "distance", "plane")
 
@@ -64,8 +64,25 @@ def told(system: States, events: Sequence[Event]) -> list[dict[str, Any]]:
     return [_told(system, index, event) for index, event in enumerate(events)]
 
 
+def described(events: Sequence[Event]) -> tuple[Event, ...]:
+    """Give what a result keeps of events: of a function its name, as results go where functions do not."""
+
+    def kept(event: Event) -> Event:
+        own = [value for _, value in event.parameters if callable(value) and not hasattr(value, "free_symbols")]
+        if not own:
+            return event
+        name = str(getattr(own[0], "__qualname__", type(own[0]).__qualname__))
+        return Event(event.kind, (("name", name),), event.direction, event.terminal)
+
+    return tuple(map(kept, events))
+
+
 def _told(system: States, index: int, event: Event) -> dict[str, Any]:
     parameters = dict(event.parameters)
+    if "name" in parameters:
+        raise InvalidInput(
+            "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"
+        )
     nodes: list[Node] = []
     made: dict[str, Any] = {"nodes": nodes, "root": None, "energy": None, "function": None}
     made |= {"direction": float(event.direction), "last": event.terminal or None}
@@ -137,7 +154,7 @@ class GeneralizedEventTable(Lines):
     member : ndarray of int64, shape (K,)
         The copy of an ensemble; 0 of a single run.
     definitions : tuple of Event
-        What was looked for, by `which`.
+        What was looked for, by `which`. Of a function its name alone.
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
 
@@ -176,29 +193,23 @@ def found_events(
     result: dict[str, Any],
     events: tuple[Event, ...],
     parameters: NDArray[np.float64],
-    member: int | None = None,
 ) -> GeneralizedEventTable:
-    """Give the table of what a run found: of all copies, or of one as if it were alone.
-
-    ``parameters`` has a row for each copy.
-    """
+    """Give the table of what a run found; ``parameters`` has a row for each copy."""
     if not events:
         raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
-    ends = np.cumsum([0, *result["found"]])
-    rows = slice(0, ends[-1]) if member is None else slice(ends[member], ends[member + 1])
-    copies = np.repeat(np.arange(len(ends) - 1), result["found"])[rows]
-    t, states = result["found_t"][rows], result["found_y"][rows]
+    copies = np.repeat(np.arange(len(result["found"])), result["found"])
+    t, states = result["found_t"], result["found_y"]
     n = len(system.coordinates)
     second = other = np.ascontiguousarray(states[:, n:])
     if len(t):
         other = system._model.columns(t, np.ascontiguousarray(states), parameters[copies])[:, :n]
     velocity, momentum = (second, other) if system._second_name == "velocity" else (other, second)
     columns = {
-        "which": np.array(result["found_which"], dtype=np.int64)[rows],
+        "which": np.array(result["found_which"], dtype=np.int64),
         "t": t.copy(),
         "position": states[:, :n].copy(),
         "velocity": velocity.copy(),
         "momentum": momentum.copy(),
-        "member": (copies if member is None else np.zeros(len(t))).astype(np.int64),
+        "member": copies.astype(np.int64),
     }
     return GeneralizedEventTable._from_core(columns, events)

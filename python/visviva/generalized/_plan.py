@@ -71,6 +71,7 @@ class GeneralizedPlan(Shown):
             *([("kinks", "an absolute value, which turns within a step")] if found["kinks"] else []),
             ("method", asked["method"]),
             ("steps", steps),
+            *([("events", f"{len(asked['events'])}, located between the nodes")] if asked["events"] else []),
         )
         return cls(asked["method"], tuple(system.conserved), rows)
 

@@ -69,10 +69,10 @@ class Runs(States):
             "looked_for": (),
         }
         if not (isinstance(events, tuple) and not events):
-            from visviva.generalized._events import events_of, told
+            from visviva.generalized._events import described, events_of, told
 
             looked_for = events_of(events)
-            asked |= {"looked_for": looked_for, "events": told(self, looked_for)}
+            asked |= {"looked_for": described(looked_for), "events": told(self, looked_for)}
         return asked, outputs
 
     def _absolute(self, atol: Any, method: str) -> list[float]:

@@ -105,7 +105,7 @@ class GeneralizedTrajectory(Exported, Shown):
     method: str
     _states: NDArray[np.float64]
     _columns: NDArray[np.float64] | None
-    _found: tuple[dict[str, Any], tuple[Event, ...], int]
+    _found: tuple[dict[str, Any], tuple[Event, ...]]
 
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
@@ -124,8 +124,10 @@ class GeneralizedTrajectory(Exported, Shown):
         self.longest_step = result["longest_step"][member]
         self.method = asked["method"]
         self._columns = None
-        found = {name: result[name] for name in ("found", "found_which", "found_t", "found_y")}
-        self._found = (found, asked["looked_for"], member)
+        first = sum(result["found"][:member])
+        own = slice(first, first + result["found"][member])
+        found = {name: result[name][own] for name in ("found_which", "found_t", "found_y")}
+        self._found = (found | {"found": [result["found"][member]]}, asked["looked_for"])
 
     def __repr__(self) -> str:
         names = ", ".join(self.system.coordinates)
@@ -208,18 +210,15 @@ class GeneralizedTrajectory(Exported, Shown):
         """
         from visviva.generalized._events import found_events
 
-        found, events, member = self._found
-        parameters = np.broadcast_to(self.system._values, (len(found["found"]), len(self.system._values)))
-        return found_events(self.system, found, events, parameters, member)
+        return found_events(self.system, *self._found, self.system._values[None, :])
 
     @property
     def final(self) -> GeneralizedSystem:
         """The system at the last time, or at the event that ended the run, ready to run on."""
         n = len(self.system.coordinates)
-        found, _, member = self._found
         if self.status is Status.STOPPED:
-            line = sum(found["found"][: member + 1]) - 1
-            last, t0 = found["found_y"][line], float(found["found_t"][line])
+            found, _ = self._found
+            last, t0 = found["found_y"][-1], float(found["found_t"][-1])
         elif len(self.t):
             last, t0 = self._states[-1], float(self.t[-1])
         else:
