@@ -66,9 +66,11 @@ pub(crate) struct Described<'py> {
     divergence: Option<(String, f64)>,
     spot: Option<f64>,
     importance: Option<(Vec<f64>, Vec<f64>)>,
-    /// Of each its probability, Q, and masses of the products.
-    channels: Vec<(AskedProbability, f64, Option<(f64, f64)>)>,
+    channels: Vec<AskedChannel>,
 }
+
+/// The probability of a channel, its Q, and the masses of the products.
+type AskedChannel = (AskedProbability, f64, Option<(f64, f64)>);
 
 /// The probability of a channel: a number, or impact parameters and the probability at each.
 #[derive(FromPyObject)]
