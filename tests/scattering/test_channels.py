@@ -118,16 +118,21 @@ def test_every_event_is_counted_in_its_bin(potential: p.Potential, beam: dict[st
         assert (alone[name].counts == result[name].counts).all()
 
 
-def test_channels_are_draw_6_in_the_order_given() -> None:
-    first, n = 2**33 + 7, 5000
+def uniform(number: int, first: int, n: int) -> np.ndarray:
+    """A draw of each event once more in NumPy."""
     events = np.arange(first, first + n, dtype=np.uint64)
     counter = np.zeros((n, 4), np.uint64)
     counter[:, 0], counter[:, 1] = (events >> np.uint64(1)) & np.uint64(0xFFFFFFFF), events >> np.uint64(33)
-    counter[:, 2] = 6
+    counter[:, 2] = number
     words = philox((BEAM["seed"] & 0xFFFFFFFF, BEAM["seed"] >> 32), counter)
     odd = (events & np.uint64(1)).astype(bool)
     low, high = np.where(odd, words[:, 2], words[:, 0]), np.where(odd, words[:, 3], words[:, 1])
-    u = ((high << np.uint64(32) | low) >> np.uint64(11)).astype(np.float64) * 2.0**-53
+    return ((high << np.uint64(32) | low) >> np.uint64(11)).astype(np.float64) * 2.0**-53
+
+
+def test_channels_are_draw_6_in_the_order_given() -> None:
+    first, n = 2**33 + 7, 5000
+    u = uniform(6, first, n)
     expected = np.array([1, 2, 3, 0])[np.searchsorted([0.25, 0.25 + 0.3, 0.25 + 0.3 + 0.2], u, side="right")]
     found = listed(first_event=first, n_events=n)
     assert (found["channel"] == expected).all()
@@ -254,6 +259,12 @@ def test_bad_channels_are_refused_by_name(channels: object, argument: str) -> No
         ((np.nan, 0.5), "q_value"),
         ((1.0, -0.1), "probability"),
         ((1.0, 1.5), "probability"),
+        ((1.0, ([0.0, 1.0], [0.5])), "probability"),
+        ((1.0, ([0.0, 1.0], [0.5, 1.5])), "probability"),
+        ((1.0, ([1.0, 0.0], [0.5, 0.5])), "probability"),
+        ((1.0, ([-1.0, 0.0], [0.5, 0.5])), "probability"),
+        ((1.0, ([0.0], [0.5])), "probability"),
+        ((1.0, (0.5,)), "probability"),
         ((1.0, 0.5, (1.0,)), "products"),
         ((1.0, 0.5, (1.0, 0.0)), "products"),
         ((1.0, 0.5, (1.0, np.inf)), "products"),
@@ -263,6 +274,56 @@ def test_what_is_no_channel_is_refused(values: tuple[object, ...], argument: str
     with pytest.raises(vv.errors.InvalidInput) as refused:
         Channel(*values)
     assert refused.value.argument == argument
+
+
+VARYING = (Channel(-1.5, ([0.0, 0.5, 1.5], [0.8, 0.6, 0.0])), Channel(0.75, 0.2, (2.0, 3.0)))
+
+
+@pytest.mark.parametrize("beam", BEAMS.values(), ids=BEAMS)
+def test_probabilities_may_hang_on_the_impact_parameter(beam: dict[str, object]) -> None:
+    first, n = 2**33 + 7, 20_000
+    asked = {"channels": VARYING, "first_event": first, "n_events": n, **beam}
+    events = listed(**asked)
+    u, b = uniform(6, first, n), events["impact_parameter"]
+    part = np.interp(b, *VARYING[0].probability)
+    expected = np.where(u < part, 1, np.where(u < part + 0.2, 2, 0))
+    # Next to the border NumPy may round to the other side.
+    clear = (np.abs(u - part) > 1e-12) & (np.abs(u - part - 0.2) > 1e-12)
+    assert (events["channel"] == expected)[clear].all()
+    assert {0, 1, 2} == set(events["channel"].tolist())
+    q = np.array([0.0, -1.5, 0.75])[events["channel"]]
+    size = events["energy"] + events["recoil_energy"] + events["beam_energy"]
+    assert (np.abs(events["energy"] + events["recoil_energy"] - events["beam_energy"] - q) < 8e-16 * size).all()
+    result = run(tally=[*ALL, ("lab_angle", "energy")], bins=29, **asked)
+    for name in ALL:
+        assert result[name].counts.tolist() == np.histogram(events[name], result[name].edges)[0].tolist(), name
+    assert run(tally=[*ALL, ("lab_angle", "energy")], bins=29, threads=3, **asked) == result
+    # Of what channels do not touch: as without them, also where one draw tells all.
+    for name in ("cm_angle", "impact_parameter"):
+        assert (run(tally=name, bins=29, **asked)[name].counts == result[name].counts).all()
+
+
+def test_an_even_table_is_a_number() -> None:
+    flat = [Channel(c.q_value, ([0.3, 1.0], [c.probability] * 2), c.products) for c in CHANNELS]
+    even, constant = listed(channels=flat), listed()
+    for name, values in constant.items():
+        assert (even[name] == values).all(), name
+    with pytest.raises(vv.errors.InvalidInput, match="impact parameter 1") as refused:
+        run(channels=[Channel(-1.5, ([0.0, 1.0], [0.2, 0.9])), Channel(0.75, 0.2)])
+    assert refused.value.argument == "channels"
+
+
+def test_what_is_expected_of_varying_channels(tmp_path: Path) -> None:
+    result = run(channels=VARYING, tally=ALL, bins=10)
+    for name in ("cm_angle", "impact_parameter"):
+        assert np.abs(result[name].expected() - result[name].counts).max() < 5.0 * np.sqrt(30_000 / 4)
+    with pytest.raises(vv.errors.InvalidInput) as refused:
+        result["energy"].expected()
+    assert refused.value.argument == "channels"
+    result.save(tmp_path / "counts.npz")
+    assert s.MonteCarlo.load(tmp_path / "counts.npz") == result
+    pytest.importorskip("matplotlib")
+    result["energy"].plot()
 
 
 @pytest.mark.parametrize("beam", [{"beam_energy": LINES}, {"energy_spread": 0.05, "divergence": 0.02}], ids=repr)

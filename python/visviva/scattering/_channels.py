@@ -27,8 +27,10 @@ class Channel:
     ----------
     q_value : float
         Energy that is released (Q > 0) or taken up (Q < 0), in the unit of `beam_energy`.
-    probability : float
-        The part of all events, in [0, 1]. What all channels of a run leave of 1 is scattered elastically.
+    probability : float or pair of array_like
+        The part of all events, in [0, 1]; or (impact parameters, the part at each), linear between them and beyond the
+        ends as at the ends. What all channels of a run leave of 1 is scattered elastically. Of parts that differ with
+        the impact parameter `Tally.expected` knows ``cm_angle`` and ``impact_parameter`` only.
     products : tuple of float, optional
         Masses of what projectile and target become, in the unit of `masses`; by default they stay what they are.
 
@@ -58,20 +60,38 @@ class Channel:
     """
 
     q_value: float
-    probability: float
+    probability: float | tuple[tuple[float, ...], tuple[float, ...]]
     products: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
-        part = number("probability", self.probability)
-        if not 0.0 <= part <= 1.0:
-            raise InvalidInput("probability", f"expected a part of all events, in [0, 1], got {part}")
         object.__setattr__(self, "q_value", number("q_value", self.q_value))
-        object.__setattr__(self, "probability", part)
+        object.__setattr__(self, "probability", _probability(self.probability))
         if self.products is not None:
             pair = float_array("products", self.products, (2,))
             if not (pair > 0.0).all():
                 raise InvalidInput("products", f"expected two positive masses, got {pair.tolist()}")
             object.__setattr__(self, "products", (float(pair[0]), float(pair[1])))
+
+
+def _probability(given: object) -> float | tuple[tuple[float, ...], tuple[float, ...]]:
+    if not isinstance(given, (tuple, list)):
+        part = number("probability", given)
+        if not 0.0 <= part <= 1.0:
+            raise InvalidInput("probability", f"expected a part of all events, in [0, 1], got {part}")
+        return part
+    if len(given) != 2:
+        raise InvalidInput("probability", f"expected impact parameters and the part at each, got {len(given)} arrays")
+    places, parts = (float_array("probability", values, (None,)) for values in given)
+    if len(places) != len(parts) or len(places) < 2:
+        raise InvalidInput(
+            "probability",
+            f"expected 2 or more impact parameters and a part for each, got {len(places)} and {len(parts)}",
+        )
+    if not (places[0] >= 0.0 and (places[1:] > places[:-1]).all()):
+        raise InvalidInput("probability", f"expected impact parameters that rise from 0 or more, got {places.tolist()}")
+    if not ((parts >= 0.0) & (parts <= 1.0)).all():
+        raise InvalidInput("probability", f"expected parts of all events, in [0, 1], got {parts.tolist()}")
+    return tuple(places.tolist()), tuple(parts.tolist())
 
 
 def as_channels(given: Channel | Iterable[Channel] | None) -> tuple[Channel, ...]:

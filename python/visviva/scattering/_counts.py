@@ -80,6 +80,8 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     scale = np.pi * tally.b_max**2 / (tally.n_events * tally._measure())
     beam = tally.beam
     known = beam.energy_spread is None and not (beam.divergence and tally.name in ("lab_angle", "recoil_angle"))
+    varying = any(isinstance(channel.probability, tuple) for channel in beam.channels)
+    known = known and not (varying and tally.name not in ("cm_angle", "impact_parameter"))
     expected = tally.expected() * scale if known else np.full(scale.shape, np.nan)
     # Where nothing can come the interval of no count would say that something might.
     shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)

@@ -188,7 +188,8 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         Raises
         ------
         InvalidInput
-            With an energy spread, and of an angle that a divergence smears: no area of impact parameters tells those.
+            With an energy spread, of an angle that a divergence smears, and of what channels differ in if their
+            probabilities hang on the impact parameter: no area of impact parameters tells those.
 
         Examples
         --------

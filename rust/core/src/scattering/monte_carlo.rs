@@ -16,6 +16,7 @@ mod channels;
 mod draws;
 mod listed;
 mod mixture;
+mod probability;
 mod profile;
 mod quantity;
 mod strata;
@@ -24,6 +25,7 @@ pub use beam::Beam;
 pub use channels::{Channel, Channels};
 pub use listed::{Event, events};
 pub use mixture::{Mixture, Tally};
+pub use probability::Probability;
 pub use profile::{Profile, Spread};
 pub use quantity::Quantity;
 pub use strata::Strata;
@@ -147,19 +149,25 @@ pub fn expected(
         .flat_map(|(quantity, _)| mixture.beams().map(move |beam| (*quantity, beam)))
     {
         if !beam.is_of_one_draw(quantity) {
-            let blamed = if beam.profile.energy_spread.is_some() { "energy_spread" } else { "divergence" };
+            let (blamed, expected) = match &beam.profile {
+                profile if profile.energy_spread.is_some() => ("energy_spread", "none"),
+                profile if profile.divergence.is_some() && quantity.is_of_directions() => {
+                    ("divergence", "none")
+                }
+                _ => ("channels", "probabilities that do not hang on the impact parameter"),
+            };
             let name = quantity.name();
             return Err(Error::invalid(
                 blamed,
                 format!(
-                    "expected none where the mean counts of {name} are asked for: the area of impact parameters does not tell them"
+                    "expected {expected} where the mean counts of {name} are asked for: the area of impact parameters does not tell them"
                 ),
             ));
         }
     }
     check_size(mixture, tallies)?;
-    let steps = steps(mixture, tallies, mixture.exits(), threads, ticker)?;
-    let exits = mixture.exit_parts();
+    let exits = if differ(tallies) { mixture.exit_parts() } else { vec![1.0] };
+    let steps = steps(mixture, tallies, exits.len(), threads, ticker)?;
     let parts: Vec<f64> =
         mixture.parts().flat_map(|line| exits.iter().map(move |exit| line * exit)).collect();
     let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
@@ -204,6 +212,11 @@ struct Stepped {
 /// Of each tally, for each component and channel; of events that are counted one by one for all of them together.
 type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
 
+/// Whether anything is counted in which channels differ: if not, nobody looks at which one an event goes through.
+fn differ(tallies: &[Tally]) -> bool {
+    tallies.iter().flat_map(Tally::axes).any(|(quantity, _)| quantity.is_of_channel())
+}
+
 /// Of each tally, for each component and each of so many channels of it.
 fn steps(
     mixture: &Mixture,
@@ -228,11 +241,10 @@ impl<'a> Program<'a> {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
-        if mixture.is_drawn() {
+        let differ = differ(tallies);
+        if mixture.is_drawn() || (differ && mixture.channels_vary()) {
             return Ok(Self::Drawn(mixture, tallies));
         }
-        // Where nothing is counted that channels differ in, nobody looks at which one it is.
-        let differ = tallies.iter().flat_map(Tally::axes).any(|(quantity, _)| quantity.is_of_channel());
         let (channel, channels) = if differ { (mixture.exit_lookup(), mixture.exits()) } else { (None, 1) };
         let steps = steps(mixture, tallies, channels, threads, ticker)?;
         Ok(Self::Steps(Stepped { component: mixture.lookup(), channel, channels, steps }))

@@ -12,7 +12,7 @@ use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Channel, Mixture, Profile, Quantity, Spread, Strata, Tally, events, expected,
+    Beam, Channel, Mixture, Probability, Profile, Quantity, Spread, Strata, Tally, events, expected,
     monte_carlo as simulate,
 };
 
@@ -66,8 +66,17 @@ pub(crate) struct Described<'py> {
     divergence: Option<(String, f64)>,
     spot: Option<f64>,
     importance: Option<(Vec<f64>, Vec<f64>)>,
-    /// Of each its probability, Q, and masses of the products.
-    channels: Vec<(f64, f64, Option<(f64, f64)>)>,
+    channels: Vec<AskedChannel>,
+}
+
+/// The probability of a channel, its Q, and the masses of the products.
+type AskedChannel = (AskedProbability, f64, Option<(f64, f64)>);
+
+/// The probability of a channel: a number, or impact parameters and the probability at each.
+#[derive(FromPyObject)]
+enum AskedProbability {
+    Constant(f64),
+    OfPlace((Vec<f64>, Vec<f64>)),
 }
 
 /// What the work is given of one.
@@ -106,7 +115,13 @@ impl Described<'_> {
         let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
         let strata = importance.map(|(edges, fractions)| Strata::new(&edges, &fractions)).transpose();
         let strata = strata.map_err(|error| raised(py, error))?;
-        let channel = |(probability, q_value, products)| Channel { probability, q_value, products };
+        let channel = |(probability, q_value, products)| {
+            let probability = match probability {
+                AskedProbability::Constant(value) => Probability::Constant(value),
+                AskedProbability::OfPlace((places, values)) => Probability::OfPlace(places, values),
+            };
+            Channel { probability, q_value, products }
+        };
         let channels: Vec<Channel> = channels.into_iter().map(channel).collect();
         Ok(Taken { potential, energies, weights, masses, b_max, profile, strata, channels })
     }

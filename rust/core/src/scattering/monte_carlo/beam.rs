@@ -226,12 +226,14 @@ impl Beam {
     /// How an event comes.
     pub(super) fn arrival(&self, draws: Draws) -> Arrival {
         let place = draws.bits(PLACE);
+        let share = self.share(place);
+        let b = self.b_max * share.sqrt();
         Arrival {
             energy: self.profile.energy(self.energy, draws),
-            share: self.share(place),
+            share,
             stratum: self.stratum(place),
             direction: self.profile.direction(draws),
-            exit: if self.exits.len() > 1 { self.channels.find(draws.bits(CHANNEL)) } else { 0 },
+            exit: if self.exits.len() > 1 { self.channels.find(draws.bits(CHANNEL), b) } else { 0 },
         }
     }
     /// One of the middle energy along the axis.
@@ -294,9 +296,10 @@ impl Beam {
     }
     /// Whether a quantity is a function of one draw.
     pub(super) fn is_of_one_draw(&self, quantity: Quantity) -> bool {
-        let turned = matches!(quantity, Quantity::LabAngle | Quantity::RecoilAngle);
+        let turned = quantity.is_of_directions();
         match quantity {
             Quantity::ImpactParameter => true,
+            _ if quantity.is_of_channel() && self.channels.vary() => false,
             _ => self.profile.energy_spread.is_none() && !(turned && self.profile.divergence.is_some()),
         }
     }

@@ -6,6 +6,7 @@
 //! event stays a step function of the draw of its place, one for each channel.
 
 use super::beam::UNIT;
+use super::probability::Probability;
 use super::quantity::Quantity;
 use crate::numerics::philox::DRAW_BITS;
 use crate::scattering::histogram::Lookup;
@@ -23,10 +24,10 @@ const ROUNDED: f64 = 1e-12;
 const DRAWS: u64 = 1 << DRAW_BITS;
 
 /// What a reaction is asked to be.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Channel {
-    /// The part of all events, in [0, 1].
-    pub probability: f64,
+    /// The part of all events.
+    pub probability: Probability,
     /// Released (positive) or taken up (negative).
     pub q_value: f64,
     /// Masses of what projectile and target become; the same if none.
@@ -38,6 +39,8 @@ pub struct Channel {
 pub struct Channels {
     /// The first draw of each that has any, and its number: 0 is elastic, others count from 1 as given.
     open: Vec<(u64, usize)>,
+    /// Of each reaction, where one of them hangs on the impact parameter; then all are open, and elastic is the last.
+    varying: Vec<Probability>,
     reactions: Vec<Reaction>,
 }
 
@@ -47,6 +50,11 @@ pub(super) enum Exit {
     Elastic(Collision),
     /// The reaction, and what becomes of it at that energy.
     Reaction(Reaction, f64, Encounter),
+}
+
+/// The first draw above that sum of probabilities.
+fn end_of(sum: f64) -> u64 {
+    if sum >= 1.0 - ROUNDED { DRAWS } else { (sum / UNIT) as u64 }
 }
 
 impl Channels {
@@ -60,38 +68,44 @@ impl Channels {
         if channels.len() > MOST {
             return refused(format!("expected at most {MOST}, got {}", channels.len()));
         }
+        for (index, channel) in channels.iter().enumerate() {
+            if let Some(defect) = channel.probability.defect() {
+                return refused(format!("{defect} of channel {index}"));
+            }
+        }
+        let probabilities: Vec<Probability> =
+            channels.iter().map(|channel| channel.probability.clone()).collect();
+        // Piecewise linear ones are together greatest where one of them bends.
+        let bends = [0.0].into_iter().chain(probabilities.iter().flat_map(Probability::places).copied());
+        for b in bends {
+            let sum: f64 = probabilities.iter().map(|probability| probability.at(b)).sum();
+            if sum > 1.0 + ROUNDED {
+                let (sum, b) = (number(sum), number(b));
+                return refused(format!(
+                    "expected probabilities that are together at most 1, what is left being elastic, but at the impact parameter {b} they are {sum}"
+                ));
+            }
+        }
+        let varies = probabilities.iter().any(|probability| !probability.places().is_empty());
         let (mut sum, mut start) = (0.0, 0);
         let (mut open, mut reactions) = (Vec::new(), Vec::with_capacity(channels.len()));
         for (index, channel) in channels.iter().enumerate() {
-            let part = channel.probability;
-            if !(0.0..=1.0).contains(&part) {
-                return refused(format!(
-                    "expected probabilities in [0, 1], but that of channel {index} is {}",
-                    number(part)
-                ));
-            }
-            sum += part;
-            if sum > 1.0 + ROUNDED {
-                return refused(format!(
-                    "expected probabilities that are together at most 1, what is left being elastic, but with channel {index} they are {}",
-                    number(sum)
-                ));
-            }
+            sum += channel.probability.at(0.0);
             reactions.push(Reaction::new(masses, channel.products.unwrap_or(masses), channel.q_value)?);
-            let end = if sum >= 1.0 - ROUNDED { DRAWS } else { (sum / UNIT) as u64 };
-            if end > start {
+            let end = end_of(sum);
+            if end > start || varies {
                 open.push((start, index + 1));
             }
             start = end;
         }
-        if start < DRAWS {
+        if start < DRAWS || varies {
             open.push((start, 0));
         }
-        Ok(Self { open, reactions })
+        Ok(Self { open, varying: if varies { probabilities } else { Vec::new() }, reactions })
     }
     /// Only elastic.
     pub fn elastic() -> Self {
-        Self { open: vec![(0, 0)], reactions: Vec::new() }
+        Self { open: vec![(0, 0)], varying: Vec::new(), reactions: Vec::new() }
     }
     /// The exits of a beam: of a middle energy, and the least and the greatest of its spread.
     ///
@@ -134,8 +148,20 @@ impl Channels {
     pub(super) fn count(&self) -> usize {
         self.open.len()
     }
-    /// Which of them a draw is, in the order of [`exits`](Self::exits).
-    pub(super) fn find(&self, draw: u64) -> usize {
+    /// Whether which one an event goes through hangs on its impact parameter.
+    pub(super) fn vary(&self) -> bool {
+        !self.varying.is_empty()
+    }
+    /// Which of them a draw is at an impact parameter, in the order of [`exits`](Self::exits).
+    pub(super) fn find(&self, draw: u64, b: f64) -> usize {
+        if self.vary() {
+            let mut sum = 0.0;
+            let below = |probability: &Probability| {
+                sum += probability.at(b);
+                draw < end_of(sum)
+            };
+            return self.varying.iter().position(below).unwrap_or(self.varying.len());
+        }
         self.open.partition_point(|(start, _)| *start <= draw).saturating_sub(1)
     }
     /// The number of one of them: 0 is elastic, others count from 1 as given.

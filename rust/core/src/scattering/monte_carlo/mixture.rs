@@ -96,6 +96,10 @@ impl Mixture {
         let of_component = |(start, beam): (u64, Beam)| Ok((start, beam.through(channels)?));
         Ok(Self { components: self.components.into_iter().map(of_component).collect::<Result<_>>()? })
     }
+    /// Whether which channel an event goes through hangs on its impact parameter.
+    pub(super) fn channels_vary(&self) -> bool {
+        self.beams().any(|beam| beam.channels().vary())
+    }
     /// How many channels have events.
     pub(super) fn exits(&self) -> usize {
         self.beams().next().map_or(1, |beam| beam.channels().count())

@@ -41,6 +41,10 @@ impl Quantity {
             .map(|(_, quantity)| *quantity)
             .ok_or_else(|| unknown("tally", name, Self::ALL.iter().map(|(known, _)| *known)))
     }
+    /// Whether it tells how a body's direction lies to the axis of the beam.
+    pub(super) fn is_of_directions(self) -> bool {
+        matches!(self, Self::LabAngle | Self::RecoilAngle)
+    }
     /// Its name.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, quantity)| *quantity == self).map_or("", |(name, _)| name)

@@ -268,7 +268,11 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
 /// telling which, and parts of all draws are what is expected on the average.
 #[test]
 fn channels_count_every_event_in_their_own() {
-    let channel = |probability, q_value, products| Channel { probability, q_value, products };
+    let channel = |probability, q_value, products| Channel {
+        probability: Probability::Constant(probability),
+        q_value,
+        products,
+    };
     let channels = [channel(0.25, -0.3, None), channel(0.5, 0.4, Some((1.5, 2.5)))];
     let potential = (crate::registry::potential("coulomb").unwrap().make)(&[
         crate::potentials::parameters::Value::Number(1.0),
@@ -291,7 +295,7 @@ fn channels_count_every_event_in_their_own() {
     // The threshold of Q = -0.3 is 1.2: the lower line is closed.
     assert!(matches!(mixture(&channels), Err(Error::InvalidInput { argument, message })
         if argument == "channels" && message.contains("1.2")));
-    let channels = [channel(0.25, -0.2, None), channels[1]];
+    let channels = [channel(0.25, -0.2, None), channels[1].clone()];
     let mixture = mixture(&channels).unwrap();
     let quantities = [Quantity::LabAngle, Quantity::RecoilAngle, Quantity::Energy, Quantity::RecoilEnergy];
     let tallies =
