@@ -240,7 +240,7 @@ def scattering_events(
     first_event: int,
     threads: int | None,
     progress: Callable[[int, int], object] | None,
-) -> tuple[NDArray[np.uint64], NDArray[np.float64]]: ...
+) -> tuple[tuple[NDArray[np.uint64], NDArray[np.uint64]], NDArray[np.float64]]: ...
 def deflections(
     description: dict[str, Any],
     energy: NDArray[np.float64],

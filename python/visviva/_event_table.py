@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Self
 
 import numpy as np
 
@@ -20,12 +20,81 @@ if TYPE_CHECKING:
 
     from visviva.events import Event
 
-__all__ = ["EventTable"]
+__all__ = ["EventTable", "Lines"]
+
+
+class Lines(Exported, Shown):
+    """Base of tables of events: columns, a line for each event, and what was looked for."""
+
+    __slots__ = ()
+
+    which: NDArray[np.int64]
+    t: NDArray[np.float64]
+    position: NDArray[np.float64]
+    member: NDArray[np.int64]
+    definitions: tuple[Event, ...]
+
+    _row_axes = ("event",)
+
+    @classmethod
+    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> Self:
+        for array in found.values():
+            array.setflags(write=False)
+        table: Any = cls
+        made: Self = table(**found, definitions=definitions)
+        return made
+
+    @classmethod
+    def _names(cls) -> list[str]:
+        table: Any = cls
+        return [name for name in table.__slots__ if name != "definitions"]
+
+    def __len__(self) -> int:
+        return len(self.t)
+
+    def _sheet(self) -> Sheet:
+        def row(at: int) -> tuple[str, ...]:
+            which = int(self.which[at])
+            kind = self.definitions[which].kind if which < len(self.definitions) else ""
+            return (str(at), f"{self.t[at]:.6g}", f"{which} {kind}".rstrip(), str(self.member[at]))
+
+        rows, note = first_rows(len(self), row)
+        return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
+
+    def __getitem__(self, chosen: slice | NDArray[Any]) -> Self:
+        if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
+            raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
+        return self._from_core({name: getattr(self, name)[chosen] for name in self._names()}, self.definitions)
+
+    def __iter__(self) -> Iterator[Any]:
+        raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")
+
+    def of(self, which: int) -> Self:
+        """The lines of one event.
+
+        Parameters
+        ----------
+        which : int
+            The event, as counted in ``events=``.
+
+        Returns
+        -------
+        EventTable or GeneralizedEventTable
+            As this one.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0, direction=1)]).events.of(0))
+        3
+        """
+        return self[self.which == whole_number("which", which)]
 
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class EventTable(Exported, Shown):
+class EventTable(Lines):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes
@@ -59,66 +128,16 @@ class EventTable(Exported, Shown):
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
 
-    _row_axes = ("event",)
-
-    @classmethod
-    def _from_core(cls, found: dict[str, NDArray[Any]], definitions: tuple[Event, ...]) -> EventTable:
-        for array in found.values():
-            array.setflags(write=False)
-        return cls(**found, definitions=definitions)
-
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
-        known = [name for name in self.__slots__ if name != "definitions"]
+        known = self._names()
         of = {
             name: (("event", *["body", "component"][: 2 * (getattr(self, name).ndim == 3)]), getattr(self, name))
             for name in chosen_columns(columns, known, known)
         }
         return Columns({"event": np.arange(len(self)), "body": np.arange(self.position.shape[1])}, of)
 
-    def __len__(self) -> int:
-        return len(self.t)
-
     def __repr__(self) -> str:
         return f"EventTable({len(self)} events, {self.position.shape[1]} bodies)"
-
-    def _sheet(self) -> Sheet:
-        def row(at: int) -> tuple[str, ...]:
-            which = int(self.which[at])
-            kind = self.definitions[which].kind if which < len(self.definitions) else ""
-            return (str(at), f"{self.t[at]:.6g}", f"{which} {kind}".rstrip(), str(self.member[at]))
-
-        rows, note = first_rows(len(self), row)
-        return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
-
-    def __getitem__(self, chosen: slice | NDArray[Any]) -> EventTable:
-        if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
-            raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
-        columns = {name: getattr(self, name)[chosen] for name in self.__slots__ if name != "definitions"}
-        return EventTable._from_core(columns, self.definitions)
-
-    def __iter__(self) -> Iterator[Any]:
-        raise TypeError("an EventTable is read by its columns: which, t, position, velocity, member")
-
-    def of(self, which: int) -> EventTable:
-        """The lines of one event.
-
-        Parameters
-        ----------
-        which : int
-            The event, as counted in ``events=``.
-
-        Returns
-        -------
-        EventTable
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> scene = vv.problems.kepler(e=0.5).scene
-        >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0, direction=1)]).events.of(0))
-        3
-        """
-        return self[self.which == whole_number("which", which)]
 
 
 def __dir__() -> list[str]:

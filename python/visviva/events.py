@@ -4,6 +4,8 @@
 given as it is, or by `function` with a direction and an end. Events are located on the solution between the steps and
 change no bit of a run; one that is ``terminal`` ends it.
 
+`coordinate` and `expression` are of runs in generalized coordinates, which take `energy` and `function`, too.
+
 A zero counts where a function changes its sign. One at the start does not. Where a function comes near zero within a
 step and turns, it is followed down, so that two zeros in one step are found.
 """
@@ -25,7 +27,10 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-__all__ = ["Event", "EventTable", "apsis", "distance", "energy", "function", "plane"]
+__all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
+
+#: Of runs in generalized coordinates alone.
+GENERALIZED = ("coordinate", "expression")
 
 
 @known_keywords
@@ -56,6 +61,12 @@ class Event:
 
     def _to_core(self) -> dict[str, Any]:
         told = dict(self.parameters)
+        if self.kind in GENERALIZED:
+            raise InvalidInput(
+                "events",
+                f"{self.kind} is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
+                "plane, and functions f(t, position, velocity)",
+            )
         if "name" in told:
             raise InvalidInput("events", f"of the function {told['name']!r} a run keeps its name alone; give it again")
         return {
@@ -210,8 +221,85 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 
 
 @known_keywords
+def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False) -> Event:
+    """A generalized coordinate passes a value.
+
+    Parameters
+    ----------
+    name : str or sympy.Function
+        The coordinate, or its name. An angle is counted on beyond 2π.
+    value : float, optional
+        The value.
+    direction, terminal : optional
+        As of `plane` and `distance`: 1 where the coordinate rises in time.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run in generalized coordinates.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name; whether the system has the coordinate is looked at when it is run.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> swing = vv.systems.pendulum(position=[0.1])
+    >>> swing.run(t=10.0, events=[vv.events.coordinate("theta", direction=1)]).events.t.round(3)
+    array([1.505, 3.513, 5.52 , 7.527, 9.535])
+    """
+    if not isinstance(name, str) and not hasattr(name, "free_symbols"):
+        raise InvalidInput("name", f"expected the name of a coordinate, got {type(name).__name__}")
+    from visviva.generalized._source import _label
+
+    return _made("coordinate", direction, terminal, coordinate=_label(name), value=number("value", value))
+
+
+@known_keywords
+def expression(expression: Any, *, direction: int = 0, terminal: bool | int = False) -> Event:
+    """An expression of generalized coordinates passes zero.
+
+    Parameters
+    ----------
+    expression : sympy.Expr or callable
+        Of coordinates, velocities (of a Hamiltonian momenta), time and parameters: an expression of SymPy, or a
+        function that is called once, with expressions, as that of the system is: ``f(q, v, t, **parameters)``.
+    direction, terminal : optional
+        As of `plane` and `distance`: 1 where the expression rises in time.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run in generalized coordinates.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name; whether the core knows the expression is looked at when it is run.
+
+    Examples
+    --------
+    >>> import numpy as np, visviva as vv
+    >>> over = vv.systems.pendulum(position=[0.1], velocity=[7.0])
+    >>> def height(q, v, t, l, **others):
+    ...     return -l * np.cos(q[0])
+    >>> out = over.run(t=10.0, events=[vv.events.expression(height, direction=1, terminal=3)])
+    >>> len(out.events), bool(abs(np.cos(out.events.position)).max() < 1e-14), out.status.name
+    (3, True, 'STOPPED')
+    """
+    if not callable(expression) and not hasattr(expression, "free_symbols"):
+        kind = type(expression).__name__
+        raise InvalidInput("expression", f"expected an expression of SymPy or a function f(q, v, t), got {kind}")
+    return _made("expression", direction, terminal, expression=expression)
+
+
+@known_keywords
 def energy(value: float, *, direction: int = 0, terminal: bool | int = False) -> Event:
     """The energy of all bodies passes a value: of use where a force takes or gives energy.
+
+    In generalized coordinates it is that of the run: Jacobi's integral, or H.
 
     Parameters
     ----------
@@ -250,6 +338,9 @@ def function(
 
     It is called as ``call(t, position, velocity)``, with arrays of shape (N, 3), on the thread of the run, some ten
     times a step. What it raises ends the run. Its direction and end may be its attributes, too, as SciPy has them.
+
+    In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,). An
+    `expression` is better there where it is one: it is compiled, and no zero is missed between two looks.
 
     Parameters
     ----------

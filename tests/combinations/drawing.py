@@ -40,8 +40,8 @@ RIGID_METHODS = {method.name: method for method in vv.rigid.methods()}
 ROUGH = {"SoftSphere", "Tabulated", "PiecewisePolynomial"}
 # As those, in a speed.
 ROUGH_FORCES = {"Drag", "SampledDrag"}
-# A function of one's own is no value that a recipe could hold.
-EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function"})
+# A function of one's own is no value that a recipe could hold, and scenes have no generalized coordinates.
+EVENTS = sorted(set(vv.events.__all__) - {"Event", "EventTable", "function", "coordinate", "expression"})
 
 
 def declared(cls: type[Any]) -> list[dict[str, Any]]:

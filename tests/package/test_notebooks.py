@@ -59,6 +59,7 @@ def things() -> dict[str, Any]:
         run.elements(about="a"), scene.invariants(), handle, vv.Scene(handle).run(t=1.0), problem,
         vv.Scene(balls).run(t=4.0, collisions="bounce").collisions, pendulum, pendulum.hamiltonian(),
         pendulum.plan(t=1.0), pendulum.run(t=1.0), pendulums, pendulums.run(t=1.0), beam,
+        pendulums.run(t=1.0, events=["theta"]).events,
         vv.RigidBodies([1.0], inertia=np.eye(3)[None]),
         vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0]),
         *records(),

@@ -11,6 +11,7 @@ from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSe
 from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._discrete import DiscreteAction
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
+from visviva.generalized._events import GeneralizedEventTable
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian
 from visviva.generalized._legendre import LegendreTransform
@@ -29,6 +30,7 @@ __all__ = [
     "Expression",
     "GeneralizedEnsemble",
     "GeneralizedEnsembleTrajectory",
+    "GeneralizedEventTable",
     "GeneralizedPlan",
     "GeneralizedSystem",
     "GeneralizedTrajectory",

@@ -155,11 +155,12 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
             "method": "gauss16",
             "span": (float(begin), float(end)),
             "rtol": rtol,
+            "atol": None,
             "dt": None,
             "max_step": None,
             "max_steps": MOST_STEPS,
             "outputs": np.array([end]),
-            "sections": [],
+            "events": [],
         }
         both = np.concatenate([state, frame.ravel()])
         result = model.run(asked, both[None, :], system._values[None, :], 1, None)

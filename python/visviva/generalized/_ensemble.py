@@ -18,12 +18,14 @@ from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, expor
 from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.events import Event
+    from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
     from visviva.typing import Progress
 
@@ -112,8 +114,11 @@ class GeneralizedEnsemble(Shown):
         *,
         method: str = "auto",
         rtol: float = 1e-12,
+        atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
+        max_steps: int | None = None,
+        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
         threads: int | None = None,
         progress: Progress = False,
     ) -> GeneralizedEnsembleTrajectory:
@@ -121,8 +126,8 @@ class GeneralizedEnsemble(Shown):
 
         Parameters
         ----------
-        t, method, rtol, dt, max_step, progress
-            As in `GeneralizedSystem.run`.
+        t, method, rtol, atol, dt, max_step, max_steps, events, progress
+            As in `GeneralizedSystem.run`. With `visviva.events.function` copies run on one thread.
         threads : int, optional
             Threads; all cores if not given. They change no bit.
 
@@ -145,7 +150,7 @@ class GeneralizedEnsemble(Shown):
         >>> many.run(t=5.0).energy.shape
         (3, 2)
         """
-        asked, _ = self.system._asked(t, method, rtol, dt, max_step)
+        asked, _ = self.system._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         # What is off its constraints would be put on them without a word; other starts tell by their status.
         for member in range(len(self)) if self.system._constraints() else (0,):
             try:
@@ -168,7 +173,7 @@ class GeneralizedEnsembleTrajectory(Exported, Shown):
     ensemble : GeneralizedEnsemble
     t : ndarray, shape (T,)
     position, velocity, momentum : ndarray, shape (B, T, n)
-        NaN from where a copy failed.
+        NaN from where a copy failed, or an event ended it.
     energy : ndarray, shape (B, T)
     status : ndarray of Status, shape (B,)
     steps, evaluations : ndarray of int, shape (B,)
@@ -206,7 +211,7 @@ class GeneralizedEnsembleTrajectory(Exported, Shown):
         self._columns: NDArray[np.float64] | None = None
 
     def __repr__(self) -> str:
-        failed = int(np.count_nonzero(self.status != Status.OK))
+        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
         copies = count(len(self), "copy", "copies")
         return f"GeneralizedEnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
 
@@ -270,6 +275,27 @@ class GeneralizedEnsembleTrajectory(Exported, Shown):
     def energy(self) -> NDArray[np.float64]:
         """Jacobi's integral, or H, shape (B, T)."""
         return self._column(self._n, self._n + 1)[..., 0]
+
+    @property
+    def events(self) -> GeneralizedEventTable:
+        """The events that were found, copy after copy; ``out[i].events`` are those of one.
+
+        Raises
+        ------
+        InvalidInput
+            If none were looked for.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> many = vv.systems.pendulum().ensemble(position=[[0.1], [3.0]])
+        >>> many.run(t=4.0, events=["theta"]).events.member
+        array([0, 0, 0, 0, 1, 1])
+        """
+        from visviva.generalized._events import found_events
+
+        system, looked_for = self.ensemble.system, self._asked["looked_for"]
+        return found_events(system, self._result, looked_for, self.ensemble._parameters)
 
     @property
     def reactions(self) -> NDArray[np.float64]:

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING, Any, Self
 from visviva._arrays import number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
-from visviva.generalized._methods import LINEAR
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,7 +45,7 @@ class Flow:
         t : float
             The end.
         direction : {1, -1, 0}
-            Upwards, downwards, or both.
+            Upwards in time (also in a run backwards), downwards, or both.
         method, rtol, dt
             As in `run`.
 
@@ -85,12 +84,11 @@ class Flow:
             nodes, roots = self._source.nodes("section", [section])
             root = roots[0]
         asked, _ = self._asked(number("t", t), method, rtol, dt, None)
-        if asked["method"] == LINEAR:
-            raise InvalidInput("method", f"{LINEAR} takes no steps on which a section could be met; gauss16 does")
-        asked["sections"] = [(nodes, root, float(direction))]
+        passed = {"nodes": nodes, "root": root, "energy": None, "function": None}
+        asked["events"] = [passed | {"direction": float(direction), "last": None}]
         self._check_start()
         result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)
-        times, states = result["crossing_times"], result["crossing_states"]
+        times, states = result["found_t"], result["found_y"]
         if result["failures"][0] is not None:
             raise ConvergenceError(result["failures"][0], result["reached"][0])
         n = len(self.coordinates)

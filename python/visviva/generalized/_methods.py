@@ -10,7 +10,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.generalized._states import States
 
-__all__ = ["ACROSS_KINKS", "CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "discrete_name", "method_name"]
+__all__ = ["ACROSS_KINKS", "CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "check_atol", "discrete_name", "method_name"]
 
 #: What solves linear equations with constant coefficients, without steps.
 LINEAR = "matrix_exponential"
@@ -42,8 +42,36 @@ def discrete_name(method: object) -> str:
     raise InvalidInput("method", f"expected one of {', '.join(DISCRETE)}, got {method!r}{hint}")
 
 
+def check_atol(method: str) -> None:
+    """Refuse an absolute tolerance beside a method that estimates no error in a step."""
+    from visviva.integrators import methods
+
+    if method in ("taylor", *GAUSS):
+        raise InvalidInput(
+            "atol", f"{method} chooses its steps by how smooth the motion is, for rtol alone; leave atol out"
+        )
+    if not any(each.name == method and each.adaptive for each in methods()):
+        raise InvalidInput("atol", f"{method} estimates no error that atol could bound; leave it out")
+
+
+def _check_max_step(method: str, dt: float | None, max_step: float | None) -> None:
+    """Refuse a longest step of what chooses none."""
+    if max_step is None:
+        return
+    if method == LINEAR:
+        raise InvalidInput("max_step", f"{LINEAR} takes no steps; leave max_step out")
+    if dt is not None:
+        raise InvalidInput("max_step", f"expected none beside dt = {dt:g}, which is the length of every step")
+
+
 def method_name(method: object, system: States, dt: float | None, max_step: float | None = None) -> str:
-    """Check a method, by its name or itself, and give its name."""
+    """Check a method, by its name or itself, and what is said of its steps, and give its name."""
+    name = _name(method, system, dt, max_step)
+    _check_max_step(name, dt, max_step)
+    return name
+
+
+def _name(method: object, system: States, dt: float | None, max_step: float | None) -> str:
     if isinstance(method, str) and method == "auto":
         found = system._structure
         if found["linear"] and dt is None and max_step is None:

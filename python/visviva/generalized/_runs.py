@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -9,17 +10,24 @@ import numpy as np
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
-from visviva.generalized._methods import method_name
+from visviva.generalized._methods import check_atol, method_name
 from visviva.generalized._states import States, whole
+from visviva.status import Status
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.events import Event
     from visviva.generalized._plan import GeneralizedPlan
     from visviva.generalized._trajectory import GeneralizedTrajectory
     from visviva.typing import Progress
 
 __all__ = ["Runs"]
+
+#: Of a run that is not told how many.
+MOST_STEPS = 100_000_000
 
 
 @known_keywords
@@ -29,7 +37,15 @@ class Runs(States):
     __slots__ = ()
 
     def _asked(
-        self, t: ArrayLike, method: str, rtol: float, dt: float | None, max_step: float | None
+        self,
+        t: ArrayLike,
+        method: str,
+        rtol: float,
+        dt: float | None,
+        max_step: float | None,
+        max_steps: int | None = None,
+        events: Any = (),
+        atol: Any = None,
     ) -> tuple[dict[str, Any], NDArray[np.float64]]:
         outputs = self._outputs(t)
         rtol = number("rtol", rtol)
@@ -38,17 +54,42 @@ class Runs(States):
         for name, value in (("dt", dt), ("max_step", max_step)):
             if value is not None and number(name, value) <= 0.0:
                 raise InvalidInput(name, f"expected a positive number, got {value!r}; the direction is that of t")
+        name = method_name(method, self, dt, max_step)
         asked = {
-            "method": method_name(method, self, dt, max_step),
+            "method": name,
             "span": (self.t0, float(outputs[-1])),
             "rtol": rtol,
+            "atol": None if atol is None else self._absolute(atol, name, rtol),
             "dt": None if dt is None else number("dt", dt),
             "max_step": None if max_step is None else number("max_step", max_step),
-            "max_steps": 100_000_000,
+            "max_steps": MOST_STEPS if max_steps is None else whole_number("max_steps", max_steps, low=1),
             "outputs": outputs,
-            "sections": [],
+            "events": [],
+            "looked_for": (),
         }
+        if not (isinstance(events, tuple) and not events):
+            from visviva.generalized._events import events_of, told
+
+            looked_for = events_of(events)
+            asked |= {"looked_for": looked_for, "events": told(self, looked_for)}
         return asked, outputs
+
+    def _absolute(self, atol: Any, method: str, rtol: float) -> list[float]:
+        """Give the absolute tolerance of each number of a state."""
+        check_atol(method)
+        n, kinds = len(self.coordinates), ("position", self._second_name)
+        given = dict(atol) if isinstance(atol, Mapping) else dict.fromkeys(kinds, atol)
+        unknown = [kind for kind in given if kind not in kinds]
+        if unknown:
+            raise InvalidInput("atol", f"expected {kinds[0]!r} and {kinds[1]!r}, got {unknown[0]!r}")
+        found: list[float] = []
+        for kind in kinds:
+            each = given.get(kind, rtol * 1e-3)
+            values = [number("atol", each)] * n if np.ndim(each) == 0 else float_array("atol", each, (n,)).tolist()
+            if min(values) <= 0.0:
+                raise InvalidInput("atol", f"expected positive tolerances, got {min(values):g}")
+            found += values
+        return found
 
     def _outputs(self, t: ArrayLike) -> NDArray[np.float64]:
         """Give the times that are read: all that are asked for, or of an end the start and it."""
@@ -71,8 +112,11 @@ class Runs(States):
         *,
         method: str = "auto",
         rtol: float = 1e-12,
+        atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
+        max_steps: int | None = None,
+        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
         progress: Progress = False,
     ) -> GeneralizedTrajectory:
         """Run from the start.
@@ -96,10 +140,23 @@ class Runs(States):
             those orders.
         rtol : float
             Relative tolerance of a step.
+        atol : float, array_like of shape (n,), or dict, optional
+            Absolute tolerance of methods that estimate their error in a step, as ``dop853``: the root mean square of
+            the errors, each divided by ``atol + rtol·|number|``, is at most 1. ``{"position": ..., "velocity": ...}``
+            (of a Hamiltonian ``"momentum"``) has one for each kind; a thousandth of `rtol` where none is given. Other
+            methods refuse it.
         dt : float, optional
             The step of every step.
         max_step : float, optional
-            The longest step.
+            The longest step, of methods that choose theirs; others refuse it.
+        max_steps : int, optional
+            The run ends with an error beyond this number of steps.
+        events : sequence, optional
+            Of `visviva.events`: names of coordinates and `visviva.events.coordinate`, where one passes a value;
+            expressions of SymPy, functions ``f(q, v, t, **parameters)`` as that of the system, and
+            `visviva.events.expression`, which pass zero; `energy` and `function` as of scenes. What is found on the way
+            comes back in ``out.events``. Events change no bit of the run. A terminal one ends it: rows, ``final`` and
+            the table end there, with `Status.STOPPED`.
         progress : bool or callable
             As in `Scene.run`.
 
@@ -133,7 +190,7 @@ class Runs(States):
         from visviva.generalized._trajectory import GeneralizedTrajectory
 
         start = self._start()
-        asked, outputs = self._asked(t, method, rtol, dt, max_step)
+        asked, outputs = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         self._check_start()
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
         out = GeneralizedTrajectory(whole(self), result, asked)
@@ -142,7 +199,7 @@ class Runs(States):
         failure = result["failures"][0]
         if failure is not None:
             raise ConvergenceError(failure, result["reached"][0], out)
-        assert len(out.t) == len(outputs)
+        assert len(out.t) == len(outputs) or out.status is Status.STOPPED
         return out
 
     def _run(
@@ -167,14 +224,17 @@ class Runs(States):
         *,
         method: str = "auto",
         rtol: float = 1e-12,
+        atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
+        max_steps: int | None = None,
+        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
     ) -> GeneralizedPlan:
         """What `run` would do, and why.
 
         Parameters
         ----------
-        t, method, rtol, dt, max_step
+        t, method, rtol, atol, dt, max_step, max_steps, events
             As in `run`.
 
         Raises
@@ -190,5 +250,5 @@ class Runs(States):
         """
         from visviva.generalized._plan import GeneralizedPlan
 
-        asked, _ = self._asked(t, method, rtol, dt, max_step)
+        asked, _ = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         return GeneralizedPlan._of(whole(self), asked)

@@ -21,12 +21,15 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from visviva.events import Event
+    from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
 
 __all__ = ["GeneralizedTrajectory"]
 
 STATUS = {
     "finished": Status.OK,
+    "stopped": Status.STOPPED,
     "step too small": Status.STEP_FAILURE,
     "not finite": Status.STEP_FAILURE,
     "interrupted": Status.INTERRUPTED,
@@ -58,7 +61,7 @@ class GeneralizedTrajectory(Exported, Shown):
     system : Lagrangian or Hamiltonian
         What was run.
     t : ndarray, shape (T,)
-        Output times; fewer than asked for if the run failed.
+        Output times; fewer than asked for if the run failed, or an event ended it.
     position, velocity, momentum : ndarray, shape (T, n)
         Coordinates; their velocities; ∂L/∂q̇.
     energy : ndarray, shape (T,)
@@ -80,7 +83,18 @@ class GeneralizedTrajectory(Exported, Shown):
     ((2, 2), 'OK')
     """
 
-    __slots__ = ("_columns", "_states", "evaluations", "longest_step", "method", "status", "steps", "system", "t")
+    __slots__ = (
+        "_columns",
+        "_found",
+        "_states",
+        "evaluations",
+        "longest_step",
+        "method",
+        "status",
+        "steps",
+        "system",
+        "t",
+    )
 
     system: GeneralizedSystem
     t: NDArray[np.float64]
@@ -91,6 +105,7 @@ class GeneralizedTrajectory(Exported, Shown):
     method: str
     _states: NDArray[np.float64]
     _columns: NDArray[np.float64] | None
+    _found: tuple[dict[str, Any], tuple[Event, ...], int]
 
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
@@ -109,6 +124,8 @@ class GeneralizedTrajectory(Exported, Shown):
         self.longest_step = result["longest_step"][member]
         self.method = asked["method"]
         self._columns = None
+        found = {name: result[name] for name in ("found", "found_which", "found_t", "found_y")}
+        self._found = (found, asked["looked_for"], member)
 
     def __repr__(self) -> str:
         names = ", ".join(self.system.coordinates)
@@ -174,13 +191,40 @@ class GeneralizedTrajectory(Exported, Shown):
         return self._column(len(self.system.coordinates) + 1, None)
 
     @property
+    def events(self) -> GeneralizedEventTable:
+        """The events that were found.
+
+        Raises
+        ------
+        InvalidInput
+            If none were looked for.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.henon_heiles().run(t=10.0, events=["x", vv.events.coordinate("y", 0.2)])
+        >>> out.events.which.tolist(), out.events.of(1).position[:, 1]
+        ([1, 0, 0, 1, 0, 1, 0], array([0.2, 0.2, 0.2]))
+        """
+        from visviva.generalized._events import found_events
+
+        found, events, member = self._found
+        parameters = np.broadcast_to(self.system._values, (len(found["found"]), len(self.system._values)))
+        return found_events(self.system, found, events, parameters, member)
+
+    @property
     def final(self) -> GeneralizedSystem:
-        """The system at the last time, ready to run on."""
+        """The system at the last time, or at the event that ended the run, ready to run on."""
         n = len(self.system.coordinates)
-        if not len(self.t):
+        found, _, member = self._found
+        if self.status is Status.STOPPED:
+            line = sum(found["found"][: member + 1]) - 1
+            last, t0 = found["found_y"][line], float(found["found_t"][line])
+        elif len(self.t):
+            last, t0 = self._states[-1], float(self.t[-1])
+        else:
             raise InvalidInput("final", "the run has no state")
-        last = self._states[-1]
-        return self.system._at(last[:n], last[n:], t0=float(self.t[-1]))
+        return self.system._at(last[:n], last[n:], t0=t0)
 
     def conservation(self) -> dict[str, float]:
         """The largest change of what is conserved, relative to it or, where that is larger, to what it is a sum of.

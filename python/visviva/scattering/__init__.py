@@ -7,6 +7,7 @@ broadcast against each other; the functions of one array keep its shape.
 
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._bins import Bins
+from visviva.scattering._channels import Channel
 from visviva.scattering._cross_sections import (
     capture_cross_section,
     collision_integral,
@@ -57,6 +58,7 @@ __all__ = [
     "Beam",
     "Bins",
     "Bombardment",
+    "Channel",
     "CrossSection",
     "Deflection",
     "DeflectionStatus",

@@ -11,6 +11,7 @@ from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from visviva.potentials import Potential
+    from visviva.scattering._channels import Channel
     from visviva.scattering._importance import Strata
 
 __all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
@@ -178,6 +179,8 @@ class Beam:
         Standard deviation of the places, in each of two dimensions; None where the disc is filled evenly.
     importance : Strata or None
         Rings of impact parameters with parts of the events of their own; None where events fill the disc evenly.
+    channels : tuple of Channel
+        Reactions with their parts of the events; what is left of them is elastic.
 
     Examples
     --------
@@ -198,6 +201,7 @@ class Beam:
     divergence: Spread | None = None
     spot: float | None = None
     importance: Strata | None = None
+    channels: tuple[Channel, ...] = ()
 
 
 def described(beam: Beam) -> dict[str, Any]:
@@ -214,6 +218,7 @@ def described(beam: Beam) -> dict[str, Any]:
         "divergence": _pair(beam.divergence),
         "spot": beam.spot,
         "importance": None if strata is None else (list(strata.edges), list(strata.fractions)),
+        "channels": [(channel.probability, channel.q_value, channel.products) for channel in beam.channels],
     }
 
 

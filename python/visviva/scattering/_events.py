@@ -17,11 +17,13 @@ from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam, _which
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from os import PathLike
 
     from numpy.typing import NDArray
 
     from visviva._progress import Progress, Report
+    from visviva.scattering._channels import Channel
     from visviva.scattering._importance import LargeAngles, Strata
 
 __all__ = ["scattering_events"]
@@ -43,13 +45,16 @@ def scattering_events(
     divergence: float | Spread | None = None,
     spot: float | None = None,
     importance: Strata | LargeAngles | None = None,
+    channels: Channel | Iterable[Channel] | None = None,
     to: str | PathLike[str] | None = None,
 ) -> dict[str, NDArray[Any]]:
     """The very events that `monte_carlo` counts, one by one.
 
     Parameters
     ----------
-    potential, beam_energy, masses, b_max, seed, threads, progress, energy_spread, divergence, spot, importance
+    potential, beam_energy, masses, b_max, seed, threads, progress
+        As of `monte_carlo`.
+    energy_spread, divergence, spot, importance, channels
         As of `monte_carlo`.
     n_events, first_event : int
         Which events.
@@ -63,7 +68,8 @@ def scattering_events(
         Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
         ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
         folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
-        ``"impact_parameter"``. With `importance` also ``"weight"``: how many events of the run without one stands for.
+        ``"impact_parameter"``. With `channels` also ``"channel"``: 0 is elastic, others count from 1 in the order
+        given. With `importance` also ``"weight"``: how many events of the run without one stands for.
         Empty with `to`: the columns are those of the file.
 
     Raises
@@ -84,7 +90,7 @@ def scattering_events(
     """
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance)
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
@@ -104,11 +110,16 @@ _GROUP = 1 << 18
 
 
 def _columns(request: dict[str, Any], first: int, count: int, report: Report | None) -> dict[str, NDArray[Any]]:
-    component, values = _core.scattering_events(**request, n_events=count, first_event=first, progress=report)
+    (component, channel), values = _core.scattering_events(
+        **request, n_events=count, first_event=first, progress=report
+    )
     columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
     if request["beam"]["importance"] is None:
         del columns["weight"]
-    return {"event": np.arange(first, first + count, dtype=np.uint64), "component": component, **columns}
+    which = {"event": np.arange(first, first + count, dtype=np.uint64), "component": component}
+    if request["beam"]["channels"]:
+        which["channel"] = channel
+    return {**which, **columns}
 
 
 def _stream(request: dict[str, Any], first: int, count: int, report: Report | None, path: str) -> None:

@@ -15,6 +15,7 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
+from visviva.scattering._channels import Channel, as_channels
 from visviva.scattering._importance import LargeAngles, Strata, resolved
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._result import MonteCarlo
@@ -51,6 +52,7 @@ def monte_carlo(
     divergence: float | Spread | None = None,
     spot: float | None = None,
     importance: Strata | LargeAngles | None = None,
+    channels: Channel | Iterable[Channel] | None = None,
 ) -> MonteCarlo:
     """Scatter a beam off one centre and count every event.
 
@@ -58,7 +60,8 @@ def monte_carlo(
     Philox 4x32-10 with ``seed`` as the key and i as the counter, so the counts do not depend on threads, processor or
     partition, and results of separate ranges of events add up to that of the whole. Each number of an event is for one
     thing: 0 for the impact parameter, 1 for the line of a `Spectrum`, 2 and 3 for the spread of the energy, 4 for the
-    direction and 5 for the azimuth of the plane of scattering; so nothing that is asked for beside changes the others.
+    direction, 5 for the azimuth of the plane of scattering, 6 for the channel; so nothing that is asked for beside
+    changes the others.
 
     Parameters
     ----------
@@ -118,6 +121,11 @@ def monte_carlo(
         of them for all that is deflected by more than some angle (`LargeAngles`). Draw number 0 is mapped to b² ring by
         ring. Counts are whole numbers as ever, kept ring by ring; ``values()``, ``variances()`` and cross sections
         weight them, so that their means are those of the run without. Not beside `spot`.
+    channels : Channel or iterable of Channel, optional
+        Reactions with a Q and a probability each; what they leave of 1 is elastic. In the order given they divide draw
+        number 6 from 0 up: a channel more at the end changes no event of those before. ``energy`` and ``lab_angle`` are
+        then of what the projectile becomes, ``recoil_energy`` and ``recoil_angle`` of the other. Cross sections are
+        those of all channels together.
 
     Returns
     -------
@@ -127,7 +135,8 @@ def monte_carlo(
     Raises
     ------
     InvalidInput
-        For any argument out of range, by name; edges outside the range of their quantity too.
+        For any argument out of range, by name; edges outside the range of their quantity too; for a channel that is
+        closed at any energy of the beam, with its threshold.
     Interrupted
         After Ctrl-C, or if ``progress`` raises `KeyboardInterrupt`. Its ``.result`` holds the events counted until
         then, from ``first_event`` without a gap (None if there are none yet): with a run of the rest, from
@@ -150,7 +159,7 @@ def monte_carlo(
     if not isinstance(potential, Potential):
         raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
     asked = asked_for(tally, bins)
-    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance)
+    beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)
 
 
@@ -163,6 +172,7 @@ def _beam(
     divergence: object,
     spot: object,
     importance: object,
+    channels: Channel | Iterable[Channel] | None,
 ) -> Beam:
     beam = Beam(
         potential,
@@ -173,6 +183,7 @@ def _beam(
         energy_spread=as_spread("energy_spread", energy_spread),
         divergence=as_spread("divergence", divergence),
         spot=None if spot is None else positive("spot", spot),
+        channels=as_channels(channels),
     )
     return replace(beam, importance=resolved(importance, beam))
 

@@ -42,7 +42,7 @@ class OfEvents:
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
         names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "importance")
-        for name in (*names, "tables"):
+        for name in (*names, "channels", "tables"):
             mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
             if mine != theirs:
                 raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")

@@ -14,6 +14,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
+from visviva.scattering._channels import Channel
 from visviva.scattering._importance import Strata
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
@@ -30,8 +31,8 @@ if TYPE_CHECKING:
 
 __all__ = ["MonteCarlo"]
 
-# Version 2 knows beams that differ in energy, direction and place, version 3 strata.
-_FORMAT, _VERSION = "visviva scattering", 3
+# Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels.
+_FORMAT, _VERSION = "visviva scattering", 4
 
 
 @known_keywords
@@ -253,6 +254,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             "divergence": beam.divergence and [beam.divergence.shape, beam.divergence.width],
             "spot": beam.spot,
             "importance": beam.importance and [beam.importance.edges, beam.importance.fractions],
+            "channels": [[channel.q_value, channel.probability, channel.products] for channel in beam.channels],
             "smallest_angle": beam.smallest_angle,
             "tables": beam.tables,
             "events": self.events,
@@ -335,6 +337,7 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
         _spread(header.get("divergence")),
         header.get("spot"),
         None if strata is None else Strata(*strata),
+        tuple(Channel(q, part, products) for q, part, products in header.get("channels", [])),
     )
     events = tuple((seed, first, end) for seed, first, end in header["events"])
     tallies: list[Tally | JointTally] = []

@@ -3,7 +3,7 @@
 //! The dictionaries that come and go here are described in `visviva/_core.pyi`: `input` reads them, `output`
 //! writes them.
 
-mod events;
+pub(crate) mod events;
 mod input;
 mod output;
 mod rigid;

@@ -40,7 +40,7 @@ pub fn together(model: &Model, request: &Request) -> bool {
     };
     lanes_are_trajectories
         && request.outputs.is_some()
-        && request.sections.is_empty()
+        && request.events.is_empty()
         && model.projection.is_none()
         && request.span.0 != request.span.1
 }
@@ -135,7 +135,7 @@ impl<'a> Abreast<'a> {
         let (trial, in_step): (Box<dyn SideBySide>, bool) = match request.integrator {
             Integrator::Gauss(method) => {
                 let of = (model.code.clone(), &*parameters, model.form);
-                let eight = GaussEight::new(method, of, &state, (request.gauss_steps(), max_step), t0);
+                let eight = GaussEight::new(method, of, &state, (request.gauss_steps(method), max_step), t0);
                 (Box::new(eight), false)
             }
             Integrator::Table(method) => {

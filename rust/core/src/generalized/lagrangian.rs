@@ -3,8 +3,8 @@
 //! The one idea: momenta are one sweep back through L, and everything else sweeps forward through the momenta: along a
 //! velocity it is a column of M, along the motion the rest. H. Goldstein, *Classical Mechanics*, 3rd ed., (1.57), (1.70).
 
-use super::constraints;
 use super::model::{Derived, Source, degenerate};
+use super::{christoffel, constraints};
 use crate::error::Result;
 use crate::expressions::Id;
 use crate::expressions::program::{LinearSystem, Output};
@@ -41,10 +41,16 @@ pub(super) fn derive(mut source: Source) -> Result<Derived> {
     let mut motion: HashMap<Id, Id> = q.iter().copied().zip(v.iter().copied()).collect();
     let _ = motion.insert(graph.time(), one);
     let inertia = graph.tangent(&momenta, &motion);
+    let mut free: Vec<Id> = (0..n).map(|i| graph.subtract(slopes[i], inertia[i])).collect();
+    if let Some(other) = christoffel::free(graph, source.function, &momenta, &mass, (&q, &v))
+        && christoffel::length(graph, &other) < christoffel::length(graph, &free)
+    {
+        free = other;
+    }
     let damping = source.dissipation.map(|function| graph.gradient(function, &v));
     let mut right = Vec::with_capacity(n);
     for i in 0..n {
-        let mut terms = vec![(1.0, slopes[i]), (-1.0, inertia[i])];
+        let mut terms = vec![(1.0, free[i])];
         terms.extend(source.forces.get(i).map(|&force| (1.0, force)));
         terms.extend(damping.as_ref().map(|damping| (-1.0, damping[i])));
         right.push(graph.sum(0.0, &terms));

@@ -3,13 +3,14 @@
 //! The one idea: their derivatives hang on parameters alone, so y′ = A y + b, and the state with a 1 after it is a vector
 //! that [`MatrixExponential`] moves. Masses are divided by in double-double: a quotient's rounding would turn the phase.
 
+use super::events::{Interval, Watch};
 use super::model::{Kind, Model};
 use super::run::{Request, Solution};
 use crate::error::{Error, Result};
 use crate::expressions::graph::Dependence;
 use crate::expressions::program::Output;
 use crate::expressions::{Code, Graph, Id, Machine};
-use crate::numerics::double_double::DoubleDouble;
+use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::matrix_exponential::{MatrixExponential, elapsed};
 use crate::numerics::real::Real;
 use crate::ode::run::Ending;
@@ -123,8 +124,25 @@ impl LinearMotion {
         let mut start = y0.to_vec();
         start.push(1.0);
         let mut solution = Solution::at(t0);
+        let mut stop = None;
+        if !request.events.is_empty() {
+            let mut watch = Watch::new(&request.events, parameters);
+            match look(&mut flow, &start, request.span, &mut watch, ticker) {
+                Ok(stopped) => stop = stopped,
+                Err(Error::Interrupted) => solution.ending = Ending::Interrupted,
+                Err(error) => return Err(error),
+            }
+            solution.found = watch.found;
+            if solution.ending == Ending::Interrupted {
+                return Ok(solution);
+            }
+        }
         let only_end = [end];
+        let beyond = |t: f64| stop.is_some_and(|stop| if t0 <= end { t > stop } else { t < stop });
         for &t in request.outputs.as_deref().unwrap_or(&only_end) {
+            if beyond(t) {
+                break;
+            }
             if ticker.tick().is_err() {
                 return Ok(Solution { ending: Ending::Interrupted, ..solution });
             }
@@ -144,7 +162,76 @@ impl LinearMotion {
             solution.y.extend(&state[..y0.len()]);
             solution.reached = t;
         }
+        if let Some(stop) = stop {
+            (solution.ending, solution.reached) = (Ending::Stopped, stop);
+        }
         Ok(solution)
+    }
+}
+
+/// Units of time from one look for events to the next: two radians of the fastest that turns.
+const UNITS: f64 = 4.0;
+
+/// Looks for events on the way; the time of the one that ends the run, if one does.
+fn look(
+    flow: &mut MatrixExponential,
+    start: &[f64],
+    (t0, end): (f64, f64),
+    watch: &mut Watch<'_>,
+    ticker: &mut Ticker<'_>,
+) -> Result<Option<f64>> {
+    let (h, numbers) = (UNITS * flow.unit_of_time(), start.len() - 1);
+    let (span, sign) = ((end - t0).abs(), if end < t0 { -1.0 } else { 1.0 });
+    watch.start(t0, &start[..numbers])?;
+    let (mut node, mut from) = (0.0, t0);
+    loop {
+        ticker.tick()?;
+        let (elapsed, next) = (node * h, (node + 1.0) * h);
+        let last = next >= span;
+        let length = if last { span - elapsed } else { h };
+        let to = if last { end } else { t0 + sign * next };
+        let mut y = flow.apply(two_sum(elapsed, length), start);
+        if !y.iter().all(|number| number.is_finite()) {
+            return Ok(None);
+        }
+        y.truncate(numbers);
+        let mut part = Part { flow, start, elapsed, length, span: (from, to), end: y, inside: vec![] };
+        let stop = watch.look(&mut part)?;
+        if stop.is_some() || last {
+            return Ok(stop);
+        }
+        (node, from) = (node + 1.0, to);
+    }
+}
+
+/// A part of a motion that takes no steps.
+struct Part<'a> {
+    flow: &'a mut MatrixExponential,
+    start: &'a [f64],
+    /// Since the start of the run.
+    elapsed: f64,
+    length: f64,
+    span: (f64, f64),
+    end: Vec<f64>,
+    inside: Vec<f64>,
+}
+
+impl Interval for Part<'_> {
+    fn span(&self) -> (f64, f64) {
+        self.span
+    }
+
+    fn end(&self) -> &[f64] {
+        &self.end
+    }
+
+    fn at(&mut self, theta: f64) -> Result<&[f64]> {
+        if theta == 1.0 {
+            return Ok(&self.end);
+        }
+        self.inside = self.flow.apply(two_sum(self.elapsed, theta * self.length), self.start);
+        self.inside.truncate(self.end.len());
+        Ok(&self.inside)
     }
 }
 

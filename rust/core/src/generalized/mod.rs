@@ -5,11 +5,13 @@
 //! matrix is inverted but with numbers.
 
 pub mod abreast;
+mod christoffel;
 mod constraints;
 pub mod dependence;
 pub mod discrete;
 mod elimination;
 pub mod evaluate;
+pub mod events;
 mod fixed;
 pub mod gauss;
 mod hamiltonian;

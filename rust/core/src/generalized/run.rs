@@ -4,6 +4,7 @@
 //! never steer them. With constraints every kept step is put back on them ([`projection`]).
 
 use super::discrete::{self, DiscreteStep};
+use super::events::{Event, Found, Interval, Watch};
 use super::fixed::FixedSteps;
 use super::gauss::{self, GaussStep, Steps};
 use super::linear_motion::LinearMotion;
@@ -11,10 +12,10 @@ use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
 use crate::error::{Error, Result};
-use crate::expressions::{Code, Machine, Series};
+use crate::expressions::{Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::embedded::EmbeddedStep;
-use crate::ode::events::{Condition, Events, Watch, Zeros};
+use crate::ode::events::Watch as Unwatched;
 use crate::ode::norm::{Norm, RootMeanSquare};
 use crate::ode::run::{Ending, Recorder, Step, run};
 use crate::ode::state::State;
@@ -49,6 +50,8 @@ pub struct Request {
     pub span: (f64, f64),
     /// Relative tolerance.
     pub rtol: f64,
+    /// Absolute tolerance of each number, of methods that estimate their error; a thousandth of the relative one if not given.
+    pub atol: Option<Vec<f64>>,
     /// The step, of methods without step control and of others that are to hold theirs.
     pub dt: Option<f64>,
     /// The longest step.
@@ -59,46 +62,10 @@ pub struct Request {
     pub outputs: Option<Vec<f64>>,
     /// Whether steps are held where energy is conserved.
     pub held: bool,
-    /// Functions of the state whose zeros are wanted.
-    pub sections: Vec<Section>,
+    /// What is looked for on the way.
+    pub events: Vec<Event>,
     /// The equations as recurrences, if the method is made of them.
     pub series: Option<Arc<Series>>,
-}
-
-/// Zeros of an expression on the way.
-#[derive(Clone, Debug)]
-pub struct Section {
-    /// The expression and its rate, as [`Model::along`] gives them.
-    pub code: Arc<Code>,
-    /// Upwards if positive, downwards if negative, else both.
-    pub direction: f64,
-}
-
-/// Sections at work.
-struct Crossings {
-    machines: Vec<Machine<f64>>,
-}
-
-impl Crossings {
-    fn at(&mut self, which: usize, t: f64, y: &[f64]) -> &Machine<f64> {
-        let machine = &mut self.machines[which];
-        machine.state().copy_from_slice(y);
-        machine.run(t);
-        machine
-    }
-}
-
-impl Events for Crossings {
-    fn value(&mut self, which: usize, t: f64, y: &[f64]) -> Result<f64> {
-        Ok(self.at(which, t, y).output(0))
-    }
-
-    fn rate(&mut self, which: usize, t: f64, y: &[f64]) -> Option<f64> {
-        let machine = self.at(which, t, y);
-        let terms = (machine.code().outputs() - 2) / 2;
-        let of_rates = (0..terms).map(|i| machine.output(2 + i) * machine.output(2 + terms + i));
-        Some(of_rates.fold(machine.output(1), |sum, term| sum + term))
-    }
 }
 
 /// What came of it.
@@ -120,13 +87,8 @@ pub struct Solution {
     pub evaluations: u64,
     /// The longest step.
     pub h: f64,
-    /// The zeros of the sections, one after another.
-    pub crossings: Vec<Zeros>,
-}
-
-/// δ of Gauss's methods for a relative tolerance: the error goes about as its square.
-fn delta(rtol: f64) -> f64 {
-    (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2)
+    /// What was found on the way; the last ended the run if it has [stopped](Ending::Stopped).
+    pub found: Vec<Found>,
 }
 
 /// What errors are measured by, of so many numbers.
@@ -134,8 +96,10 @@ pub(super) fn norm<S: Controlled>(request: &Request, numbers: usize) -> Norm<S> 
     if request.series.is_some() {
         return Norm::of_numbers(S::splat(request.rtol));
     }
-    let (atol, rtol) = (S::splat(request.rtol * 1e-3), S::splat(request.rtol));
-    Norm::root_mean_square(RootMeanSquare { atol: vec![atol; numbers], rtol: vec![rtol; numbers] })
+    let usual = request.rtol * 1e-3;
+    let of = |index: usize| request.atol.as_ref().and_then(|each| each.get(index)).copied().unwrap_or(usual);
+    let atol = (0..numbers).map(|index| S::splat(of(index))).collect();
+    Norm::root_mean_square(RootMeanSquare { atol, rtol: vec![S::splat(request.rtol); numbers] })
 }
 
 /// What ends a run that takes too many steps.
@@ -156,11 +120,8 @@ impl Request {
     }
 
     /// The steps of a collocation method.
-    pub(super) fn gauss_steps(&self) -> Steps {
-        match self.dt {
-            Some(dt) => Steps::Equal(dt),
-            None => Steps::Chosen { delta: delta(self.rtol), held: self.held },
-        }
+    pub(super) fn gauss_steps(&self, method: &gauss::Method) -> Steps {
+        self.dt.map_or_else(|| method.chosen(self.rtol, self.held), Steps::Equal)
     }
 
     /// The step of a method that has a fixed one, with the sign of time.
@@ -182,7 +143,7 @@ impl Solution {
             steps: 0,
             evaluations: 0,
             h: 0.0,
-            crossings: vec![],
+            found: vec![],
         }
     }
 }
@@ -205,28 +166,21 @@ pub fn solve(
     };
     let norm = norm(request, y0.len());
     let max_step = request.longest_step(model);
-    let machines = request.sections.iter().map(|section| Machine::new(section.code.clone(), parameters));
-    let mut crossings = Crossings { machines: machines.collect() };
-    let conditions =
-        request.sections.iter().map(|section| Condition { direction: section.direction, last: None });
-    let watch = Watch::new(conditions.collect());
-    let events = (!request.sections.is_empty()).then_some(&mut crossings as &mut dyn Events);
-    let mut table = Table::new(request.outputs.as_deref(), false, events, watch);
+    let mut table = Table::new(request.outputs.as_deref(), false, None, Unwatched::new(vec![]));
     if t0 == end {
         table.still(request.span, y0)?;
-        let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
-        let crossings = table.into_zeros();
-        return Ok(Solution { reached: end, t, y, crossings, ..Solution::at(t0) });
+        return Ok(Solution { reached: end, t: table.t, y: table.y, ..Solution::at(t0) });
     }
+    let watch = Watch::new(&request.events, parameters);
     let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
-    let mut recorder = Counted { table, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
+    let mut recorder = Counted { table, watch, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
     let outcome = match request.integrator {
         Integrator::Gauss(method) => {
             let lanes: Vec<Lanes> = parameters.iter().map(|&value| Lanes([value; WIDTH])).collect();
             let machine = Machine::new(model.code.clone(), &lanes);
-            let steps = (request.gauss_steps(), max_step);
+            let steps = (request.gauss_steps(method), max_step);
             let trial = GaussStep::new(method, (machine, model.form), drive.state, steps, t0);
             drive.with(trial, projector.take(), &mut recorder, |trial| own = trial.evaluations())
         }
@@ -265,25 +219,16 @@ pub fn solve(
         Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
         Err(error) => return Err(error),
     };
-    let Counted { mut table, steps, last, reached, .. } = recorder;
-    let (t, y) = (core::mem::take(&mut table.t), core::mem::take(&mut table.y));
+    let Counted { table, watch, steps, last, reached, .. } = recorder;
+    let Table { t, y, .. } = table;
     let evaluations = system.evaluations() + own;
-    Ok(Solution {
-        ending,
-        failure,
-        reached,
-        t,
-        y,
-        steps,
-        evaluations,
-        h: last,
-        crossings: table.into_zeros(),
-    })
+    Ok(Solution { ending, failure, reached, t, y, steps, evaluations, h: last, found: watch.found })
 }
 
 /// A table that counts steps.
 struct Counted<'a> {
     table: Table<'a>,
+    watch: Watch<'a>,
     steps: u64,
     /// The longest step.
     last: f64,
@@ -295,6 +240,7 @@ struct Counted<'a> {
 
 impl Recorder for Counted<'_> {
     fn start(&mut self, t: f64, y: &[f64]) -> Result<()> {
+        self.watch.start(t, y)?;
         self.table.start(t, y)
     }
 
@@ -305,8 +251,27 @@ impl Recorder for Counted<'_> {
         self.steps += 1;
         let length = (step.to - step.from).abs();
         self.last = if length > self.last { length } else { self.last };
-        self.reached = step.to;
-        self.table.step(step)
+        let stop = self.watch.look(&mut Stepped(step))?;
+        self.reached = stop.unwrap_or(step.to);
+        self.table.keep(step, stop)?;
+        Ok(stop)
+    }
+}
+
+/// A step as events ask it.
+struct Stepped<'a, 'b, 'c>(&'a mut Step<'b, 'c>);
+
+impl Interval for Stepped<'_, '_, '_> {
+    fn span(&self) -> (f64, f64) {
+        (self.0.from, self.0.to)
+    }
+
+    fn end(&self) -> &[f64] {
+        self.0.end()
+    }
+
+    fn at(&mut self, theta: f64) -> Result<&[f64]> {
+        self.0.between(theta)
     }
 }
 

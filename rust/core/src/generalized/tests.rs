@@ -59,12 +59,13 @@ fn reached(model: &Model, y0: &[f64], parameters: &[f64], end: f64) -> Solution 
         integrator: Integrator::Gauss(gauss::method("gauss16").unwrap()),
         span: (0.0, end),
         rtol: 1e-12,
+        atol: None,
         dt: None,
         max_step: None,
         max_steps: u64::MAX,
         outputs: Some(vec![end]),
         held: true,
-        sections: vec![],
+        events: vec![],
         series: None,
     };
     let control = Control::default();

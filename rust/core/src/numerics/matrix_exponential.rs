@@ -48,6 +48,11 @@ impl MatrixExponential {
         Self { n, step, units, unit_of_time, powers: vec![] }
     }
 
+    /// A time in which nothing turns by more than half a radian or grows by more than its half: a power of two.
+    pub fn unit_of_time(&self) -> f64 {
+        self.unit_of_time
+    }
+
     /// exp(A t) y for t ≥ 0, the time as a sum of two; no numbers if it is so long that no digit would be left.
     pub fn apply(&mut self, t: (f64, f64), y: &[f64]) -> Vec<f64> {
         let units = DoubleDouble::new(t.0 / self.unit_of_time, t.1 / self.unit_of_time);

@@ -105,8 +105,18 @@ impl Step<'_, '_> {
         if t == self.from {
             return Ok(self.start());
         }
+        self.between((t - self.from) / (self.to - self.from))
+    }
+
+    /// The state at a fraction of it: nothing is lost to the rounding of the time.
+    ///
+    /// # Errors
+    /// Those of an evaluation.
+    pub fn between(&mut self, theta: f64) -> Result<&[f64]> {
+        if theta == 1.0 {
+            return Ok(self.end());
+        }
         self.ready()?;
-        let theta = (t - self.from) / (self.to - self.from);
         self.trial.at(&self.outcome, self.system, self.state, theta, self.between, self.ticker)?;
         Ok(self.between.all().0)
     }

@@ -90,6 +90,17 @@ impl Recorder for Table<'_> {
             Some(events) => self.watch.look(events, step)?,
             None => None,
         };
+        self.keep(step, stop)?;
+        Ok(stop)
+    }
+}
+
+impl Table<'_> {
+    /// Writes what a step adds, up to its end or to where the run ends in it.
+    ///
+    /// # Errors
+    /// Those of the states in the step.
+    pub fn keep(&mut self, step: &mut Step<'_, '_>, stop: Option<f64>) -> Result<()> {
         let end = stop.unwrap_or(step.to);
         // A run that ends where the step before did has nothing of this one.
         if let Some(extension) = &mut self.extension
@@ -112,6 +123,6 @@ impl Recorder for Table<'_> {
                 }
             }
         }
-        Ok(stop)
+        Ok(())
     }
 }

@@ -12,6 +12,7 @@
 //! itself, with the draws after these. Which draw is for what is written in `draws.rs`.
 
 mod beam;
+mod channels;
 mod draws;
 mod listed;
 mod mixture;
@@ -20,6 +21,7 @@ mod quantity;
 mod strata;
 
 pub use beam::Beam;
+pub use channels::{Channel, Channels};
 pub use listed::{Event, events};
 pub use mixture::{Mixture, Tally};
 pub use profile::{Profile, Spread};
@@ -31,7 +33,7 @@ use crate::numerics::philox::{DRAWS, Draw, fill_draws, key};
 use crate::parallel::{Ticker, for_chunks};
 use crate::{Error, Result};
 use core::ops::Range;
-use draws::{COMPONENT, Draws, PLACE};
+use draws::{CHANNEL, COMPONENT, Draws, PLACE};
 
 /// Events drawn at a time: their draws stay in the first-level cache.
 const BATCH: usize = 512;
@@ -156,11 +158,14 @@ pub fn expected(
         }
     }
     check_size(mixture, tallies)?;
-    let steps = steps(mixture, tallies, threads, ticker)?;
+    let steps = steps(mixture, tallies, mixture.exits(), threads, ticker)?;
+    let exits = mixture.exit_parts();
+    let parts: Vec<f64> =
+        mixture.parts().flat_map(|line| exits.iter().map(move |exit| line * exit)).collect();
     let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
     let of_tally = |(tally, steps): (&Tally, &Vec<Steps>)| {
         let mut drawn = vec![0.0; tally.slots() * weights.len()];
-        steps.iter().zip(mixture.parts()).for_each(|(steps, part)| steps.collect_parts(part, &mut drawn));
+        steps.iter().zip(&parts).for_each(|(steps, part)| steps.collect_parts(*part, &mut drawn));
         let mut slots = vec![0.0; tally.slots()];
         for (histogram, weight) in drawn.chunks(tally.slots()).zip(&weights) {
             slots.iter_mut().zip(histogram).for_each(|(slot, part)| *slot += weight * part);
@@ -178,26 +183,40 @@ type Batch = [[Draw; DRAWS]; BATCH / DRAWS];
 
 /// How events are counted.
 enum Program<'a> {
-    /// By looking up their draws: which component of the mixture one is, if there are several, and the step functions of
-    /// each tally, for each component.
-    Steps(Option<Lookup>, Vec<Vec<Steps>>),
+    /// By looking up their draws.
+    Steps(Stepped),
     /// One by one.
     Drawn(&'a Mixture, &'a [Tally]),
 }
 
-/// Of each tally, for each component; of events that are counted one by one for all components together.
+/// Events as step functions of their draws.
+struct Stepped {
+    /// Which component of the mixture one is, if there are several.
+    component: Option<Lookup>,
+    /// Through which channel it goes, if that matters.
+    channel: Option<Lookup>,
+    /// How many channels there are of each component.
+    channels: usize,
+    /// Of each tally, for each component and each channel of it.
+    steps: Vec<Vec<Steps>>,
+}
+
+/// Of each tally, for each component and channel; of events that are counted one by one for all of them together.
 type Counters = Vec<Vec<Vec<[u64; Steps::BANKS]>>>;
 
-/// Of each tally, for each component.
+/// Of each tally, for each component and each of so many channels of it.
 fn steps(
     mixture: &Mixture,
     tallies: &[Tally],
+    channels: usize,
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Vec<Steps>>> {
     let beams: Vec<&Beam> = mixture.beams().collect();
     let of_tally = |tally: &Tally| {
-        for_chunks(threads, beams.len(), ticker, |beam, ticker| tally.steps(beams[beam], ticker))
+        for_chunks(threads, beams.len() * channels, ticker, |index, ticker| {
+            tally.steps(beams[index / channels], index % channels, ticker)
+        })
     };
     tallies.iter().map(of_tally).collect()
 }
@@ -212,11 +231,15 @@ impl<'a> Program<'a> {
         if mixture.is_drawn() {
             return Ok(Self::Drawn(mixture, tallies));
         }
-        Ok(Self::Steps(mixture.lookup(), steps(mixture, tallies, threads, ticker)?))
+        // Where nothing is counted that channels differ in, nobody looks at which one it is.
+        let differ = tallies.iter().flat_map(Tally::axes).any(|(quantity, _)| quantity.is_of_channel());
+        let (channel, channels) = if differ { (mixture.exit_lookup(), mixture.exits()) } else { (None, 1) };
+        let steps = steps(mixture, tallies, channels, threads, ticker)?;
+        Ok(Self::Steps(Stepped { component: mixture.lookup(), channel, channels, steps }))
     }
     fn counters(&self) -> Counters {
         match self {
-            Self::Steps(_, steps) => {
+            Self::Steps(Stepped { steps, .. }) => {
                 steps.iter().map(|steps| steps.iter().map(Steps::counters).collect()).collect()
             }
             Self::Drawn(mixture, tallies) => {
@@ -236,9 +259,7 @@ impl<'a> Program<'a> {
             let stop = events.end.min(event + EVENTS_PER_TICK);
             ticker.control().count(stop - event);
             match self {
-                Self::Steps(component, steps) => {
-                    look_up(component.as_ref(), steps, seed, event..stop, &mut counters);
-                }
+                Self::Steps(stepped) => stepped.look_up(seed, event..stop, &mut counters),
                 Self::Drawn(mixture, tallies) => {
                     follow(mixture, tallies, seed, event..stop, &mut counters);
                 }
@@ -250,7 +271,7 @@ impl<'a> Program<'a> {
     /// Adds what was counted to the slots of each tally.
     fn collect(&self, counters: &Counters, counts: &mut [Vec<u64>]) {
         match self {
-            Self::Steps(_, steps) => {
+            Self::Steps(Stepped { steps, .. }) => {
                 for ((steps, counters), counts) in steps.iter().zip(counters).zip(counts) {
                     for (steps, counters) in steps.iter().zip(counters) {
                         steps.collect(counters, counts);
@@ -268,37 +289,40 @@ impl<'a> Program<'a> {
     }
 }
 
-/// Counts events by the step functions of their draws.
-fn look_up(
-    component: Option<&Lookup>,
-    steps: &[Vec<Steps>],
-    seed: u64,
-    events: Range<u64>,
-    counters: &mut Counters,
-) {
-    let (mut event, stop) = (events.start, events.end);
-    while event < stop {
-        let mut draws: Batch = Default::default();
-        fill_draws(key(seed), event >> 1, PLACE, &mut draws);
-        // A block serves two events: an odd beginning leaves out its first.
-        let skipped = (event & 1) as usize;
-        let length = (stop - event).min((BATCH - skipped) as u64);
-        let used = skipped..skipped + length as usize;
-        let shares = &draws.as_flattened()[used.clone()];
-        if let Some(component) = component {
+impl Stepped {
+    /// Counts events by the step functions of their draws.
+    fn look_up(&self, seed: u64, events: Range<u64>, counters: &mut Counters) {
+        let (mut event, stop) = (events.start, events.end);
+        while event < stop {
             let mut draws: Batch = Default::default();
-            fill_draws(key(seed), event >> 1, COMPONENT, &mut draws);
-            let mut components = [0; BATCH];
-            component.find_all(&draws.as_flattened()[used], &mut components);
-            for (steps, counters) in steps.iter().zip(counters.iter_mut()) {
-                Steps::count_mixed(steps, &components, shares, counters);
+            fill_draws(key(seed), event >> 1, PLACE, &mut draws);
+            // A block serves two events: an odd beginning leaves out its first.
+            let skipped = (event & 1) as usize;
+            let length = (stop - event).min((BATCH - skipped) as u64);
+            let used = skipped..skipped + length as usize;
+            let shares = &draws.as_flattened()[used.clone()];
+            if self.component.is_some() || self.channel.is_some() {
+                let mut which = [0; BATCH];
+                for (lookup, number, times) in
+                    [(&self.component, COMPONENT, self.channels as u32), (&self.channel, CHANNEL, 1)]
+                {
+                    let Some(lookup) = lookup else { continue };
+                    let mut draws: Batch = Default::default();
+                    fill_draws(key(seed), event >> 1, number, &mut draws);
+                    let mut found = [0; BATCH];
+                    lookup.find_all(&draws.as_flattened()[used.clone()], &mut found);
+                    which.iter_mut().zip(found).for_each(|(which, found)| *which += times * found);
+                }
+                for (steps, counters) in self.steps.iter().zip(counters.iter_mut()) {
+                    Steps::count_mixed(steps, &which, shares, counters);
+                }
+            } else {
+                for (steps, counters) in self.steps.iter().flatten().zip(counters.iter_mut().flatten()) {
+                    steps.count(shares, counters);
+                }
             }
-        } else {
-            for (steps, counters) in steps.iter().flatten().zip(counters.iter_mut().flatten()) {
-                steps.count(shares, counters);
-            }
+            event += length;
         }
-        event += length;
     }
 }
 

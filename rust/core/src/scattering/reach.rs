@@ -86,20 +86,10 @@ impl Beam {
             // A bin that is cut, or that ends where b = ∞ leads, is never whole, however narrow what is missing.
             let cut = from < low || to > high || self.ends_forward(quantity, from, to);
             let part = if cut { part.min(1.0_f64.next_down()) } else { part };
-            // Below the covered values there are events of the disc too, unless the angle falls with b and all events have
-            // one energy.
-            let alone = self.tables().is_empty() && self.profile.energy_spread.is_none();
+            // Below the covered values there are events of the disc too, unless the angle falls with b.
+            let alone = self.falls();
             if alone || quantity == Quantity::ImpactParameter { part } else { part.floor() }
         };
         edges.windows(2).map(part).collect()
-    }
-
-    /// Whether a bin holds what is not deflected at all.
-    fn ends_forward(&self, quantity: Quantity, from: f64, to: f64) -> bool {
-        match quantity {
-            Quantity::CmAngle | Quantity::LabAngle | Quantity::RecoilEnergy => from <= 0.0,
-            Quantity::RecoilAngle | Quantity::Energy => to >= self.limits(quantity).high,
-            Quantity::ImpactParameter => false,
-        }
     }
 }

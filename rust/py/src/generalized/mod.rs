@@ -3,6 +3,7 @@
 //! `visviva.generalized` makes [`nodes`] of SymPy's trees and makes trees of them again.
 
 mod constraints;
+mod events;
 mod nodes;
 mod runs;
 mod small_motions;

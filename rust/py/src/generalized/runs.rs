@@ -1,15 +1,16 @@
 //! What is asked of a run, and what came of it.
 
-use super::nodes::{NodeParts, added, chosen};
+use super::events::Sought;
 use super::{Array, GeneralizedModel};
 use crate::arrays::{copied, moved};
 use crate::errors::raised;
-use crate::gate::compute;
+use crate::gate::{compute, is_ctrl_c};
+use crate::scene::events::Raised;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::generalized::abreast::{solve_together, together};
-use visviva_core::generalized::run::{Integrator, Request, Section, Solution, solve};
+use visviva_core::generalized::run::{Integrator, Request, Solution, solve};
 use visviva_core::generalized::{discrete, gauss};
 use visviva_core::numerics::lanes::WIDTH;
 use visviva_core::ode::run::Ending;
@@ -27,12 +28,12 @@ pub(super) struct Asked<'py> {
     method: String,
     span: (f64, f64),
     rtol: f64,
+    atol: Option<Vec<f64>>,
     dt: Option<f64>,
     max_step: Option<f64>,
     max_steps: u64,
     outputs: Option<Array<'py>>,
-    /// Nodes, a root among them, and a direction, of each: whose zeros are wanted.
-    sections: Vec<(Vec<NodeParts>, u32, f64)>,
+    events: Vec<Sought>,
 }
 
 impl Asked<'_> {
@@ -53,24 +54,20 @@ impl Asked<'_> {
         method.map(Integrator::Table).ok_or_else(|| Error::invalid("method", format!("no method {name}")))
     }
 
-    pub(super) fn request(&self, py: Python<'_>, of: &GeneralizedModel) -> PyResult<Request> {
+    fn request(&self, py: Python<'_>, of: &GeneralizedModel, exceptions: &Raised) -> PyResult<Request> {
         let integrator = self.integrator(of).map_err(|error| raised(py, error))?;
         let outputs = self.outputs.as_ref().map(|t| PyResult::Ok(copied("t", t, [None])?.0)).transpose()?;
-        let sections = self.sections.iter().map(|(nodes, root, direction)| {
-            let mut model = of.copy();
-            let ids = added(&mut model.source.graph, nodes)?;
-            let code = Arc::new(model.along(chosen(&ids, *root)?)?);
-            Ok(Section { code, direction: *direction })
-        });
-        let sections = sections.collect::<Result<_>>().map_err(|error| raised(py, error))?;
+        let events = self.events.iter().map(|event| event.event(py, of, exceptions));
+        let events = events.collect::<Result<_>>().map_err(|error| raised(py, error))?;
         let series = matches!(integrator, Integrator::Table(Method { scheme: Scheme::Taylor(_), .. }));
         let series = series.then(|| of.model.series()).transpose().map_err(|error| raised(py, error))?;
         Ok(Request {
-            sections,
+            events,
             series,
             integrator,
             span: self.span,
             rtol: self.rtol,
+            atol: self.atol.clone(),
             dt: self.dt,
             max_step: self.max_step,
             max_steps: self.max_steps,
@@ -87,21 +84,24 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
     let t: Vec<f64> = solutions.iter().flat_map(|solution| solution.t.iter().copied()).collect();
     let y: Vec<f64> = solutions.iter().flat_map(|solution| solution.y.iter().copied()).collect();
     let rows = t.len();
-    let zeros = || solutions.iter().flat_map(|solution| &solution.crossings);
-    let crossings: Vec<usize> = zeros().map(|zeros| zeros.t.len()).collect();
-    let at: Vec<f64> = zeros().flat_map(|zeros| zeros.t.iter().copied()).collect();
-    let there: Vec<f64> = zeros().flat_map(|zeros| zeros.y.iter().copied()).collect();
-    let found = at.len();
-    result.set_item("crossings", crossings)?;
-    result.set_item("crossing_times", moved(py, at, &[found])?)?;
-    result.set_item("crossing_states", moved(py, there, &[found, numbers])?)?;
+    let lines = || solutions.iter().flat_map(|solution| &solution.found);
+    let found: Vec<usize> = solutions.iter().map(|solution| solution.found.len()).collect();
+    let which: Vec<usize> = lines().map(|line| line.which).collect();
+    let at: Vec<f64> = lines().map(|line| line.t).collect();
+    let there: Vec<f64> = lines().flat_map(|line| line.y.iter().copied()).collect();
+    let count = at.len();
+    result.set_item("found", found)?;
+    result.set_item("found_which", which)?;
+    result.set_item("found_t", moved(py, at, &[count])?)?;
+    result.set_item("found_y", moved(py, there, &[count, numbers])?)?;
     result.set_item("lengths", lengths)?;
     result.set_item("t", moved(py, t, &[rows])?)?;
     result.set_item("y", moved(py, y, &[rows, numbers])?)?;
     let endings: Vec<&str> = solutions
         .iter()
         .map(|solution| match solution.ending {
-            Ending::Finished | Ending::Stopped => "finished",
+            Ending::Finished => "finished",
+            Ending::Stopped => "stopped",
             Ending::StepTooSmall => "step too small",
             Ending::NotFinite => "not finite",
             Ending::Interrupted => "interrupted",
@@ -130,8 +130,11 @@ pub(super) fn run<'py>(
     let model = &*of.model;
     let (states, [members, _]) = copied("states", states, [None, Some(model.numbers())])?;
     let (parameters, _) = copied("parameters", parameters, [Some(members), Some(model.source.parameters)])?;
-    let request = asked.request(py, of)?;
+    let exceptions = Raised::default();
+    let request = asked.request(py, of, &exceptions)?;
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
+    // A function of Python is called on the thread of the run.
+    let threads = if asked.events.iter().any(Sought::calls) { 1 } else { threads };
     let (numbers, count) = (model.numbers(), model.source.parameters);
     let several = if together(model, &request) { abreast(members, threads) } else { 1 };
     let worked = compute(py, members as u64, progress, |ticker| {
@@ -150,7 +153,13 @@ pub(super) fn run<'py>(
             Ok(vec![outcome?])
         })
     })?;
-    let (solutions, interrupted) = worked.partial(py)?;
+    let (solutions, mut interrupted) = worked.partial(py)?;
+    if let Some(exception) = exceptions.take() {
+        if !is_ctrl_c(py, &exception) {
+            return Err(exception);
+        }
+        interrupted = true;
+    }
     let solutions = solutions.concat();
     let result = collected(py, &solutions, numbers)?;
     result.set_item("interrupted", interrupted)?;

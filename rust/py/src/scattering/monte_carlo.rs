@@ -7,13 +7,14 @@ use crate::registry::described_potential;
 use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use visviva_core::Result;
 use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Mixture, Profile, Quantity, Spread, Strata, Tally, events, expected, monte_carlo as simulate,
+    Beam, Channel, Mixture, Profile, Quantity, Spread, Strata, Tally, events, expected,
+    monte_carlo as simulate,
 };
-use visviva_core::{Error, Result};
 
 type Column<'py> = Bound<'py, PyArrayDyn<f64>>;
 type Integers<'py> = Bound<'py, PyArrayDyn<u64>>;
@@ -65,6 +66,8 @@ pub(crate) struct Described<'py> {
     divergence: Option<(String, f64)>,
     spot: Option<f64>,
     importance: Option<(Vec<f64>, Vec<f64>)>,
+    /// Of each its probability, Q, and masses of the products.
+    channels: Vec<(f64, f64, Option<(f64, f64)>)>,
 }
 
 /// What the work is given of one.
@@ -76,6 +79,7 @@ struct Taken {
     b_max: f64,
     profile: Profile,
     strata: Option<Strata>,
+    channels: Vec<Channel>,
 }
 
 impl Described<'_> {
@@ -86,12 +90,25 @@ impl Described<'_> {
                 .transpose()
                 .map_err(|error| raised(py, error))
         };
-        let Self { energies, weights, masses, b_max, energy_spread, divergence, spot, importance, .. } = self;
+        let Self {
+            energies,
+            weights,
+            masses,
+            b_max,
+            energy_spread,
+            divergence,
+            spot,
+            importance,
+            channels,
+            ..
+        } = self;
         let energy_spread = spread("energy_spread", energy_spread)?;
         let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
         let strata = importance.map(|(edges, fractions)| Strata::new(&edges, &fractions)).transpose();
         let strata = strata.map_err(|error| raised(py, error))?;
-        Ok(Taken { potential, energies, weights, masses, b_max, profile, strata })
+        let channel = |(probability, q_value, products)| Channel { probability, q_value, products };
+        let channels: Vec<Channel> = channels.into_iter().map(channel).collect();
+        Ok(Taken { potential, energies, weights, masses, b_max, profile, strata, channels })
     }
 }
 
@@ -103,6 +120,7 @@ impl Taken {
             self.masses,
             self.b_max,
             self.profile,
+            &self.channels,
             threads,
             ticker,
         )?;
@@ -122,10 +140,9 @@ fn taken(py: Python<'_>, tallies: Axes<AskedBins<'_>>) -> PyResult<Axes<Bins>> {
 }
 
 fn binned(mixture: &Mixture, asked: Axes<Bins>) -> Result<Vec<Tally>> {
-    let fastest = mixture.fastest().ok_or_else(|| Error::Internal("a mixture of nothing".to_owned()))?;
     let axis = |(name, bins): (String, Bins)| {
         let quantity = Quantity::named(&name)?;
-        Ok((quantity, fastest.edges(quantity, &bins)?))
+        Ok((quantity, mixture.edges(quantity, &bins)?))
     };
     let tally = |axes: Vec<_>| Tally::new(axes.into_iter().map(axis).collect::<Result<_>>()?);
     asked.into_iter().map(tally).collect()
@@ -226,7 +243,7 @@ pub(crate) fn strata_edges(py: Python<'_>, strata: usize, smallest: f64, b_max: 
     .whole(py)
 }
 
-/// The events of a range: their components; weight, energy before, direction, ψ, and all quantities, event after event.
+/// The events of a range: their components and channels; weight, energy before, direction, ψ, and all quantities, event after event.
 #[pyfunction]
 #[pyo3(signature = (*, beam, n_events, seed, first_event, threads, progress))]
 pub(crate) fn scattering_events<'py>(
@@ -237,16 +254,18 @@ pub(crate) fn scattering_events<'py>(
     first_event: u64,
     threads: Option<i64>,
     progress: Option<Py<PyAny>>,
-) -> PyResult<(Bound<'py, PyArrayDyn<u64>>, Column<'py>)> {
+) -> PyResult<((Integers<'py>, Integers<'py>), Column<'py>)> {
     let threads = thread_count(threads).map_err(|error| raised(py, error))?;
     let beam = beam.taken(py)?;
-    let (components, values) = compute(py, n_events, progress.as_ref(), |ticker| {
+    let ((components, channels), values) = compute(py, n_events, progress.as_ref(), |ticker| {
         ticker.control().count_whole(n_events);
         let mixture = beam.mixture(threads, ticker)?;
         let found = events(&mixture, seed, first_event, n_events, ticker)?;
         let columns = "their values";
+        let component = found.iter().map(|event| event.component);
+        let channel = found.iter().map(|event| event.channel);
         Ok((
-            collected("n_events", columns, found.iter().map(|event| event.component))?,
+            (collected("n_events", columns, component)?, collected("n_events", columns, channel)?),
             found
                 .iter()
                 .flat_map(|event| {
@@ -258,5 +277,6 @@ pub(crate) fn scattering_events<'py>(
     })?
     .whole(py)?;
     let count = components.len();
-    Ok((moved(py, components, &[count])?, moved(py, values, &[count, 4 + Quantity::ALL.len()])?))
+    let which = (moved(py, components, &[count])?, moved(py, channels, &[count])?);
+    Ok((which, moved(py, values, &[count, 4 + Quantity::ALL.len()])?))
 }

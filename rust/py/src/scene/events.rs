@@ -14,15 +14,26 @@ use visviva_core::{Error, Result};
 
 /// What a Python function among the events has raised.
 #[derive(Clone, Default)]
-pub(super) struct Raised(Arc<Mutex<Option<PyErr>>>);
+pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
 
 impl Raised {
     fn with<T>(&self, action: impl FnOnce(&mut Option<PyErr>) -> T) -> T {
         action(&mut self.0.lock().unwrap_or_else(PoisonError::into_inner))
     }
 
+    /// What a function gives; what it raises is kept and ends the run, and it is not called again.
+    pub(crate) fn called(&self, call: impl FnOnce(Python<'_>) -> PyResult<f64>) -> Result<f64> {
+        if self.with(|exception| exception.is_some()) {
+            return Err(Error::Interrupted);
+        }
+        attached(call).map_err(|exception| {
+            self.with(|place| *place = Some(exception));
+            Error::Interrupted
+        })
+    }
+
     /// The exception, once.
-    pub(super) fn take(&self) -> Option<PyErr> {
+    pub(crate) fn take(&self) -> Option<PyErr> {
         self.with(Option::take)
     }
 }
@@ -79,22 +90,12 @@ fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised)
 
 fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
     let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
-        if exceptions.with(|exception| exception.is_some()) {
-            return Err(Error::Interrupted);
-        }
-        let called: PyResult<f64> = attached(|py| {
+        exceptions.called(|py| {
             let shape = [particles, 3];
             let position = moved(py, position.to_vec(), &shape)?;
             let velocity = moved(py, velocity.to_vec(), &shape)?;
             function.call1(py, (t, position, velocity))?.extract::<f64>(py)
-        });
-        match called {
-            Ok(value) => Ok(value),
-            Err(exception) => {
-                exceptions.with(|place| *place = Some(exception));
-                Err(Error::Interrupted)
-            }
-        }
+        })
     };
     What::Function(Arc::new(call))
 }

@@ -3,7 +3,7 @@
 use super::super::code::{scratch, word};
 use super::super::function::Function;
 use super::super::program::{Operation, Program, Value};
-use super::recurrence::{Entry, Place, Recurrence};
+use super::recurrence::{Entry, Place, Recurrence, inverse};
 use super::{ORDERS, Series};
 use std::collections::HashMap;
 
@@ -18,6 +18,7 @@ pub(super) fn lowered(program: &Program) -> Series {
         slopes: HashMap::new(),
         radicands: vec![],
         made: vec![],
+        lines: HashMap::new(),
         scratch: 0,
     };
     // Parameters are the first constants, the state and the time the first series.
@@ -40,6 +41,7 @@ pub(super) fn lowered(program: &Program) -> Series {
         radicands: lowering.radicands,
         numbers: lowering.series,
         scratch: lowering.scratch,
+        inverses: core::array::from_fn(inverse),
     }
 }
 
@@ -53,6 +55,8 @@ struct Lowering {
     /// What stands below roots and broken powers.
     radicands: Vec<Place>,
     made: Vec<Recurrence>,
+    /// Of the series that are c₀ + c x: c and x.
+    lines: HashMap<Place, (f64, Place)>,
     scratch: usize,
 }
 
@@ -93,22 +97,52 @@ impl Lowering {
         to
     }
 
+    /// c₀ + Σ c x + Σ c a b, of terms and products by what varies in them.
+    fn sum(
+        &mut self,
+        to: Place,
+        constant: f64,
+        terms: [Vec<(f64, Place)>; 2],
+        products: [Vec<(f64, Place, Place)>; 3],
+    ) {
+        if let ([(factor, x)], true, true) = (&*terms[0], products[0].is_empty(), products[1].is_empty()) {
+            let (further, x) = self.lines.get(x).copied().unwrap_or((1.0, *x));
+            let _ = self.lines.insert(to, (factor * further, x));
+        }
+        let inner = self.alike(&products[0]);
+        self.push(Recurrence::Sum { to, constant, terms, products, inner });
+    }
+
+    /// What products come to but for their outermost coefficients. There c₀ + c x is c x, so y (1 + y) and y² are alike.
+    fn alike(&self, products: &[(f64, Place, Place)]) -> Vec<(f64, Place, Place)> {
+        let mut like: Vec<(f64, Place, Place)> = Vec::new();
+        for &(factor, a, b) in products {
+            let line = |x: Place| self.lines.get(&x).copied().unwrap_or((1.0, x));
+            let ((of_a, a), (of_b, b)) = (line(a), line(b));
+            let (factor, a, b) = (factor * of_a * of_b, a.min(b), a.max(b));
+            match like.iter_mut().find(|(_, x, y)| (*x, *y) == (a, b)) {
+                Some((sum, ..)) => *sum += factor,
+                None => like.push((factor, a, b)),
+            }
+        }
+        like.retain(|&(factor, ..)| factor != 0.0);
+        // A square has half the products.
+        let cost =
+            |of: &[(f64, Place, Place)]| of.iter().map(|&(_, a, b)| 1 + usize::from(a != b)).sum::<usize>();
+        if cost(&like) < cost(products) { like } else { products.to_vec() }
+    }
+
     /// c₀ + c x.
     fn shifted(&mut self, constant: f64, factor: f64, x: Place) -> Place {
         let to = self.room();
-        self.push(Recurrence::Sum {
-            to,
-            constant,
-            terms: [vec![(factor, x)], vec![]],
-            products: Default::default(),
-        });
+        self.sum(to, constant, [vec![(factor, x)], vec![]], Default::default());
         to
     }
 
     /// c₀ + c x².
     fn square(&mut self, constant: f64, factor: f64, x: Place) -> Place {
         let (to, products) = (self.room(), [vec![(factor, x, x)], vec![], vec![]]);
-        self.push(Recurrence::Sum { to, constant, terms: Default::default(), products });
+        self.sum(to, constant, Default::default(), products);
         to
     }
 
@@ -156,7 +190,7 @@ impl Lowering {
                 let rate = self.room();
                 self.integral(function, of, to, rate);
                 let products = [vec![(1.0, to, to)], vec![], vec![]];
-                self.push(Recurrence::Sum { to: rate, constant: 1.0, terms: Default::default(), products });
+                self.sum(rate, 1.0, Default::default(), products);
             }
             // (sech²)' = −2 tanh · sech², and tanh' = sech².
             Function::Tanh | Function::SechSquared => {
@@ -165,7 +199,7 @@ impl Lowering {
                 self.integral(Function::Tanh, of, tangent, slope);
                 self.integral(Function::SechSquared, of, slope, rate);
                 let products = [vec![(-2.0, tangent, slope)], vec![], vec![]];
-                self.push(Recurrence::Sum { to: rate, constant: 0.0, terms: Default::default(), products });
+                self.sum(rate, 0.0, Default::default(), products);
             }
             Function::Sinh | Function::Cosh => {
                 let (other, rate) = (self.room(), [Function::Cosh, Function::Sinh]);
@@ -234,7 +268,8 @@ impl Lowering {
                     split.1[kind].push((*factor, a.place, b.place));
                 }
                 let (terms, products) = split;
-                Recurrence::Sum { to: at(to).place, constant: *constant, terms, products }
+                let to = at(to).place;
+                return self.sum(to, *constant, terms, products);
             }
             Operation::Product(to, a, b) => {
                 let (to, Entry { place: a, varies }, b) = (at(to).place, at(a), at(b));
@@ -316,7 +351,7 @@ impl Lowering {
         for entry in [y, x] {
             products[if entry.varies { 0 } else { 2 }].push((1.0, entry.place, entry.place));
         }
-        self.push(Recurrence::Sum { to: squares, constant: 0.0, terms: Default::default(), products });
+        self.sum(squares, 0.0, Default::default(), products);
         let mut part = |of: Entry, by: Entry| {
             of.varies.then(|| {
                 let rate = self.room();

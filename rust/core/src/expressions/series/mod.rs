@@ -5,6 +5,7 @@
 //! integral of its derivative, which is made of the same operations; a linear system is factored once for all orders.
 //! R. E. Moore, *Interval Analysis* (1966), chapter 11; A. Griewank & A. Walther, *Evaluating Derivatives* (2008), chapter 13.
 
+mod convolution;
 mod lowered;
 mod motion;
 mod recurrence;
@@ -42,7 +43,12 @@ pub struct Series {
     /// Numbers in all, and room for factored matrices.
     numbers: usize,
     scratch: usize,
+    /// 1/n of all orders n.
+    inverses: [(f64, f64); ORDERS],
 }
+
+/// An order n, and 1/n with what that leaves out.
+pub type Order = (usize, (f64, f64));
 
 impl Series {
     /// A function among these expressions that leaps where it is as smooth from either side as if it went on: of a series,
@@ -72,14 +78,14 @@ impl Series {
 /// What series hold: a number, or eight.
 pub trait Coefficient: Real {
     /// The coefficients of order `order` of everything that a list of recurrences makes.
-    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]);
+    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]);
 
     /// All coefficients of a motion.
     fn motion(room: Room<'_, Self>, equations: &Equations<'_, Self>, into: Coefficients<'_, Self>);
 }
 
 impl Coefficient for f64 {
-    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
+    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
         one(of, order, numbers, scratch);
     }
 
@@ -89,7 +95,7 @@ impl Coefficient for f64 {
 }
 
 impl Coefficient for Lanes {
-    fn expand(of: &[Recurrence], order: usize, numbers: &mut [Self], scratch: &mut [Self]) {
+    fn expand(of: &[Recurrence], order: Order, numbers: &mut [Self], scratch: &mut [Self]) {
         lanes(of, order, numbers, scratch);
     }
 
@@ -101,7 +107,7 @@ impl Coefficient for Lanes {
 #[inline(always)]
 fn lanes_body<V: Vector8 + Scalar>(
     of: &[Recurrence],
-    order: usize,
+    order: Order,
     numbers: &mut [Lanes],
     scratch: &mut [Lanes],
 ) {
@@ -110,13 +116,13 @@ fn lanes_body<V: Vector8 + Scalar>(
 
 #[inline(always)]
 #[expect(clippy::extra_unused_type_parameters, reason = "the tier gives its instructions, not its lanes")]
-fn one_body<V: Vector8>(of: &[Recurrence], order: usize, numbers: &mut [f64], scratch: &mut [f64]) {
+fn one_body<V: Vector8>(of: &[Recurrence], order: Order, numbers: &mut [f64], scratch: &mut [f64]) {
     recurrence::expand(of, order, numbers, scratch);
 }
 
 tiered! {
-    fn lanes[][](of: &[Recurrence], order: usize, numbers: &mut [Lanes], scratch: &mut [Lanes]) = lanes_body;
-    fn one[][](of: &[Recurrence], order: usize, numbers: &mut [f64], scratch: &mut [f64]) = one_body;
+    fn lanes[][](of: &[Recurrence], order: Order, numbers: &mut [Lanes], scratch: &mut [Lanes]) = lanes_body;
+    fn one[][](of: &[Recurrence], order: Order, numbers: &mut [f64], scratch: &mut [f64]) = one_body;
 }
 
 /// Series with their coefficients, whose preamble is done.
@@ -140,7 +146,7 @@ impl<S: Coefficient> Expansion<S> {
     pub fn set_parameters(&mut self, parameters: &[S]) {
         let Self { of, numbers, scratch } = self;
         numbers[..of.parameters].copy_from_slice(parameters);
-        S::expand(&of.preamble, 0, numbers, scratch);
+        S::expand(&of.preamble, (0, of.inverses[0]), numbers, scratch);
     }
 
     /// Sets the coefficient of an order of a number of the state, or of the time, which comes after them.
@@ -152,7 +158,8 @@ impl<S: Coefficient> Expansion<S> {
     /// Finds all coefficients of an order; those of lower orders were found before.
     #[inline]
     pub fn expand(&mut self, order: usize) {
-        S::expand(&self.of.body, order, &mut self.numbers, &mut self.scratch);
+        let of = (order, self.of.inverses[order]);
+        S::expand(&self.of.body, of, &mut self.numbers, &mut self.scratch);
     }
 
     /// The coefficient of an order of a result.

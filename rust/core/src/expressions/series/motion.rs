@@ -3,9 +3,9 @@
 //! The one idea: between two orders there are a few numbers to be moved, so the way through all orders is one kernel.
 
 use super::super::execute::Scalar;
-use super::{Coefficient, Expansion, ORDERS, Series, recurrence};
+use super::{Coefficient, Expansion, Series, recurrence};
 use crate::numerics::element::{Scaled, View};
-use crate::numerics::integrals::{raise, raise_rates};
+use crate::numerics::integrals::over;
 use crate::numerics::lanes::{Lanes, Vector8};
 use crate::tiered;
 
@@ -60,13 +60,12 @@ fn motion<S: Copy, V: View<S> + Scalar>(
     into: Coefficients<'_, S>,
 ) {
     let Equations { second_order, velocity, t, unit, inverse } = *equations;
-    let Series { body, inputs, outputs, variables, .. } = room.series;
+    let Series { body, inputs, outputs, variables, inverses, .. } = room.series;
     let (numbers, scratch) = (V::view_mut(room.numbers), V::view_mut(room.scratch));
     let Coefficients { order, len, q, v } = into;
     let (q, v, unit) = (V::view_mut(q), V::view_mut(v), V::load(unit));
     let per_unit = V::one() / unit;
     let unit_of_rates = if second_order { unit * unit } else { unit };
-    let mut rates = [V::zero(); ORDERS];
     for n in 0..order {
         for index in 0..len {
             numbers[inputs[index] + n] = q[n * len + index];
@@ -81,24 +80,18 @@ fn motion<S: Copy, V: View<S> + Scalar>(
                 _ => V::zero(),
             };
         }
-        recurrence::expand(body, n, numbers, scratch);
-        // As many at a time as there is room for.
-        for from in (0..len).step_by(ORDERS) {
-            let count = if len - from < ORDERS { len - from } else { ORDERS };
-            for index in 0..count {
-                let place = outputs[from + index];
-                let constant = n > 0 && place < inputs[0];
-                let rate = if constant { V::zero() } else { numbers[place + n] };
-                rates[index] = rate * unit_of_rates;
-            }
-            let (own, next) = (&rates[..count], (n + 1) * len + from);
-            let over = scaled::<S, V>(&inverse[n + 1]);
+        recurrence::expand(body, (n, inverses[n]), numbers, scratch);
+        let (of_rates, further) = (scaled::<S, V>(&inverse[n + 1]), scaled::<S, V>(&inverse[n + 2]));
+        for (index, &place) in outputs[..len].iter().enumerate() {
+            // Constants have no further coefficient.
+            let constant = n > 0 && place < inputs[0];
+            let rate = if constant { V::zero() } else { numbers[place + n] };
+            let raised = over(rate * unit_of_rates, of_rates);
             if second_order {
-                let later = (n + 2) * len + from;
-                let further = scaled::<S, V>(&inverse[n + 2]);
-                raise(own, over, further, &mut v[next..next + count], &mut q[later..later + count]);
+                v[(n + 1) * len + index] = raised;
+                q[(n + 2) * len + index] = over(raised, further);
             } else {
-                raise_rates(own, over, &mut q[next..next + count]);
+                q[(n + 1) * len + index] = raised;
             }
         }
     }

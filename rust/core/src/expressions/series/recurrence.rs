@@ -1,12 +1,15 @@
 //! The recurrences: the n-th coefficient of each operation from what came before.
 //!
 //! The one idea: but for the products with the two outermost coefficients, sums over lower orders hang on nothing that this
-//! order finds, so they come first, in four chains, and the processor does those of one operation while another waits.
+//! order finds, so they come first, and the processor does those of one operation while another waits. Even orders find them
+//! for the odd ones, too ([`convolution`](super::convolution)), and leave them where the coefficient will be.
 
 use super::super::code::word;
 use super::super::execute::Scalar;
 use super::super::function::Function;
 use super::super::linear;
+use super::ORDERS;
+use super::convolution::{begun, both_begun, convolved, inside, inside_square};
 use crate::numerics::functions;
 use crate::numerics::real::{Mask, Real};
 
@@ -28,6 +31,8 @@ pub enum Recurrence {
         terms: [Vec<(f64, Place)>; 2],
         /// Products of two series, of a constant and a series, and of two constants.
         products: [Vec<(f64, Place, Place)>; 3],
+        /// What the products of two series come to but for their outermost coefficients: those alike in one.
+        inner: Vec<(f64, Place, Place)>,
     },
     /// A product of two series.
     Product { to: Place, a: Place, b: Place },
@@ -79,87 +84,68 @@ pub struct Entry {
     pub(super) varies: bool,
 }
 
-/// Σ x[i] y[last − i], in four chains.
+/// A series: the one look at where it lies serves all its coefficients.
 #[inline(always)]
-fn convolved<S: Real>(x: &[S], y: &[S]) -> S {
-    let y = &y[..x.len()];
-    let (mut first, mut second, mut third, mut fourth) = (S::zero(), S::zero(), S::zero(), S::zero());
-    let (forward, backward) = (x.chunks_exact(4), y.rchunks_exact(4));
-    let rest = (forward.remainder(), backward.remainder());
-    for four in forward.zip(backward) {
-        if let ([x0, x1, x2, x3], [y0, y1, y2, y3]) = four {
-            first = x0.multiply_add(*y3, first);
-            second = x1.multiply_add(*y2, second);
-            third = x2.multiply_add(*y1, third);
-            fourth = x3.multiply_add(*y0, fourth);
-        }
-    }
-    match rest {
-        ([x0], [y0]) => first = x0.multiply_add(*y0, first),
-        ([x0, x1], [y0, y1]) => {
-            first = x0.multiply_add(*y1, first);
-            second = x1.multiply_add(*y0, second);
-        }
-        ([x0, x1, x2], [y0, y1, y2]) => {
-            first = x0.multiply_add(*y2, first);
-            second = x1.multiply_add(*y1, second);
-            third = x2.multiply_add(*y0, third);
-        }
-        _ => {}
-    }
-    (first + second) + (third + fourth)
+fn series<S>(numbers: &[S], place: Place) -> &[S] {
+    &numbers[place..place + ORDERS]
 }
 
-/// As [`convolved`] with two at once, in two chains each: what they share is read once.
+/// A coefficient, and of an even order what it leaves for the next.
 #[inline(always)]
-fn convolved_with_both<S: Real>(x: &[S], y: &[S], z: &[S]) -> (S, S) {
-    let (y, z) = (&y[..x.len()], &z[..x.len()]);
-    let (mut even, mut odd) = ((S::zero(), S::zero()), (S::zero(), S::zero()));
-    let (forward, of_y, of_z) = (x.chunks_exact(2), y.rchunks_exact(2), z.rchunks_exact(2));
-    let rest = (forward.remainder(), of_y.remainder(), of_z.remainder());
-    for ((x, y), z) in forward.zip(of_y).zip(of_z) {
-        if let ([x0, x1], [y0, y1], [z0, z1]) = (x, y, z) {
-            even = (x0.multiply_add(*y1, even.0), x0.multiply_add(*z1, even.1));
-            odd = (x1.multiply_add(*y0, odd.0), x1.multiply_add(*z0, odd.1));
-        }
+fn put<S: Real>(numbers: &mut [S], place: Place, n: usize, value: S, later: S) {
+    let into = &mut numbers[place..place + ORDERS];
+    into[n] = value;
+    if n.is_multiple_of(2) {
+        into[n + 1] = later;
     }
-    if let ([x], [y], [z]) = rest {
-        even = (x.multiply_add(*y, even.0), x.multiply_add(*z, even.1));
-    }
-    (even.0 + odd.0, even.1 + odd.1)
+}
+
+/// What an even order has left for the odd one after it.
+#[inline(always)]
+fn left<S: Real>(of: &[S], n: usize) -> S {
+    if n > 1 { of[n] } else { S::zero() }
+}
+
+/// Σ a_j b_{n−j} of 0 < j < n, and of an even n of what is known of the next order; an odd one was found before.
+#[inline(always)]
+fn known<S: Real>(of: &[S], b: &[S], n: usize) -> (S, S) {
+    if n.is_multiple_of(2) { begun(of, b, n) } else { (left(of, n), S::zero()) }
+}
+
+/// As [`convolution::inside`](super::convolution::inside), of any two series.
+#[inline(always)]
+fn between<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> (S, S) {
+    let of_a = series(numbers, a);
+    if a == b { inside_square(of_a, n) } else { inside(of_a, series(numbers, b), n) }
+}
+
+/// a_0 b_n + a_n b_0.
+#[inline(always)]
+fn ends<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
+    let (of_a, of_b) = (series(numbers, a), series(numbers, b));
+    let first = of_a[0] * of_b[n];
+    if a == b { first + first } else { of_a[n].multiply_add(of_b[0], first) }
 }
 
 /// Σ a_j b_{n−j} of 0 < j < n.
 #[inline(always)]
 fn inner<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
-    convolved(&numbers[a + 1..a + n], &numbers[b + 1..b + n])
+    convolved(&series(numbers, a)[1..n], &series(numbers, b)[1..n])
 }
 
-/// The coefficient of order n > 0 of a product.
+/// Σ a_j a_{n−j} of 0 < j < n: each product comes twice but the one in the middle.
 #[inline(always)]
-fn product<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
-    if a != b {
-        let inside = inner(numbers, a, b, n);
-        return numbers[a].multiply_add(numbers[b + n], numbers[a + n].multiply_add(numbers[b], inside));
-    }
-    // Of a square each product comes twice but the one in the middle.
+fn inner_square<S: Real>(a: &[S], n: usize) -> S {
     let half = n.div_ceil(2);
-    let pairs = convolved(&numbers[a + 1..a + half], &numbers[a + n + 1 - half..a + n]);
-    let pairs = numbers[a].multiply_add(numbers[a + n], pairs);
+    let pairs = convolved(&a[1..half], &a[n + 1 - half..n]);
     let twice = pairs + pairs;
-    if n.is_multiple_of(2) { numbers[a + n / 2].multiply_add(numbers[a + n / 2], twice) } else { twice }
+    if n.is_multiple_of(2) { a[n / 2].multiply_add(a[n / 2], twice) } else { twice }
 }
 
-/// As a product, without the last coefficient of its second factor.
-#[inline(always)]
-fn known<S: Real>(numbers: &[S], a: Place, b: Place, n: usize) -> S {
-    numbers[a + n].multiply_add(numbers[b], inner(numbers, a, b, n))
-}
-
-/// Σ slopes_j rate_{n−j} of 0 < j ≤ n, over n: what the integral of a product has at the order n.
+/// Σ slopes_j rate_{n−j} of 0 < j ≤ n: n times what the integral of a product has at the order n.
 #[inline(always)]
 fn integral<S: Real>(numbers: &[S], slopes: Place, rate: Place, n: usize) -> S {
-    convolved(&numbers[slopes + 1..slopes + n + 1], &numbers[rate..rate + n])
+    convolved(&series(numbers, slopes)[1..n + 1], &series(numbers, rate)[..n])
 }
 
 /// Over n: 1/n as a sum of two, lest what it leaves out bias every step alike.
@@ -168,17 +154,32 @@ fn over<S: Real>(value: S, inverse: (f64, f64)) -> S {
     value.multiply_add(S::splat(inverse.0), value * S::splat(inverse.1))
 }
 
-/// The coefficients of order n of all operations.
+/// The highest order: an even one leaves something for the next.
+const HIGHEST: usize = ORDERS - 2;
+
+/// 1/n, and what that leaves out.
+pub(super) fn inverse(n: usize) -> (f64, f64) {
+    let n = n.max(1) as f64;
+    let high = 1.0 / n;
+    (high, (-high).mul_add(n, 1.0) * high)
+}
+
+/// The coefficients of order n of all operations, with 1/n.
 #[inline(always)]
-pub(super) fn expand<S: Scalar>(of: &[Recurrence], n: usize, numbers: &mut [S], scratch: &mut [S]) {
+pub(super) fn expand<S: Scalar>(
+    of: &[Recurrence],
+    (n, inverse): (usize, (f64, f64)),
+    numbers: &mut [S],
+    scratch: &mut [S],
+) {
+    // No method has an order beyond; known here, it is not asked for at every coefficient.
+    assert!(n <= HIGHEST, "no room for the order {n}");
     if n == 0 {
         for recurrence in of {
             first(recurrence, numbers, scratch);
         }
         return;
     }
-    let high = 1.0 / n as f64;
-    let inverse = (high, (-high).mul_add(n as f64, 1.0) * high);
     for recurrence in of {
         further(recurrence, (n, inverse), numbers, scratch);
     }
@@ -211,7 +212,7 @@ fn sum<S: Real>(
 fn first<S: Scalar>(recurrence: &Recurrence, numbers: &mut [S], scratch: &mut [S]) {
     match *recurrence {
         Recurrence::Constant { to, value } => numbers[to] = S::splat(value),
-        Recurrence::Sum { to, constant, ref terms, ref products } => {
+        Recurrence::Sum { to, constant, ref terms, ref products, .. } => {
             numbers[to] = sum(numbers, constant, terms, products);
         }
         Recurrence::Product { to, a, b }
@@ -274,41 +275,79 @@ fn further<S: Scalar>(
     numbers: &mut [S],
     scratch: &mut [S],
 ) {
+    let even = n.is_multiple_of(2);
     match *recurrence {
-        Recurrence::Sum { to, ref terms, ref products, .. } => {
-            let mut value = S::zero();
+        Recurrence::Sum { to, ref terms, ref products, ref inner, .. } => {
+            let (mut value, mut later) = (S::zero(), S::zero());
+            if even {
+                for &(factor, a, b) in inner {
+                    let (factor, (own, next)) = (S::splat(factor), between(numbers, a, b, n));
+                    value = factor.multiply_add(own, value);
+                    later = factor.multiply_add(next, later);
+                }
+            } else {
+                value = left(series(numbers, to), n);
+            }
             for &(factor, a, b) in &products[0] {
-                value = S::splat(factor).multiply_add(product(numbers, a, b, n), value);
+                value = S::splat(factor).multiply_add(ends(numbers, a, b, n), value);
             }
             for &(factor, constant, of) in &products[1] {
-                value = (S::splat(factor) * numbers[constant]).multiply_add(numbers[of + n], value);
+                let of = series(numbers, of)[n];
+                value = (S::splat(factor) * numbers[constant]).multiply_add(of, value);
             }
             for &(factor, x) in &terms[0] {
-                value = S::splat(factor).multiply_add(numbers[x + n], value);
+                value = S::splat(factor).multiply_add(series(numbers, x)[n], value);
             }
-            numbers[to + n] = value;
+            put(numbers, to, n, value, later);
         }
-        Recurrence::Product { to, a, b } => numbers[to + n] = product(numbers, a, b, n),
+        Recurrence::Product { to, a, b } => {
+            let (own, later) =
+                if even { between(numbers, a, b, n) } else { (left(series(numbers, to), n), S::zero()) };
+            let value = own + ends(numbers, a, b, n);
+            put(numbers, to, n, value, later);
+        }
         Recurrence::Multiple { to, constant, of } => numbers[to + n] = numbers[constant] * numbers[of + n],
         Recurrence::Quotient { to, a, b } => {
-            let known = numbers[a + n] - inner(numbers, to, b, n);
-            numbers[to + n] = numbers[to].multiply_subtract_from(numbers[b + n], known) / numbers[b];
+            let (ratio, below) = (series(numbers, to), series(numbers, b));
+            let (own, later) = known(ratio, below, n);
+            let known = ratio[0].multiply_subtract_from(below[n], numbers[a + n] - own);
+            let value = known / below[0];
+            let later = value.multiply_add(below[1], later);
+            put(numbers, to, n, value, later);
         }
         Recurrence::Over { to, b, .. } | Recurrence::Reciprocal { to, b, .. } => {
-            let known = numbers[to].multiply_add(numbers[b + n], inner(numbers, to, b, n));
-            numbers[to + n] = -known / numbers[b];
+            let (ratio, below) = (series(numbers, to), series(numbers, b));
+            let (own, later) = known(ratio, below, n);
+            let value = -ratio[0].multiply_add(below[n], own) / below[0];
+            let later = value.multiply_add(below[1], later);
+            put(numbers, to, n, value, later);
         }
         Recurrence::Part { to, a, constant } => numbers[to + n] = numbers[a + n] / numbers[constant],
         Recurrence::Slopes { to, of } => numbers[to + n] = S::splat(n as f64) * numbers[of + n],
         Recurrence::SineCosine { sine, cosine, slopes, .. } => {
-            let slopes = &numbers[slopes + 1..slopes + n + 1];
-            let pair = (&numbers[cosine..cosine + n], &numbers[sine..sine + n]);
-            let (of_sine, of_cosine) = convolved_with_both(slopes, pair.0, pair.1);
-            numbers[sine + n] = over(of_sine, inverse);
-            numbers[cosine + n] = -over(of_cosine, inverse);
+            let (sines, cosines) = (series(numbers, sine), series(numbers, cosine));
+            let slopes = series(numbers, slopes);
+            let (of_sine, of_cosine) = if even {
+                both_begun([cosines, sines], slopes, n)
+            } else {
+                ((left(sines, n), S::zero()), (left(cosines, n), S::zero()))
+            };
+            let (first, last) = (slopes[1], slopes[n]);
+            let value = over(last.multiply_add(cosines[0], of_sine.0), inverse);
+            let other = -over(last.multiply_add(sines[0], of_cosine.0), inverse);
+            put(numbers, sine, n, value, first.multiply_add(other, of_sine.1));
+            put(numbers, cosine, n, other, first.multiply_add(value, of_cosine.1));
         }
         Recurrence::Integral { to, slopes, rate, .. } => {
-            numbers[to + n] = over(integral(numbers, slopes, rate, n), inverse);
+            let (slopes, rates) = (series(numbers, slopes), series(numbers, rate));
+            let (mut own, later) =
+                if even { begun(rates, slopes, n) } else { (left(series(numbers, to), n), S::zero()) };
+            // The rate of the order before may have come after this.
+            if !even && n > 1 {
+                own = rates[n - 1].multiply_add(slopes[1], own);
+            }
+            let value = over(rates[0].multiply_add(slopes[n], own), inverse);
+            put(numbers, to, n, value, later);
         }
         Recurrence::Angle { to, parts: [of_y, of_x], .. } => {
             let mut both = S::zero();
@@ -322,8 +361,7 @@ fn further<S: Scalar>(
         }
         Recurrence::Root { to, a } => {
             // What a square has but for the products with the value itself.
-            numbers[to + n] = S::zero();
-            let known = numbers[a + n] - product(numbers, to, to, n);
+            let known = numbers[a + n] - inner_square(series(numbers, to), n);
             numbers[to + n] = known / (numbers[to] + numbers[to]);
         }
         Recurrence::Power { to, a, exponent, slopes: [of_base, own] } => {
@@ -337,32 +375,62 @@ fn further<S: Scalar>(
         Recurrence::Solve { ref matrix, ref right, ref to, triangle, .. } => {
             let (factored, room) = scratch[triangle..].split_at_mut(matrix.len());
             let (right_room, row) = room.split_at_mut(right.len());
-            for (into, entry) in right_room.iter_mut().zip(right) {
-                *into = if entry.varies { numbers[entry.place + n] } else { S::zero() };
+            for ((into, entry), &to) in right_room.iter_mut().zip(right).zip(to) {
+                let known = if entry.varies { numbers[entry.place + n] } else { S::zero() };
+                *into = if even { known } else { known - left(series(numbers, to), n) };
+                if even {
+                    numbers[to + n + 1] = S::zero();
+                }
             }
             let mut index = 0;
             for i in 0..right.len() {
                 for j in 0..=i {
-                    let entry = matrix[index];
+                    let Entry { place, varies } = matrix[index];
                     index += 1;
-                    if !entry.varies {
+                    if !varies {
                         continue;
                     }
-                    if i == j {
-                        right_room[i] -= known(numbers, entry.place, to[j], n);
-                        continue;
+                    let (last, mut of_i, mut of_j) = (numbers[place + n], S::zero(), S::zero());
+                    if even && i == j {
+                        let later;
+                        (of_i, later) = begun(series(numbers, to[j]), series(numbers, place), n);
+                        numbers[to[i] + n + 1] += later;
+                    } else if even {
+                        let unknowns = [series(numbers, to[j]), series(numbers, to[i])];
+                        let both = both_begun(unknowns, series(numbers, place), n);
+                        (of_i, of_j) = (both.0.0, both.1.0);
+                        numbers[to[i] + n + 1] += both.0.1;
+                        numbers[to[j] + n + 1] += both.1.1;
                     }
-                    let last = numbers[entry.place + n];
-                    let inner = &numbers[entry.place + 1..entry.place + n];
-                    let both = (&numbers[to[j] + 1..to[j] + n], &numbers[to[i] + 1..to[i] + n]);
-                    let (of_i, of_j) = convolved_with_both(inner, both.0, both.1);
                     right_room[i] -= last.multiply_add(numbers[to[j]], of_i);
-                    right_room[j] -= last.multiply_add(numbers[to[i]], of_j);
+                    if i != j {
+                        right_room[j] -= last.multiply_add(numbers[to[i]], of_j);
+                    }
                 }
             }
             linear::solve_either(factored, right_room, row[0]);
             for (&to, &value) in to.iter().zip(right_room.iter()) {
                 numbers[to + n] = value;
+            }
+            if !even {
+                return;
+            }
+            // The products of these with the slopes of the matrix belong to the next order.
+            index = 0;
+            for i in 0..right.len() {
+                for j in 0..=i {
+                    let Entry { place, varies } = matrix[index];
+                    index += 1;
+                    if !varies {
+                        continue;
+                    }
+                    let (slope, later) = (numbers[place + 1], numbers[to[i] + n + 1]);
+                    numbers[to[i] + n + 1] = slope.multiply_add(right_room[j], later);
+                    if i != j {
+                        let later = numbers[to[j] + n + 1];
+                        numbers[to[j] + n + 1] = slope.multiply_add(right_room[i], later);
+                    }
+                }
             }
         }
         // What is constant has no further coefficients.

@@ -92,6 +92,28 @@ fn products_quotients_powers_and_angles_are_their_series() {
     });
 }
 
+/// Products with c₀ + c x are those with x but for the outermost coefficients: some of these are squares then, some one, and
+/// some nothing.
+#[test]
+fn products_that_are_alike_are_their_series() {
+    check("alike", |graph, [x, y, t, p, _]| {
+        let third = 1.0 / 3.0;
+        let (of_x, of_y) = (graph.sum(0.5, &[(-third, x)]), graph.sum(-0.7, &[(2.0, y)]));
+        let of_both = graph.sum(0.2, &[(3.0, of_y), (1.0, p)]);
+        let of_time = graph.sum(1.0, &[(1.0, t)]);
+        let mut made = Vec::new();
+        let pairs =
+            [(x, x), (y, y), (x, of_x), (of_x, of_x), (y, of_x), (of_y, of_x), (x, of_both), (t, of_time)];
+        let products = pairs.map(|(a, b)| graph.multiply(a, b));
+        let [xx, yy, xf, ff, yf, gf, xb, tt] = products;
+        made.push(graph.sum(0.0, &[(-1.0, yy), (third, xx), (-2.0, xf)]));
+        made.push(graph.sum(0.3, &[(1.0, yf), (-0.25, gf), (1.0, xb), (0.5, x)]));
+        made.push(graph.sum(0.0, &[(third, xx), (1.0, xf), (2.0, tt)]));
+        made.push(graph.sum(0.0, &[(1.0, ff), (1.0, xf), (-third * third, xx), (third, xx)]));
+        nodes(&made)
+    });
+}
+
 #[test]
 fn solutions_of_linear_systems_are_their_series() {
     check("linear systems", |graph, [x, y, t, p, _]| {

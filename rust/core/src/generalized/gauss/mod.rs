@@ -55,6 +55,11 @@ pub static METHODS: [Method; 3] = [
 ];
 
 impl Method {
+    /// Steps that are chosen for a relative tolerance, and held or not.
+    pub fn chosen(&self, rtol: f64, held: bool) -> Steps {
+        Steps::Chosen { delta: self.table.delta(rtol), held }
+    }
+
     /// Whether its stages are fewer than the lanes.
     pub fn leaves_lanes(&self) -> bool {
         self.table.stages < WIDTH

@@ -7,6 +7,7 @@
 
 use super::Table;
 use crate::numerics::elementary::{self, Exponential};
+use crate::numerics::lanes::WIDTH;
 use crate::numerics::real::Real;
 use crate::ode::system::Form;
 
@@ -121,6 +122,26 @@ pub(super) fn first_step(
 }
 
 impl Table {
+    /// What δ is to be for a relative tolerance of a step.
+    ///
+    /// Of order 16 it goes with the root of the tolerance, and steps are as good as exact long before. Of the others a unit
+    /// oscillation tells: a turn by x errs by C x²ˢ⁺¹, the error of the diagonal Padé approximation of the exponential function
+    /// (E. Hairer & G. Wanner, *Solving Ordinary Differential Equations II*, theorem IV.3.11), and leads D xˢ⁺¹ astray.
+    pub(super) fn delta(&self, rtol: f64) -> f64 {
+        if self.stages == WIDTH {
+            return (100.0 * rtol.sqrt()).clamp(1e-5, 3e-2);
+        }
+        let s = self.stages as f64;
+        let factorial = |n: usize| (1..=n).fold(1.0, |product, k| product * k as f64);
+        let once = factorial(self.stages);
+        let error = once * once / (factorial(2 * self.stages) * factorial(2 * self.stages + 1));
+        let farthest = 1.0 + self.c.0[self.stages - 1];
+        let astray = self.c.0[..self.stages].iter().fold(1.0 / once, |product, c| product * (farthest - c));
+        let turn = Exponential::exp(elementary::ln(rtol / error) * ((s + 1.0) / (2.0 * s + 1.0)));
+        // By more than a radian no step is to turn.
+        if turn < 1.0 { astray * turn } else { astray }
+    }
+
     /// The leading term of the polynomial through the stages, at the farthest stage of a next step.
     pub(super) fn leading(&self, rates: impl Fn(usize) -> f64) -> f64 {
         let leading: f64 = (0..self.stages).map(|k| self.weights.0[k] * rates(k)).sum();

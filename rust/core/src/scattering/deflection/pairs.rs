@@ -1,9 +1,9 @@
 //! Pairs by quadrature, a chunk at a time: where they turn, how far their integrands reach, and what the sums make.
 
-use super::adaptive::{self, Integrand, Pair};
+use super::adaptive::{self, Integrand, Mark, Pair};
 use super::comparison::{self, Comparison, STRONG};
 use super::nodes::Ladder;
-use super::pack::Pack;
+use super::pack::{Pack, angles_tier};
 use super::profile::{Center, Profile};
 use super::refine::Turned;
 use super::trapezoid::{self, INTEGRALS, Sums, Work};
@@ -65,7 +65,7 @@ impl Quadrature<'_> {
         let mut turned = Turned::default();
         let turning = self.turning(energy, b, (&mut turned, &mut found), ticker)?;
         if !turning.places.is_empty() {
-            turned.refine(profile);
+            turned.refine(profile, self.all);
             self.integrate(&turned, &turning, &mut found, ticker)?;
         }
         for (place, found) in found.iter_mut().enumerate() {
@@ -100,6 +100,7 @@ impl Quadrature<'_> {
             Center::Attractive(power) if power >= 2.0 => f64::INFINITY,
             _ => profile.one_turning_point_from(),
         };
+        let everywhere = profile.everywhere();
         for from in (0..energy.len()).step_by(WIDTH) {
             ticker.tick()?;
             let (mut energies, mut impacts) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -109,7 +110,21 @@ impl Quadrature<'_> {
                 impacts[at] = profile.take_length(b[place]);
             }
             let cells = profile.grid().places(&energies, &impacts);
-            for at in 0..WIDTH.min(energy.len() - from) {
+            let (next, count) = (turning.places.len(), WIDTH.min(energy.len() - from));
+            let mut simple = everywhere && count == WIDTH && next.is_multiple_of(WIDTH);
+            for at in 0..WIDTH {
+                simple &= cells[at] > 0 && impacts[at] > 0.0 && energies[at] >= simple_from;
+            }
+            if simple {
+                turned.put_row(next / WIDTH, &energies, &impacts, profile.grid(), &cells);
+                turning.places.extend(from as u16..(from + WIDTH) as u16);
+                turning.nearness.extend([f64::INFINITY; WIDTH]);
+                for found in &mut found[from..from + WIDTH] {
+                    found.turning_points = 1;
+                }
+                continue;
+            }
+            for at in 0..count {
                 let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
                 let next = turning.places.len();
@@ -165,6 +180,9 @@ impl Quadrature<'_> {
             as_numbers(&turned.curvature),
             as_numbers(&turned.root),
         ];
+        // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
+        let passes = matches!(profile.center(), Center::Open(_));
+        let quick = !(self.all || passes);
         // Those that reach as far side by side.
         let order = by_reach(&reach);
         for group in order.chunks(WIDTH) {
@@ -192,9 +210,18 @@ impl Quadrature<'_> {
             } else {
                 trapezoid::integrate::<1>(profile, ladder, &pack, self.tolerance, &mut work);
             }
+            let angles = angles_tier(&pack, &work.sums);
             for (lane, at) in group.iter().enumerate() {
                 let at = usize::from(*at);
                 let found = &mut found[usize::from(turning.places[at])];
+                found.angle = angles.angle.0[lane];
+                found.complement = angles.complement.0[lane];
+                found.error = angles.error.0[lane];
+                found.closest_approach = pack.turning.0[lane];
+                found.status = Status::Scattered;
+                if quick && work.sums.met.lane(lane) && turning.nearness[at] >= NEAR_ORBITING {
+                    continue;
+                }
                 self.finish((turning, at), &pack, &work.sums, lane, found);
             }
         }
@@ -236,7 +263,7 @@ impl Quadrature<'_> {
         reaches
     }
 
-    /// What the sums of a lane make, or if they are not good enough its intervals.
+    /// What else there is of a lane whose angle is what the sums make of it; if they are not good enough, its intervals.
     fn finish(
         &self,
         (turning, at): (&Turning, usize),
@@ -249,32 +276,31 @@ impl Quadrature<'_> {
         let nearness = turning.nearness[at];
         let (r, x, y, root) =
             (pack.turning.0[lane], pack.value.0[lane], pack.force.0[lane], pack.root.0[lane]);
-        found.closest_approach = r;
-        found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
-        let strong = x < STRONG;
+        if nearness < NEAR_ORBITING {
+            found.status = Status::NearOrbiting;
+        }
         let single = || {
             let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
             Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, near }
         };
-        let (integral, mut error) = if sums.met.lane(lane) {
-            let integral = &sums.integral;
-            ([integral[0].0[lane], integral[1].0[lane], integral[2].0[lane]], sums.error.0[lane])
-        } else {
+        let mut integral = sums.integral.map(|integral| integral.0[lane]);
+        if !sums.met.lane(lane) {
             let tolerance = self.tolerance.max(ROUNDING / nearness);
-            self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance)
-        };
-        (found.angle, found.complement) = comparison::angle(strong, [x, y], root, integral[0]);
-        // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
+            let error;
+            (integral, error) =
+                self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance);
+            (found.angle, found.complement) = comparison::angle([x, y], root, integral[0]);
+            found.error = comparison::error(root, error, found.angle);
+        }
         let passes = matches!(profile.center(), Center::Open(_));
         let short = CANCELLED * PI * (x / (1.0 + root)).abs().min(1.0);
         if passes && found.angle.abs() < short {
             let (turns, off) =
                 self.by_intervals(&single(), Integrand::Turning, turning.barriers(at), self.tolerance);
             (found.angle, found.complement) = (turns[0], PI - turns[0].abs());
-            error = 0.5 * off / root;
+            found.error = comparison::error(root, 0.5 * off / root, found.angle);
         }
-        found.error = 2.0 * root * error + f64::EPSILON * found.angle.abs();
         if self.all {
             let steep = 2.0_f64.mul_add(root * root, y);
             let lost = integral[2] + comparison::closed_delay(x, root);
@@ -291,7 +317,13 @@ impl Quadrature<'_> {
         barriers: &[f64],
         tolerance: f64,
     ) -> ([f64; INTEGRALS], f64) {
-        let ends = [barriers, self.profile.breaks()].concat();
+        let mark = |distance: f64, width: f64| Mark { distance, width };
+        let mut ends: Vec<Mark> = self.profile.breaks().iter().map(|r| mark(*r, 0.0)).collect();
+        for (at, r) in barriers.iter().enumerate() {
+            // The peak of 1/√G is about √(2 × nearness) wide where h is least, and there is none where it is largest.
+            let off = turning::nearness(self.profile, pair.energy, pair.turning * pair.root, &[*r]);
+            ends.push(mark(*r, if at % 2 == 0 && off.is_finite() { (2.0 * off).sqrt() } else { 0.0 }));
+        }
         let wanted = if self.all && integrand == Integrand::Deflection { INTEGRALS } else { 1 };
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)

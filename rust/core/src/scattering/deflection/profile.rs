@@ -58,14 +58,15 @@ impl Profile {
         let rows: Vec<Lanes> = (0..POINTS / WIDTH)
             .map(|row| Lanes(core::array::from_fn(|lane| radius(row * WIDTH + lane))))
             .collect();
-        let (mut value, mut force) = (rows.clone(), rows.clone());
-        scaled.all_rows(&rows, &mut value, &mut force, &mut []);
-        for out in [&mut value, &mut force] {
+        let (mut value, mut force, mut curvature) = (rows.clone(), rows.clone(), rows.clone());
+        scaled.all_rows(&rows, &mut value, &mut force, &mut curvature);
+        for out in [&mut value, &mut force, &mut curvature] {
             end(domain[1], &rows, out);
         }
-        let force = as_numbers(&force);
+        let (force, curvature) = (as_numbers(&force), as_numbers(&curvature));
         let pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
-        let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside);
+        let bend = (0..POINTS).map(|at| radius(at) * radius(at) * curvature[at]).collect();
+        let grid = Grid::new([as_numbers(&value).to_vec(), pull, bend], inside);
         let repels = breaks.is_empty() && grid.repels;
         let mut made = Self {
             potential: scaled,
@@ -179,6 +180,11 @@ impl Profile {
     /// What a delay is where V falls no faster than 1/r: never over.
     pub(super) fn endless_delay(&self) -> f64 {
         self.endless_delay
+    }
+    /// Whether it is everywhere, so that there is nothing to refuse.
+    #[inline]
+    pub(super) fn everywhere(&self) -> bool {
+        self.domain == [0.0, f64::INFINITY]
     }
     /// Refuses a table that ends before V does.
     ///

@@ -118,8 +118,7 @@ impl Reaction {
                 number(beam_energy)
             ));
         }
-        let unchanged = self.products == [self.projectile, self.target];
-        if unchanged && self.q_value == 0.0 {
+        if self.is_elastic() {
             return Ok(Encounter::elastic(Collision::new(self.projectile, self.target)?));
         }
         let released = self.q_value / beam_energy;
@@ -130,6 +129,19 @@ impl Reaction {
                 number(beam_energy)
             ));
         }
+        Ok(self.encounter(beam_energy))
+    }
+    /// Whether masses stay what they are, without a Q-value.
+    pub fn is_elastic(&self) -> bool {
+        self.products == [self.projectile, self.target] && self.q_value == 0.0
+    }
+    /// What is released or taken up.
+    pub fn q_value(&self) -> f64 {
+        self.q_value
+    }
+    /// At a beam energy that is known to be one: of those between two that [`at`](Self::at) takes. It is not checked
+    /// again, and at a rounding below the threshold it is as at the threshold.
+    pub(in crate::scattering) fn encounter(&self, beam_energy: f64) -> Encounter {
         // Q/E₁, both of order one, and put back by a power of two.
         let (taken, given) = (exponent(self.q_value), exponent(beam_energy));
         let ratio =
@@ -153,7 +165,7 @@ impl Reaction {
                 back: slow * slow,
             }
         };
-        Ok(Encounter { projectile: product(third, fourth), target: product(fourth, third) })
+        Encounter { projectile: product(third, fourth), target: product(fourth, third) }
     }
 }
 

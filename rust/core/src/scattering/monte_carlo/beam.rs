@@ -4,7 +4,8 @@ mod beyond;
 mod range;
 mod turning;
 
-use super::draws::{Draws, PLACE};
+use super::channels::{Channels, Exit};
+use super::draws::{CHANNEL, Draws, PLACE};
 use super::profile::{Direction, Profile};
 use super::quantity::Quantity;
 use super::strata::Strata;
@@ -44,6 +45,8 @@ pub(super) struct Arrival {
     /// Its stratum of the disc: 0 where there are none.
     pub(super) stratum: usize,
     pub(super) direction: Direction,
+    /// Which of the channels that have events.
+    pub(super) exit: usize,
 }
 
 /// A beam on a disc around a centre that is free to recoil.
@@ -55,6 +58,9 @@ pub struct Beam {
     target: Target,
     pub(in crate::scattering) profile: Profile,
     strata: Option<Arc<Strata>>,
+    channels: Arc<Channels>,
+    /// What is left by each channel that has events.
+    exits: Arc<[Exit]>,
 }
 
 impl Beam {
@@ -99,7 +105,7 @@ impl Beam {
             }
             Target::Tables(Arc::new(tables), beyond)
         };
-        Ok(Self { collision, energy, b_max, target, profile, strata: None })
+        Ok(Self { target, profile, ..Self::bare(collision, energy, b_max) })
     }
     /// On V = k/r.
     ///
@@ -127,14 +133,21 @@ impl Beam {
                 ),
             ));
         }
-        Ok(Self {
+        let target = Target::Coulomb { reach, attracts: k < 0.0 };
+        Ok(Self { target, ..Self::bare(collision, energy, b_max) })
+    }
+    /// On a target that is still to be told, in one elastic channel.
+    fn bare(collision: Collision, energy: f64, b_max: f64) -> Self {
+        Self {
             collision,
             energy,
             b_max,
-            target: Target::Coulomb { reach, attracts: k < 0.0 },
+            target: Target::Coulomb { reach: 1.0, attracts: false },
             profile: Profile::default(),
             strata: None,
-        })
+            channels: Arc::new(Channels::elastic()),
+            exits: Arc::new([Exit::Elastic(collision)]),
+        }
     }
     /// Of the projectile, in the laboratory.
     pub fn energy(&self) -> f64 {
@@ -162,6 +175,33 @@ impl Beam {
             ));
         }
         Ok(Self { strata: Some(strata.clone()), ..self })
+    }
+    /// Refuses channels that a beam cannot have, before its table is built.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new) and [`through`](Self::through).
+    pub(super) fn check(
+        channels: &Channels,
+        energy: f64,
+        masses: (f64, f64),
+        b_max: f64,
+        profile: &Profile,
+    ) -> Result<()> {
+        let collision = checked(energy, masses, b_max)?;
+        profile.check(energy, b_max)?;
+        channels.exits(collision, energy, profile.energies(energy)).map(|_| ())
+    }
+    /// The same beam whose events go through channels.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `channels` of which one is closed at its least energy.
+    pub(super) fn through(self, channels: &Arc<Channels>) -> Result<Self> {
+        let exits = channels.exits(self.collision, self.energy, self.profile.energies(self.energy))?;
+        Ok(Self { channels: channels.clone(), exits, ..self })
+    }
+    /// Its channels.
+    pub(super) fn channels(&self) -> &Channels {
+        &self.channels
     }
     /// Its strata, if it has any.
     pub(super) fn strata(&self) -> Option<&Strata> {
@@ -191,11 +231,13 @@ impl Beam {
             share: self.share(place),
             stratum: self.stratum(place),
             direction: self.profile.direction(draws),
+            exit: if self.exits.len() > 1 { self.channels.find(draws.bits(CHANNEL)) } else { 0 },
         }
     }
     /// One of the middle energy along the axis.
-    fn straight(&self, share: f64) -> Arrival {
-        Arrival { energy: self.energy, share, stratum: 0, direction: Direction { tilt: 0.0, azimuth: 0.0 } }
+    fn straight(&self, exit: usize, share: f64) -> Arrival {
+        let direction = Direction { tilt: 0.0, azimuth: 0.0 };
+        Arrival { energy: self.energy, share, stratum: 0, direction, exit }
     }
     /// ψ of an event: signed and not folded; nothing if captured.
     pub(super) fn deflection(&self, arrival: &Arrival) -> Option<f64> {
@@ -225,17 +267,6 @@ impl Beam {
         }
         self.deflection(arrival).map(|angle| HalfAngle::of(folded(angle)))
     }
-    /// Of half an angle, along the axis.
-    fn value_of(&self, quantity: Quantity, energy: f64, half: HalfAngle) -> f64 {
-        match quantity {
-            Quantity::CmAngle => half.cm_angle(),
-            Quantity::LabAngle => self.collision.lab_angle(half),
-            Quantity::RecoilAngle => half.recoil_angle(),
-            Quantity::Energy => energy * self.collision.kept(half),
-            Quantity::RecoilEnergy => energy * self.collision.transferred(half),
-            Quantity::ImpactParameter => f64::NAN,
-        }
-    }
     /// The value of a quantity of an event with that half of an angle; nothing of a captured one but where it came.
     pub(super) fn value_at(
         &self,
@@ -246,17 +277,18 @@ impl Beam {
         if quantity == Quantity::ImpactParameter {
             return Some(self.b_max * arrival.share.sqrt());
         }
-        let value = self.value_of(quantity, arrival.energy, half?);
+        let half = half?;
+        let value = self.exits.get(arrival.exit)?.value(quantity, arrival.energy, half);
         Some(match quantity {
             Quantity::LabAngle => arrival.direction.turned(value, false),
             Quantity::RecoilAngle => arrival.direction.turned(value, true),
             _ => value,
         })
     }
-    /// The value of a quantity at the middle energy when b² is the fraction `share` of b_max²; nothing of a captured one
-    /// but where it came.
-    pub fn value(&self, quantity: Quantity, share: f64) -> Option<f64> {
-        let arrival = self.straight(share);
+    /// The value of a quantity at the middle energy, in one of the channels that have events, when b² is the fraction
+    /// `share` of b_max²; nothing of a captured one but where it came.
+    pub(super) fn value(&self, quantity: Quantity, exit: usize, share: f64) -> Option<f64> {
+        let arrival = self.straight(exit, share);
         let half = if quantity == Quantity::ImpactParameter { None } else { self.half_angle(&arrival) };
         self.value_at(quantity, &arrival, half)
     }

@@ -20,6 +20,8 @@ pub(super) const ENERGY_PHASE: u32 = 3;
 pub(super) const TILT: u32 = 4;
 /// The azimuth of the plane of scattering about the direction, from the plane of direction and axis.
 pub(super) const AZIMUTH: u32 = 5;
+/// The channel: those asked for in the order given, from 0 up; above them elastic.
+pub(super) const CHANNEL: u32 = 6;
 
 /// Of one event.
 #[derive(Clone, Copy)]
@@ -50,9 +52,10 @@ mod tests {
     /// The contract, number by number: whoever changes one changes published counts.
     #[test]
     fn draws_are_for_what_they_were() {
-        assert_eq!([PLACE, COMPONENT, ENERGY, ENERGY_PHASE, TILT, AZIMUTH], [0, 1, 2, 3, 4, 5]);
+        let all = [PLACE, COMPONENT, ENERGY, ENERGY_PHASE, TILT, AZIMUTH, CHANNEL];
+        assert_eq!(all, [0, 1, 2, 3, 4, 5, 6]);
         let event = 2 * 0x0000_0005_8000_0007 + 1;
-        for number in 0..6 {
+        for number in 0..7 {
             let words = philox([0x89ab_cdef, 0x0123_4567], [0x8000_0007, 5, number, 0]);
             let expected = (u64::from(words[3]) << 32 | u64::from(words[2])) >> 11;
             assert_eq!(Draws::new(0x0123_4567_89ab_cdef, event).bits(number), expected);

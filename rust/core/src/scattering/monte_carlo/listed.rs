@@ -10,6 +10,8 @@ use crate::parallel::Ticker;
 pub struct Event {
     /// Which beam of the mixture.
     pub component: u64,
+    /// Which channel: 0 is elastic, others count from 1 as they were given.
+    pub channel: u64,
     /// Of all quantities, in the order of [`Quantity::ALL`]; NaN of a captured one, but where it came.
     pub values: [f64; Quantity::ALL.len()],
     /// ψ, signed and not folded; NaN if captured.
@@ -49,6 +51,7 @@ pub fn events(
             Quantity::ALL.map(|(_, quantity)| beam.value_at(quantity, &arrival, half).unwrap_or(f64::NAN));
         events.push(Event {
             component: component as u64,
+            channel: beam.channels().label(arrival.exit) as u64,
             values,
             deflection: beam.deflection(&arrival).unwrap_or(f64::NAN),
             beam_energy: arrival.energy,

@@ -1,12 +1,14 @@
 //! Beams of several energies side by side, and what is counted of their events.
 
 use super::beam::{Arrival, Beam, UNIT};
+use super::channels::{Channel, Channels};
 use super::profile::Profile;
 use super::quantity::Quantity;
 use super::strata::Strata;
 use crate::numerics::philox::DRAW_BITS;
 use crate::parallel::{Ticker, for_chunks};
 use crate::potentials::Potential;
+use crate::scattering::bins::Bins;
 use crate::scattering::histogram::{Edges, Lookup, Steps};
 use crate::scattering::kinematics::HalfAngle;
 use crate::words::number;
@@ -48,19 +50,26 @@ impl Mixture {
         }
         Ok(Self { components })
     }
-    /// On any potential, energies in parts as their weights: as [`Beam::new`], on several threads.
+    /// On any potential, energies in parts as their weights, through channels with their probabilities, what is left of
+    /// those being elastic: as [`Beam::new`], on several threads.
     ///
     /// # Errors
-    /// As [`Beam::new`] and [`new`](Self::new).
+    /// As [`Beam::new`], [`new`](Self::new) and [`Channels::new`]; `InvalidInput` naming `channels` of which one is closed
+    /// at the least energy of a beam.
     pub fn of_energies(
         potential: &Arc<dyn Potential>,
         (energies, weights): (&[f64], &[f64]),
         masses: (f64, f64),
         b_max: f64,
         profile: Profile,
+        channels: &[Channel],
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
+        let channels = Arc::new(Channels::new(channels, masses)?);
+        for energy in energies {
+            Beam::check(&channels, *energy, masses, b_max, &profile)?;
+        }
         let beams = if let [energy] = energies {
             vec![Beam::new(potential, *energy, masses, b_max, profile, threads, ticker)?]
         } else {
@@ -68,7 +77,7 @@ impl Mixture {
                 Beam::new(potential, energies[index], masses, b_max, profile, 1, ticker)
             })?
         };
-        Self::new(beams, weights)
+        Self::new(beams, weights)?.through(&channels)
     }
     /// The same beams with events in each stratum of the disc as it says.
     ///
@@ -78,6 +87,26 @@ impl Mixture {
         let strata = Arc::new(strata);
         let of_component = |(start, beam): (u64, Beam)| Ok((start, beam.stratified(&strata)?));
         Ok(Self { components: self.components.into_iter().map(of_component).collect::<Result<_>>()? })
+    }
+    /// The same beams whose events go through channels.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `channels` of which one is closed at the least energy of a beam.
+    pub(super) fn through(self, channels: &Arc<Channels>) -> Result<Self> {
+        let of_component = |(start, beam): (u64, Beam)| Ok((start, beam.through(channels)?));
+        Ok(Self { components: self.components.into_iter().map(of_component).collect::<Result<_>>()? })
+    }
+    /// How many channels have events.
+    pub(super) fn exits(&self) -> usize {
+        self.beams().next().map_or(1, |beam| beam.channels().count())
+    }
+    /// Which of them a draw is, if there are several.
+    pub(super) fn exit_lookup(&self) -> Option<Lookup> {
+        self.beams().next().and_then(|beam| beam.channels().lookup())
+    }
+    /// The part of all draws that is each one's.
+    pub(super) fn exit_parts(&self) -> Vec<f64> {
+        self.beams().next().map_or_else(Vec::new, |beam| beam.channels().parts().collect())
     }
     /// The strata of its events, if there are any.
     pub fn strata(&self) -> Option<&Strata> {
@@ -91,9 +120,15 @@ impl Mixture {
     pub fn beams(&self) -> impl Iterator<Item = &Beam> {
         self.components.iter().map(|(_, beam)| beam)
     }
-    /// The beam of the highest energy.
-    pub fn fastest(&self) -> Option<&Beam> {
-        self.beams().max_by(|a, b| a.highest().total_cmp(&b.highest()))
+    /// Bins of a quantity, as far as those of any of the beams go.
+    ///
+    /// # Errors
+    /// As [`Beam::edges`].
+    pub fn edges(&self, quantity: Quantity, bins: &Bins) -> Result<Edges> {
+        self.beams()
+            .max_by(|a, b| a.greatest(quantity).1.total_cmp(&b.greatest(quantity).1))
+            .ok_or_else(|| Error::Internal("a mixture of nothing".to_owned()))?
+            .edges(quantity, bins)
     }
     /// Whether an event is more than its impact parameter and its component.
     pub(super) fn is_drawn(&self) -> bool {
@@ -178,17 +213,17 @@ impl Tally {
     pub(super) fn slot_of(&self, beam: &Beam, arrival: &Arrival, half: Option<HalfAngle>) -> usize {
         arrival.stratum * self.slots() + self.slot(|quantity| beam.value_at(quantity, arrival, half))
     }
-    /// The step function of the draw that it is.
-    pub(super) fn steps(&self, beam: &Beam, ticker: &mut Ticker<'_>) -> Result<Steps> {
+    /// The step function of the draw that it is, in one of the channels that have events.
+    pub(super) fn steps(&self, beam: &Beam, exit: usize, ticker: &mut Ticker<'_>) -> Result<Steps> {
         let mut turns: Vec<u64> =
-            self.axes.iter().flat_map(|(quantity, _)| beam.turning_draws(*quantity)).collect();
+            self.axes.iter().flat_map(|(quantity, _)| beam.turning_draws(*quantity, exit)).collect();
         turns.extend(beam.strata().into_iter().flat_map(Strata::boundaries));
         turns.iter_mut().for_each(|draw| *draw = (*draw).clamp(1, (1 << DRAW_BITS) - 1));
         turns.sort_unstable();
         turns.dedup();
         let slot = |draw: u64| {
             let share = beam.share(draw);
-            beam.stratum(draw) * self.slots() + self.slot(|quantity| beam.value(quantity, share))
+            beam.stratum(draw) * self.slots() + self.slot(|quantity| beam.value(quantity, exit, share))
         };
         Steps::new(&turns, slot, ticker)
     }

@@ -42,7 +42,7 @@ proptest! {
             // Below, above and captured: none.
             let mut expected = vec![0; 37 + 3];
             for event in first..first + count {
-                let x = beam.value(*quantity, draw(key(7), event).number() as f64 * beam::UNIT).unwrap();
+                let x = beam.value(*quantity, 0, draw(key(7), event).number() as f64 * beam::UNIT).unwrap();
                 let edges = edges.values();
                 let bin = edges.partition_point(|edge| *edge <= x).min(37);
                 expected[bin] += 1;
@@ -235,9 +235,7 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
     let beams: Vec<Beam> =
         [1.0, 2.0].map(|energy| Beam::coulomb(1.0, energy, (3.0, 1.0), 3.0).unwrap()).into();
     let mixture = Mixture::new(beams.clone(), &[1.0, 3.0]).unwrap();
-    let axis = |quantity: Quantity, bins| {
-        (quantity, mixture.fastest().unwrap().edges(quantity, &Bins::Count(bins)).unwrap())
-    };
+    let axis = |quantity: Quantity, bins| (quantity, mixture.edges(quantity, &Bins::Count(bins)).unwrap());
     let (angle, energy) = (axis(Quantity::LabAngle, 19), axis(Quantity::Energy, 7));
     let tallies = [vec![angle.clone()], vec![energy.clone()], vec![angle.clone(), energy.clone()]]
         .map(|axes| Tally::new(axes).unwrap());
@@ -254,7 +252,7 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
         let draw = |number| draw_of(key(7), 5 + index as u64, number).number() as f64 * beam::UNIT;
         assert_eq!(event.component, u64::from(draw(1) >= 0.25));
         let beam = &beams[event.component as usize];
-        assert_eq!(Some(event.values[1]), beam.value(Quantity::LabAngle, draw(0)));
+        assert_eq!(Some(event.values[1]), beam.value(Quantity::LabAngle, 0, draw(0)));
         let (a, e) = (angle.1.slot(event.values[1]), energy.1.slot(event.values[3]));
         expected[0][a] += 1;
         expected[1][e] += 1;
@@ -264,6 +262,67 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
     assert!(
         Mixture::new(beams.clone(), &[1.0, 0.0]).is_err() && Mixture::new(beams, &[1.0, f64::NAN]).is_err()
     );
+}
+
+/// Two energies, two reactions and what they leave elastic. Each event is that of its line and its channel, draws 1 and 6
+/// telling which, and parts of all draws are what is expected on the average.
+#[test]
+fn channels_count_every_event_in_their_own() {
+    let channel = |probability, q_value, products| Channel { probability, q_value, products };
+    let channels = [channel(0.25, -0.3, None), channel(0.5, 0.4, Some((1.5, 2.5)))];
+    let potential = (crate::registry::potential("coulomb").unwrap().make)(&[
+        crate::potentials::parameters::Value::Number(1.0),
+    ]);
+    let mixture = |channels: &[Channel]| {
+        let (control, profile) = (Control::new(0), Profile::default());
+        let lines = (&[1.0, 2.0][..], &[1.0, 3.0][..]);
+        let ticker = &mut Ticker::quiet(&control);
+        Mixture::of_energies(
+            potential.as_ref().unwrap(),
+            lines,
+            (3.0, 1.0),
+            3.0,
+            profile,
+            channels,
+            1,
+            ticker,
+        )
+    };
+    // The threshold of Q = -0.3 is 1.2: the lower line is closed.
+    assert!(matches!(mixture(&channels), Err(Error::InvalidInput { argument, message })
+        if argument == "channels" && message.contains("1.2")));
+    let channels = [channel(0.25, -0.2, None), channels[1]];
+    let mixture = mixture(&channels).unwrap();
+    let quantities = [Quantity::LabAngle, Quantity::RecoilAngle, Quantity::Energy, Quantity::RecoilEnergy];
+    let tallies =
+        quantities.map(|q| Tally::new(vec![(q, mixture.edges(q, &Bins::Count(31)).unwrap())]).unwrap());
+    let control = Control::new(0);
+    let count = |threads| {
+        monte_carlo(&mixture, &tallies, 7, 5, 20_001, threads, &mut Ticker::quiet(&control)).unwrap().counts
+    };
+    let listed = events(&mixture, 7, 5, 20_001, &mut Ticker::quiet(&control)).unwrap();
+    let mut expected = vec![vec![0; 31 + 3]; 4];
+    for (index, event) in listed.iter().enumerate() {
+        let draw = |number| draw_of(key(7), 5 + index as u64, number).number() as f64 * beam::UNIT;
+        let channel = [1, 2, 0][usize::from(draw(6) >= 0.25) + usize::from(draw(6) >= 0.75)];
+        assert_eq!((event.component, event.channel), (u64::from(draw(1) >= 0.25), channel));
+        let q = [0.0, -0.2, 0.4][channel as usize];
+        let kept = event.values[3] + event.values[4] - event.beam_energy - q;
+        assert!(kept.abs() < 4e-16 * event.beam_energy, "{kept:e}");
+        for ((tally, quantity), slots) in tallies.iter().zip(quantities).zip(&mut expected) {
+            let (position, _) = Quantity::ALL.iter().enumerate().find(|(_, (_, q))| *q == quantity).unwrap();
+            slots[tally.axes()[0].1.slot(event.values[position])] += 1;
+        }
+    }
+    assert_eq!((count(1), count(3)), (expected.clone(), expected.clone()));
+    let parts = super::expected(&mixture, &tallies, 2, &mut Ticker::quiet(&control)).unwrap();
+    for (parts, counts) in parts.iter().zip(&expected) {
+        assert!((parts.iter().sum::<f64>() - 1.0).abs() < 1e-12);
+        for (part, count) in parts.iter().zip(counts) {
+            // Five standard deviations of 20 001 events in any of 136 slots.
+            assert!((part * 20_001.0 - *count as f64).abs() < 5.0 * (part * 20_001.0).sqrt() + 5.0);
+        }
+    }
 }
 
 /// Lennard-Jones with a rainbow, glories, whole turns and, at half the depth, orbiting: every event counted is in the bin
@@ -288,7 +347,7 @@ fn rainbows_turns_and_captured_ones_are_counted() {
             let mut expected = vec![0_u64; tally.slots()];
             for event in 0..30_000 {
                 let share = draw_of(key(7), event, 0).number() as f64 * beam::UNIT;
-                expected[beam.value(*quantity, share).map_or(43, |value| edges.slot(value))] += 1;
+                expected[beam.value(*quantity, 0, share).map_or(43, |value| edges.slot(value))] += 1;
             }
             assert_eq!(counts, &expected, "{quantity:?}");
         }

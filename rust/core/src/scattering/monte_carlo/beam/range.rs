@@ -1,6 +1,6 @@
 //! Which values a quantity can have, and which of them no impact parameter beyond the disc leads to.
 
-use super::{Beam, Target};
+use super::{Beam, Exit, Target};
 use crate::scattering::bins::Bins;
 use crate::scattering::histogram::Edges;
 use crate::scattering::kinematics::HalfAngle;
@@ -15,9 +15,17 @@ impl Beam {
     pub(in crate::scattering) fn limits(&self, quantity: Quantity) -> Limits {
         match quantity {
             Quantity::CmAngle | Quantity::LabAngle => Limits::angles("π", PI),
-            Quantity::RecoilAngle if self.profile.divergence.is_some() => Limits::angles("π", PI),
+            Quantity::RecoilAngle if self.recoils_back() => Limits::angles("π", PI),
             Quantity::RecoilAngle => Limits::angles("π/2", FRAC_PI_2),
-            Quantity::Energy | Quantity::RecoilEnergy => Limits::upto("beam_energy", self.highest()),
+            Quantity::Energy | Quantity::RecoilEnergy => {
+                let (beam, greatest) = (self.highest(), self.greatest(quantity).1);
+                // What is released is added.
+                if greatest > beam {
+                    Limits::upto("the greatest energy", greatest)
+                } else {
+                    Limits::upto("beam_energy", beam)
+                }
+            }
             // Beyond the disc no bin could count anything.
             Quantity::ImpactParameter => Limits::upto("b_max", self.b_max),
         }
@@ -46,16 +54,24 @@ impl Beam {
         self.limits(quantity).check(quantity.name(), edges.values())?;
         Ok(edges)
     }
+    /// Whether anything that was hit may go back.
+    fn recoils_back(&self) -> bool {
+        let energies = self.profile.energies(self.energy);
+        self.profile.divergence.is_some()
+            || self.exits.iter().any(|exit| energies.iter().any(|energy| exit.recoils_back(*energy)))
+    }
     /// The greatest value that a quantity can have, and what is to blame if it is none.
-    fn greatest(&self, quantity: Quantity) -> (&'static str, f64) {
+    pub(in crate::scattering::monte_carlo) fn greatest(&self, quantity: Quantity) -> (&'static str, f64) {
+        let most = |half: HalfAngle| {
+            let of = |exit: &Exit| exit.value(quantity, self.highest(), half);
+            self.exits.iter().map(of).fold(0.0, f64::max)
+        };
         match quantity {
             Quantity::CmAngle | Quantity::LabAngle => ("bins", PI),
-            Quantity::RecoilAngle if self.profile.divergence.is_some() => ("bins", PI),
+            Quantity::RecoilAngle if self.recoils_back() => ("bins", PI),
             Quantity::RecoilAngle => ("bins", FRAC_PI_2),
-            Quantity::Energy => ("beam_energy", self.highest()),
-            Quantity::RecoilEnergy => {
-                ("masses", self.highest() * self.collision.transferred(HalfAngle::from_cotangent(0.0)))
-            }
+            Quantity::Energy => ("beam_energy", most(HalfAngle::of(0.0))),
+            Quantity::RecoilEnergy => ("masses", most(HalfAngle::from_cotangent(0.0))),
             Quantity::ImpactParameter => ("b_max", self.b_max),
         }
     }
@@ -85,22 +101,26 @@ impl Beam {
         if smeared || self.profile.spot.is_some() {
             return (0.0, 0.0);
         }
-        let [least, highest] = self.profile.energies(self.energy);
-        let half = self.edge();
-        match quantity {
-            Quantity::CmAngle => (self.value_of(quantity, least, half), PI),
-            // Of a heavy projectile the angle first grows with b: a disc that ends before its greatest covers nothing
-            // below that.
-            Quantity::LabAngle => {
-                let reach = half.cotangent();
-                let greatest = self.collision.turning_point().filter(|turning| *turning > reach);
-                let from = |t| self.collision.lab_angle(HalfAngle::from_cotangent(t));
-                (greatest.map_or_else(|| self.collision.lab_angle(half), from), PI)
-            }
-            Quantity::RecoilAngle | Quantity::Energy => (0.0, self.value_of(quantity, least, half)),
-            // The most that is lost beyond the disc, at any energy.
-            Quantity::RecoilEnergy => (self.value_of(quantity, highest, half), highest),
-            Quantity::ImpactParameter => (0.0, self.b_max),
+        let energies = self.profile.energies(self.energy);
+        let (mut low, mut high) = (0.0_f64, self.limits(quantity).high);
+        for exit in self.exits.iter() {
+            let other = exit.covered(quantity, energies, self.edge());
+            (low, high) = (low.max(other.0), high.min(other.1));
         }
+        if low < high { (low, high) } else { (0.0, 0.0) }
+    }
+    /// Whether a bin holds what is not deflected at all, in some channel.
+    pub(in crate::scattering) fn ends_forward(&self, quantity: Quantity, from: f64, to: f64) -> bool {
+        quantity != Quantity::ImpactParameter
+            && self.exits.iter().any(|exit| {
+                let ends = self.profile.energies(self.energy).map(|energy| exit.forward(quantity, energy));
+                from <= ends[0].max(ends[1]) && to >= ends[0].min(ends[1])
+            })
+    }
+    /// Whether every bin below the covered values is one of impact parameters next to the edge of the disc: where angles
+    /// fall with b, and all events have one energy and one channel.
+    pub(in crate::scattering) fn falls(&self) -> bool {
+        let elastic = matches!(*self.exits, [Exit::Elastic(_)]);
+        self.tables().is_empty() && self.profile.energy_spread.is_none() && elastic
     }
 }

@@ -9,30 +9,36 @@ use crate::scattering::monte_carlo::strata::Strata;
 const TRIED: u64 = 8;
 
 impl Beam {
-    /// Whether two impact parameters lead to one value: a heavy projectile's laboratory angle.
+    /// Whether two impact parameters lead to one value in some channel: a heavy projectile's laboratory angle.
     pub fn two_branches(&self, quantity: Quantity) -> bool {
-        quantity == Quantity::LabAngle && self.collision.turning_point().is_some()
+        quantity == Quantity::LabAngle
+            && self.exits.iter().any(|exit| exit.turning_point(quantity, self.energy).is_some())
     }
-    /// The draws between which a quantity rises or falls: those at which it may turn.
-    pub(in crate::scattering::monte_carlo) fn turning_draws(&self, quantity: Quantity) -> Vec<u64> {
+    /// The draws between which a quantity rises or falls in a channel: those at which it may turn.
+    pub(in crate::scattering::monte_carlo) fn turning_draws(
+        &self,
+        quantity: Quantity,
+        exit: usize,
+    ) -> Vec<u64> {
         match &self.target {
-            Target::Coulomb { reach, .. } => (quantity == Quantity::LabAngle)
-                .then(|| self.collision.turning_point())
-                .flatten()
+            Target::Coulomb { reach, .. } => self
+                .exits
+                .get(exit)
+                .and_then(|exit| exit.turning_point(quantity, self.energy))
                 .map(|t| (t / reach) * (t / reach))
                 .filter(|share| *share < 1.0)
                 .map(|share| self.draw(share))
                 .into_iter()
                 .collect(),
             Target::Table(..) if quantity == Quantity::ImpactParameter => Vec::new(),
-            Target::Table(table, _) => self.turns(quantity, table),
+            Target::Table(table, _) => self.turns(quantity, exit, table),
             // No step function is made of what has several draws.
             Target::Tables(..) => Vec::new(),
         }
     }
     /// Those of a table: the ends of its pieces, and within a piece where what is tried rises and falls.
-    fn turns(&self, quantity: Quantity, table: &EventTable) -> Vec<u64> {
-        let at = |draw: u64| self.value(quantity, self.share(draw));
+    fn turns(&self, quantity: Quantity, exit: usize, table: &EventTable) -> Vec<u64> {
+        let at = |draw: u64| self.value(quantity, exit, self.share(draw));
         let mut draws: Vec<u64> = table.starts().iter().map(|part| self.draw(part * part)).collect();
         // What is tried is to be near in each stratum, however few draws a piece has in one of them.
         draws.extend(self.strata().into_iter().flat_map(Strata::boundaries));

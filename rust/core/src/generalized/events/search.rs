@@ -1,0 +1,324 @@
+//! The zeros of one function in one step.
+//!
+//! The one idea: where the rate is known, a part of the step is understood if the function and its rate inside it are those of
+//! the cubic through its ends; a part that is not is cut in two. A part that is understood has no zeros if the cubic keeps
+//! clear of it by more than it errs; else the function is looked at where the cubic turns, and what changes its sign between
+//! two such points, or comes down towards zero from both, is located on the solution itself.
+
+use super::{Interval, Working};
+use crate::error::Result;
+use crate::ode::events::zero;
+
+/// Where a part of a step is looked at, as a fraction of it: not in the middle, so that no oscillation is in step with it.
+pub(super) const INSIDE: f64 = 0.458_6;
+
+/// Where a part is looked at again that seems to be understood.
+const SECOND: f64 = 0.81;
+
+/// The most by which a function of the fifth degree, odd about the middle, leaves a cubic of which its rate there differs by
+/// one.
+const OF_SLANT: f64 = 0.15;
+
+/// How far a function may leave the cubic, as a part of its range, so that it turns where the cubic does.
+const UNDERSTOOD: f64 = 1e-3;
+
+/// How often a step is cut, and its parts; and the most looks into one step: enough for thousands of oscillations.
+const CUTS: u32 = 24;
+const LOOKS: u32 = 50_000;
+
+/// Cuts after which it is asked whether a function is no more than its rounding, which no cut makes smooth.
+const CUTS_BEFORE_ROUNDING: u32 = 6;
+
+/// By what part of themselves the numbers of a state change to see what the rounding of a function is, and how many units of
+/// that are nothing.
+const NUDGE: f64 = 1.0 / 1_048_576.0;
+const UNITS_OF_ROUNDING: f64 = 16.0;
+
+/// Where a function without a rate is looked at: close to the ends to see which way it leaves and comes.
+const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, INSIDE, 0.625, 0.75, 0.875, 0.984375];
+
+/// Parts of a bracket in which a minimum lies come down by the golden section to 1e-8 of it, where a parabola has come
+/// down to round-off.
+const SECTIONS: usize = 40;
+
+/// A function in a place of a step.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Point {
+    theta: f64,
+    value: f64,
+    /// Its rate along the step, if that is known.
+    rate: Option<f64>,
+}
+
+impl Point {
+    pub(super) fn at(theta: f64, (value, rate): (f64, Option<f64>), from: f64, to: f64) -> Self {
+        Self { theta, value, rate: rate.map(|rate| rate * (to - from)) }
+    }
+}
+
+/// A zero as a fraction of the step, and whether it is passed upwards.
+type Zero = (f64, bool);
+
+/// The search in one step.
+pub(super) struct Search<'s> {
+    function: &'s mut Working,
+    step: &'s mut dyn Interval,
+    looks: u32,
+    /// What is nothing beside the numbers that the function is made of, once it was asked for.
+    rounding: Option<f64>,
+    zeros: Vec<Zero>,
+}
+
+/// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
+fn crosses(start: f64, end: f64) -> bool {
+    (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
+}
+
+impl<'s> Search<'s> {
+    pub(super) fn new(function: &'s mut Working, step: &'s mut dyn Interval) -> Self {
+        Self { function, step, looks: 0, rounding: None, zeros: vec![] }
+    }
+
+    /// The zeros in the order of the motion, with the state at [`INSIDE`].
+    pub(super) fn zeros(mut self, [start, end]: [Point; 2], inside: &[f64]) -> Result<Vec<Zero>> {
+        let (from, to) = self.step.span();
+        let inside = Point::at(INSIDE, self.function.at(from + INSIDE * (to - from), inside)?, from, to);
+        if inside.rate.is_some() {
+            self.part(start, inside, end, CUTS)?;
+        } else {
+            self.sampled(start, inside, end)?;
+        }
+        self.zeros.sort_by(|(a, _), (b, _)| a.total_cmp(b));
+        self.zeros.dedup();
+        Ok(self.zeros)
+    }
+
+    fn look(&mut self, theta: f64) -> Result<Point> {
+        self.looks += 1;
+        let (from, to) = self.step.span();
+        let y = self.step.at(theta)?;
+        Ok(Point::at(theta, self.function.at(from + theta * (to - from), y)?, from, to))
+    }
+
+    fn value(&mut self, theta: f64) -> Result<f64> {
+        Ok(self.look(theta)?.value)
+    }
+
+    /// Looks into a part of the step, of which a point inside is known.
+    fn part(&mut self, a: Point, inside: Point, b: Point, cuts: u32) -> Result<()> {
+        let cubic = Cubic::through(a, b);
+        let mut off = cubic.off(inside);
+        // An oscillation may agree with the cubic in one place; far from zero that is no matter.
+        let (clearance, range) = (cubic.clearance(), cubic.range());
+        if clearance <= range && (clearance > 2.0 * off || off <= UNDERSTOOD * range) {
+            let second = self.look(a.theta + SECOND * (b.theta - a.theta))?;
+            let there = cubic.off(second);
+            off = if there <= off { off } else { there };
+        }
+        // Nothing is known of a function that is no number inside; it counts where it is one.
+        if off.is_finite() {
+            if clearance > 2.0 * off {
+                return Ok(());
+            }
+            let understood = off <= UNDERSTOOD * range || cuts == 0 || self.looks >= LOOKS;
+            if !understood && !self.is_rounding(cubic.size(), inside.theta, cuts)? {
+                for (left, right) in [(a, inside), (inside, b)] {
+                    let between = self.look(left.theta + INSIDE * (right.theta - left.theta))?;
+                    self.part(left, between, right, cuts - 1)?;
+                }
+                return Ok(());
+            }
+        }
+        let mut points = vec![a, inside, b];
+        for turn in cubic.turns() {
+            let theta = a.theta + turn * (b.theta - a.theta);
+            if a.theta < theta && theta < b.theta && theta != inside.theta {
+                points.push(self.look(theta)?);
+            }
+        }
+        points.sort_by(|x, y| x.theta.total_cmp(&y.theta));
+        for pair in points.windows(2) {
+            if let &[left, right] = pair {
+                self.between(left, right)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Whether a function of this size is no more than its rounding: small beside how much it changes with each number that it
+    /// is made of.
+    fn is_rounding(&mut self, size: f64, theta: f64, cuts: u32) -> Result<bool> {
+        if cuts + CUTS_BEFORE_ROUNDING > CUTS {
+            return Ok(false);
+        }
+        let rounding = match self.rounding {
+            Some(rounding) => rounding,
+            None => {
+                let (from, to) = self.step.span();
+                let (t, mut y) = (from + theta * (to - from), self.step.at(theta)?.to_vec());
+                let value = self.function.at(t, &y)?.0;
+                let mut sum = (self.function.at(t + NUDGE * t, &y)?.0 - value).abs();
+                for index in 0..y.len() {
+                    let own = y[index];
+                    y[index] += NUDGE * own;
+                    sum += (self.function.at(t, &y)?.0 - value).abs();
+                    y[index] = own;
+                }
+                UNITS_OF_ROUNDING * f64::EPSILON * sum / NUDGE
+            }
+        };
+        self.rounding = Some(rounding);
+        Ok(size <= rounding)
+    }
+
+    /// The zeros between two points, if the function turns at most once there.
+    fn between(&mut self, a: Point, b: Point) -> Result<()> {
+        if crosses(a.value, b.value) {
+            return self.cross(a, b);
+        }
+        let sign = a.value.signum();
+        let comes_down = a.rate.zip(b.rate).filter(|&(from, to)| sign * from < 0.0 && sign * to > 0.0);
+        let Some((from, to)) = comes_down.filter(|_| a.value * b.value > 0.0) else { return Ok(()) };
+        let turn =
+            zero([(a.theta, from), (b.theta, to)], |theta| Ok(self.look(theta)?.rate.unwrap_or(f64::NAN)))?;
+        let turn = self.look(turn)?;
+        if crosses(a.value, turn.value) {
+            self.cross(a, turn)?;
+            self.between(Point { rate: None, ..turn }, b)?;
+        }
+        Ok(())
+    }
+
+    /// The zero between points of different signs.
+    fn cross(&mut self, a: Point, b: Point) -> Result<()> {
+        let theta = zero([(a.theta, a.value), (b.theta, b.value)], |theta| self.value(theta))?;
+        self.zeros.push((theta, a.value < 0.0));
+        Ok(())
+    }
+
+    /// The zeros of a function without a rate: it is looked at in some places, and followed down where it turns between them.
+    fn sampled(&mut self, start: Point, inside: Point, end: Point) -> Result<()> {
+        let mut points = vec![start];
+        for theta in SAMPLES {
+            points.push(if theta == INSIDE { inside } else { self.look(theta)? });
+        }
+        points.push(end);
+        for pair in points.windows(2) {
+            if let &[a, b] = pair
+                && crosses(a.value, b.value)
+            {
+                self.cross(a, b)?;
+            }
+        }
+        for three in points.windows(3) {
+            if let &[left, middle, right] = three
+                && may_turn(left.value, middle.value, right.value)
+            {
+                self.follow_down(left, middle, right)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Where a function that comes near zero between points of the same sign passes it.
+    fn follow_down(&mut self, mut left: Point, mut best: Point, mut right: Point) -> Result<()> {
+        let part = 0.381_966_011_250_105_15; // (3 - √5)/2
+        let (first, last, sign) = (left, right, best.value.signum());
+        for _ in 0..SECTIONS {
+            let longer = if right.theta - best.theta > best.theta - left.theta { right } else { left };
+            let point = self.look(best.theta + part * (longer.theta - best.theta))?;
+            if crosses(first.value, point.value) {
+                self.cross(first, point)?;
+                if crosses(point.value, last.value) {
+                    self.cross(point, last)?;
+                }
+                return Ok(());
+            }
+            let (inner, outer) =
+                if point.value * sign < best.value * sign { (point, best) } else { (best, point) };
+            *(if outer.theta < inner.theta { &mut left } else { &mut right }) = outer;
+            best = inner;
+        }
+        Ok(())
+    }
+}
+
+/// Whether a function of one sign comes so near zero between points around the middle one that it may pass it. Between
+/// points of a parabola it goes an eighth of the larger difference beyond the middle one, if they are evenly spaced.
+fn may_turn(left: f64, middle: f64, right: f64) -> bool {
+    let one_sign = (left > 0.0 && middle > 0.0 && right > 0.0) || (left < 0.0 && middle < 0.0 && right < 0.0);
+    let (left, middle, right) = (left.abs(), middle.abs(), right.abs());
+    let larger = if left > right { left } else { right };
+    one_sign && middle <= left && middle <= right && middle < larger - middle
+}
+
+/// The cubic through values and rates at two points, in Bernstein's basis: it lies between its coefficients.
+struct Cubic {
+    from: f64,
+    length: f64,
+    terms: [f64; 4],
+}
+
+impl Cubic {
+    fn through(a: Point, b: Point) -> Self {
+        let length = b.theta - a.theta;
+        let third = |point: Point| point.rate.unwrap_or(f64::NAN) * length / 3.0;
+        let terms = [a.value, a.value + third(a), b.value - third(b), b.value];
+        Self { from: a.theta, length, terms }
+    }
+
+    fn bounds(&self) -> (f64, f64) {
+        let least = self.terms.iter().fold(f64::INFINITY, |least, &x| if x < least { x } else { least });
+        let most = self.terms.iter().fold(f64::NEG_INFINITY, |most, &x| if x > most { x } else { most });
+        (least, most)
+    }
+
+    /// The largest of its coefficients.
+    fn size(&self) -> f64 {
+        let (least, most) = self.bounds();
+        if -least > most { -least } else { most }
+    }
+
+    /// How far its coefficients are apart.
+    fn range(&self) -> f64 {
+        let (least, most) = self.bounds();
+        most - least
+    }
+
+    /// How far from zero it stays, told from its values where it turns and at its ends; 0 if it has a zero.
+    fn clearance(&self) -> f64 {
+        let [first, .., last] = self.terms;
+        let sign = first.signum();
+        let turns = self.turns().map(|s| self.at(s).0 * sign);
+        turns
+            .chain([first * sign, last * sign])
+            .fold(f64::INFINITY, |least, x| if x < least { x } else { least })
+    }
+
+    /// Value and slope, in the length of the part.
+    fn at(&self, s: f64) -> (f64, f64) {
+        let between = |from: f64, to: f64| from + s * (to - from);
+        let [a, b, c, d] = self.terms;
+        let [ab, bc, cd] = [between(a, b), between(b, c), between(c, d)];
+        let [abc, bcd] = [between(ab, bc), between(bc, cd)];
+        (between(abc, bcd), 3.0 * (bcd - abc))
+    }
+
+    /// How far the function may be from it anywhere, told from a point about the middle.
+    fn off(&self, inside: Point) -> f64 {
+        let (value, slope) = self.at((inside.theta - self.from) / self.length);
+        let slant = inside.rate.unwrap_or(f64::NAN) * self.length - slope;
+        (inside.value - value).abs() + OF_SLANT * slant.abs() + 4.0 * f64::EPSILON * self.size()
+    }
+
+    /// Where it turns, as fractions of the part.
+    fn turns(&self) -> impl Iterator<Item = f64> {
+        let [a, b, c, d] = self.terms;
+        // Its slope is a parabola with these terms in Bernstein's basis: p + 2 (q - p) s + (p - 2q + r) s².
+        let (p, q, r) = (b - a, c - b, d - c);
+        let root = (q * q - p * r).sqrt();
+        let w = if q > p { p - q - root } else { p - q + root };
+        let found = [w / (p - 2.0 * q + r), p / w];
+        found.into_iter().filter(|&s| 0.0 < s && s < 1.0)
+    }
+}
