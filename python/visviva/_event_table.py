@@ -79,7 +79,8 @@ class Lines(Exported, Shown):
 
         Returns
         -------
-        EventTable
+        EventTable or GeneralizedEventTable
+            As this one.
 
         Examples
         --------

@@ -233,6 +233,11 @@ def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: b
     direction, terminal : optional
         As of `plane` and `distance`: 1 where the coordinate rises in time.
 
+    Returns
+    -------
+    Event
+        For ``events=`` of a run in generalized coordinates.
+
     Raises
     ------
     visviva.InvalidInput
@@ -263,6 +268,11 @@ def expression(expression: Any, *, direction: int = 0, terminal: bool | int = Fa
         function that is called once, with expressions, as that of the system is: ``f(q, v, t, **parameters)``.
     direction, terminal : optional
         As of `plane` and `distance`: 1 where the expression rises in time.
+
+    Returns
+    -------
+    Event
+        For ``events=`` of a run in generalized coordinates.
 
     Raises
     ------
