@@ -10,7 +10,6 @@ use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
-use crate::numerics::real::Mask;
 use crate::scattering::kronrod;
 use crate::tiered;
 
@@ -27,6 +26,16 @@ const MEAN: [[f64; 2]; 4] = [
 const SMALL: f64 = 0.6;
 
 type Rows = [Lanes; ROWS];
+/// The points of the rule between −1 and 1, and the last one again, to fill the row.
+static ABSCISSAS: Rows = {
+    let mut rows = EMPTY;
+    let mut k = 0;
+    while k < ROWS * WIDTH {
+        rows[k / WIDTH].0[k % WIDTH] = kronrod::abscissa(if k < kronrod::POINTS { k } else { k - 1 });
+        k += 1;
+    }
+    rows
+};
 const EMPTY: Rows = [Lanes([0.0; WIDTH]); ROWS];
 
 /// How an interval is measured: w = s if the width is 0, else w = `from` + `width` × sinh s.
@@ -73,13 +82,9 @@ impl Interval {
     /// Over those s.
     pub(super) fn new(task: &Task<'_>, measure: Measure, ends: [f64; 2]) -> Self {
         let pair = task.pair;
-        // One more, to fill the row.
-        let place = |at: usize| kronrod::place(ends, at.min(kronrod::POINTS - 1));
-        let s: Rows =
-            core::array::from_fn(|row| Lanes(core::array::from_fn(|lane| place(row * WIDTH + lane))));
         let mut places =
             Places { w: EMPTY, scale: EMPTY, cosh: EMPTY, ratio: EMPTY, weight: EMPTY, distance: EMPTY };
-        spread_tier(pair.turning, measure, &s, &mut places);
+        spread_tier(pair.turning, measure, ends, &mut places);
         let (mut value, mut force, mut mean) = (EMPTY, EMPTY, EMPTY);
         task.profile.values(&places.distance, &mut value);
         if task.integrand == Integrand::Turning || task.wanted > 1 {
@@ -121,10 +126,12 @@ fn sinh<V: Vector8 + Exponential>(w: V) -> V {
 }
 
 #[inline(always)]
-fn spread<V: Vector8 + Exponential>(turning: f64, measure: Measure, s: &Rows, places: &mut Places) {
+fn spread<V: Vector8 + Exponential>(turning: f64, measure: Measure, ends: [f64; 2], places: &mut Places) {
     let one = V::one();
+    let [from, to] = ends;
+    let (middle, half) = (V::splat(0.5 * (from + to)), V::splat(0.5 * (to - from)));
     for row in 0..ROWS {
-        let (mut w, mut scale) = (V::load(s[row]), one);
+        let (mut w, mut scale) = (half.multiply_add(V::load(ABSCISSAS[row]), middle), one);
         if measure.width != 0.0 {
             let sinh = sinh(w);
             scale = V::splat(measure.width.abs()) * sinh.multiply_add(sinh, one).sqrt();
@@ -224,7 +231,7 @@ fn integrands<V: Vector8>(
 }
 
 tiered! {
-    fn spread_tier[][](turning: f64, measure: Measure, s: &Rows, places: &mut Places) = spread;
+    fn spread_tier[][](turning: f64, measure: Measure, ends: [f64; 2], places: &mut Places) = spread;
     fn between_tier[][](turning: f64, w: &Rows, rows: &mut [Lanes; ROWS * MEAN.len()]) = between;
     fn means_tier[][](factor: f64, forces: &[Lanes; ROWS * MEAN.len()], mean: &mut Rows) = means;
     fn integrands_tier[][](task: &Task<'_>, places: &Places, found: [&Rows; 3], out: &mut [Rows; INTEGRALS]) = integrands;
