@@ -103,7 +103,9 @@ def test_what_has_no_inverse_is_refused() -> None:
 
 def test_hamiltonians_of_indefinite_forms() -> None:
     """In null coordinates L = v_x v_y − x y has H = p_x p_y + x y; a form that determines no velocities is refused."""
-    null = vv.Lagrangian(lambda q, v, t: v[0] * v[1] - q[0] * q[1], ["x", "y"], position=[1.0, 2.0], velocity=[0.3, 0.5])
+    null = vv.Lagrangian(
+        lambda q, v, t: v[0] * v[1] - q[0] * q[1], ["x", "y"], position=[1.0, 2.0], velocity=[0.3, 0.5]
+    )
     H = null.hamiltonian()
     assert H.energy == pytest.approx(0.15 + 2.0, rel=1e-15)
     assert H.energy == pytest.approx(null.energy, rel=1e-15)

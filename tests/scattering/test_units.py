@@ -16,7 +16,9 @@ def test_a_flyby_of_the_sun_in_si_units() -> None:
     GM, v = 1.32712440018e20, 3e4
     energy, kappa = v * v / 2, GM / (v * v)
     sun = V.Coulomb(-GM)
-    assert s.cross_section(sun, energy=energy, angle=1.0) == pytest.approx((kappa / 2) ** 2 / np.sin(0.5) ** 4, rel=1e-13)
+    assert s.cross_section(sun, energy=energy, angle=1.0) == pytest.approx(
+        (kappa / 2) ** 2 / np.sin(0.5) ** 4, rel=1e-13
+    )
     assert s.impact_parameter(sun, energy=energy, angle=1.0) == pytest.approx([kappa / np.tan(0.5)], rel=1e-14)
     beyond = s.total_cross_section(sun, energy=energy, theta_min=1.0)
     assert beyond == pytest.approx(np.pi * (kappa / np.tan(0.5)) ** 2, rel=1e-13)
@@ -35,8 +37,8 @@ def test_power_laws_scale_with_their_length(n: int, sign: int, length: float) ->
     angles = [0.1, 1.0]
     of_one = s.cross_section(V.PowerLaw(float(sign), float(n)), energy=1.0, angle=angles)
     found = s.cross_section(V.PowerLaw(sign * length**n, float(n)), energy=1.0, angle=angles)
-    # kⁿ as it is rounded; of −C/r² infinitely many branches wind ever nearer to the edge, the last of which float64 cannot
-    # tell apart: each is a part e^(−2π) … of those before, and what is lost is 1e-10.
+    # kⁿ as it is rounded; of −C/r² infinitely many branches wind ever nearer to the edge, and float64 tells the last of
+    # them no longer apart: their sum is lost, 1e-10 of all.
     assert found / length**2 == pytest.approx(of_one, rel=1e-9 if (n, sign) == (2, -1) else 1e-12)
     if sign > 0 and n != 2:
         transport = s.transport_cross_section(V.PowerLaw(length**n, float(n)), energy=1.0, order=1)

@@ -249,13 +249,14 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
 
 
 def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is nothing but itself."""
+    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is but itself."""
     c, n = Calculus(system), len(place)
-    slopes = [terms_of(c, [slope]) for slope in c.of_system("slopes")]
     further = c.taken(system._source.description["nodes"], system._source.description["forces"])
-    for terms, force in zip(slopes, further, strict=False):
-        terms += terms_of(c, [force])
-    several = [terms if len(terms) > 1 else [] for terms in slopes]
+    forces = [[slope] for slope in c.of_system("slopes")]
+    for force, other in zip(forces, further, strict=False):
+        force.append(other)
+    sums = [terms_of(c, force) for force in forces]
+    several = [terms if len(terms) > 1 else [] for terms in sums]
     flat = [term for terms in several for term in terms]
     if not flat:
         return np.zeros(n)
@@ -266,7 +267,7 @@ def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[
 
 
 def _starts(n: int) -> NDArray[np.float64]:
-    """Give places (S, n) over a turn from which equilibria are looked for: a grid or, for many coordinates, fewer than one."""
+    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
     side = max(2, int(_MOST_STARTS ** (1.0 / n)))
     if 2**n <= _MOST_OF_MANY:
         line = np.linspace(-np.pi, np.pi, min(side, 25))

@@ -180,7 +180,9 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         # What grows most drowns what grows least: the frame is made orthonormal again before that.
         if stretch.min() <= _DROWNED * stretch.max():
             if abs(end - begin) <= shortest:
-                raise ConvergenceError("what neighbors do differs too much in the shortest time to be told apart", begin)
+                raise ConvergenceError(
+                    "what neighbors do differs too much in the shortest time to be told apart", begin
+                )
             middle = begin + 0.5 * (end - begin)
             pending += [(middle, end), (begin, middle)]
             continue
