@@ -44,9 +44,9 @@ def judge(result: dict[str, Any], *, ensemble: bool) -> None:
         copy, (body, about), steps, fewest = result["too_long"]
         whose = f"in copy {copy}, " if ensemble else ""
         message = (
-            f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of orbits "
-            f"with fewer than {fewest:g}: take a step that is {fewest / steps:.2g} times shorter or less, or an adaptive method "
-            "(taylor, dop853)"
+            f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of "
+            f"orbits with fewer than {fewest:g}: take a step that is {fewest / steps:.2g} times shorter or less, or an "
+            "adaptive method (taylor, dop853)"
         )
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))

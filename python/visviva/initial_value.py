@@ -275,19 +275,19 @@ def solve_ivp(
         "compiled": None if native is None else native.where,
     }
     found = _core.solve_ivp(fun, asked)
-    result = _result(found, asked)
+    result = _result(found, asked, looked_for=events is not None)
     if found["interrupted"]:
         raise Interrupted("the run was interrupted", result) from found["cause"]
     return result
 
 
-def _result(found: _core._Solved, asked: _core._Problem) -> OdeResult:
+def _result(found: _core._Solved, asked: _core._Problem, *, looked_for: bool) -> OdeResult:
     t, y = found["t"], found["y"].T
     # As SciPy has it, so that `if not result.t` goes on working: a run that ended before the first output has lists.
     nothing: Any = []
     early = asked["t_eval"] is not None and not t.size
     extension = found["extension"]
-    zeros = found["zeros"] if asked["events"] else None
+    zeros = found["zeros"] if looked_for else None
     # By position, in the order of the fields: their names cost as much as a hundred evaluations of a compiled function.
     return OdeResult(
         nothing if early else t,

@@ -99,3 +99,26 @@ def test_what_has_no_inverse_is_refused() -> None:
         vv.Lagrangian(lambda q, v, _: (v[0] + v[1]) ** 2 / 2.0 - q[0] ** 2 * q[1], ["x", "y"], position=[1.0, 1.0]).run(
             t=1.0
         )
+
+
+def test_hamiltonians_of_indefinite_forms() -> None:
+    """In null coordinates L = v_x v_y − x y has H = p_x p_y + x y; a form that determines no velocities is refused."""
+    null = vv.Lagrangian(
+        lambda q, v, t: v[0] * v[1] - q[0] * q[1], ["x", "y"], position=[1.0, 2.0], velocity=[0.3, 0.5]
+    )
+    H = null.hamiltonian()
+    assert H.energy == pytest.approx(0.15 + 2.0, rel=1e-15)
+    assert H.energy == pytest.approx(null.energy, rel=1e-15)
+    assert H.run(2.0).position[-1] == pytest.approx(null.run(2.0).position[-1], rel=1e-12)
+    # Three coordinates, the middle pivot of which vanishes after the first.
+    three = vv.Lagrangian(
+        lambda q, v, t: v[0] ** 2 / 2 + v[0] * v[1] + v[1] ** 2 / 2 + (2 + q[0]) * v[1] * v[2] - q[2] ** 2,
+        ["x", "y", "z"],
+        position=[1.0, 2.0, 0.3],
+        velocity=[0.1, 0.2, 0.3],
+    )
+    assert three.hamiltonian().energy == pytest.approx(three.energy, rel=1e-14)
+    assert three.hamiltonian().momentum == pytest.approx(three.momentum, rel=1e-15)
+    degenerate = vv.Lagrangian(lambda q, v, t: (v[0] + v[1]) ** 2 / 2 - q[0] ** 2, ["x", "y"], position=[1.0, 2.0])
+    with pytest.raises(vv.InvalidInput, match="degenerate"):
+        degenerate.hamiltonian()

@@ -2,6 +2,7 @@
 
 from typing import Any
 
+import mpmath
 import numpy as np
 import pytest
 
@@ -135,10 +136,10 @@ def test_a_start_off_its_constraint_is_refused_in_all_units(size: float) -> None
         )
 
     for off in (1.3, 1.0 + 1e-8):
-        with pytest.raises(vv.InvalidInput, match="constraint 0 is .* at the start and not 0") as caught:
+        with pytest.raises(vv.InvalidInput, match=r"constraint 0 is .* at the start and not 0") as caught:
             ring(off, 0.0).run(1.0)
         assert caught.value.argument == "position"
-    with pytest.raises(vv.InvalidInput, match="the rate of constraint 0 is .* at the start") as caught:
+    with pytest.raises(vv.InvalidInput, match=r"the rate of constraint 0 is .* at the start") as caught:
         ring(1.0, 0.0, velocity=(1e-6, 1.0)).run(1.0)
     assert caught.value.argument == "velocity"
     # What rounding leaves is none: of sines and cosines, and of what should be 0.
@@ -153,3 +154,127 @@ def test_a_boundary_value_has_all_its_digits(goal: float) -> None:
     """Of a pendulum next to rest: θ' = goal / sin t, to the square of the angle."""
     found = vv.systems.pendulum(g=1.0, position=[0.0]).boundary_value(1.0, [goal])
     assert found.velocity[0] == pytest.approx(goal / np.sin(1.0), rel=1e-11)
+
+
+def test_equilibria_of_many_coordinates_take_a_bounded_time() -> None:
+    """A grid would have 2³⁰ starts of independent pendulums; there are 256, and equal places are one."""
+    n = 30
+    many = vv.Lagrangian(
+        lambda q, v, t: sum(v[i] ** 2 / 2 + (1 + i) * np.cos(q[i]) for i in range(n)), [f"q{i}" for i in range(n)]
+    )
+    found = many.equilibria()
+    places = np.array([one.position for one in found])
+    assert 1 < len(found) <= 256
+    assert np.abs(np.sin(places)).max() <= 1e-12
+    assert len({tuple(np.rint(place / np.pi)) for place in places}) == len(found)
+
+
+CO2 = vv.Lagrangian(
+    lambda q, v, t: (
+        16 * (v[0] ** 2 + v[2] ** 2) / 2 + 12 * v[1] ** 2 / 2 - ((q[1] - q[0] - 1) ** 2 + (q[2] - q[1] - 1) ** 2) / 2
+    ),
+    ["x1", "x2", "x3"],
+    position=[0.0, 1.0, 2.0],
+)
+
+
+@pytest.mark.parametrize("near", [None, [0.1, 1.0, 1.7], [5.0, 5.5, 8.0]])
+def test_normal_modes_of_what_may_be_moved_as_a_whole(near: Any) -> None:
+    """A linear molecule: 0, √(k/m), √(k/m (1 + 2 m/M)). Goldstein, section 6.4. Its center of mass stays."""
+    found = CO2.normal_modes(near)
+    assert found.squares == pytest.approx([0.0, 1 / 16, (1 + 32 / 12) / 16], abs=1e-15)
+    start = np.array([0.0, 1.0, 2.0] if near is None else near)
+    masses = np.array([16.0, 12.0, 16.0])
+    assert found.position @ masses == pytest.approx(start @ masses, rel=1e-14)
+    assert np.diff(found.position) == pytest.approx([1.0, 1.0], rel=1e-14)
+    linear = CO2.linearize()
+    assert found.frequencies[-2:] == pytest.approx(linear.frequencies[-2:], rel=1e-14)
+
+
+def test_normal_modes_of_a_cart_with_a_pendulum() -> None:
+    cart = vv.systems.cart_pendulum(position=[0.3, 0.1]).normal_modes()
+    assert cart.position[1] == pytest.approx(0.0, abs=1e-15)
+    assert cart.squares is not None
+    assert cart.squares[0] == pytest.approx(0.0, abs=1e-14)
+    assert cart.squares[1] > 0.1
+    # What falls freely is nowhere at rest, and neither is a cart on a slope.
+    falling = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - 9.81 * q[0], ["z"], position=[1.0])
+    slope = vv.Lagrangian(
+        lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2 - q[0] ** 2 - q[1] * 1e-6, ["x", "y"], position=[1.0, 0.0]
+    )
+    for system in (falling, slope):
+        with pytest.raises(vv.InvalidInput, match="finds no equilibrium"):
+            system.normal_modes()
+
+
+def one(V: Any, x: float) -> vv.Lagrangian:
+    return vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - V(q[0]), ["x"], position=[x])
+
+
+@pytest.mark.parametrize("amplitude", [1e-150, 1e-10, 1.0, 1e10, 1e100])
+def test_a_harmonic_period_knows_no_amplitude(amplitude: float) -> None:
+    assert vv.systems.oscillator(k=1.0, m=1.0, position=[amplitude]).period() == pytest.approx(2 * np.pi, rel=1e-15)
+
+
+@pytest.mark.parametrize("a", [1e-15, 1e-3, 1.0, 1e9])
+def test_a_period_in_a_lattice_of_any_size(a: float) -> None:
+    """A pendulum whose angle is 2πx/a."""
+    found = one(lambda x: a * a * (1 - np.cos(2 * np.pi * x / a)), 0.1 * a).period()
+    with mpmath.workdps(30):
+        exact = 4 * mpmath.ellipk(mpmath.sin(mpmath.mpf(0.1 * a) / a * mpmath.pi) ** 2) / (2 * mpmath.pi)
+    assert found == pytest.approx(float(exact), rel=1e-14)
+    atom = vv.Lagrangian(
+        lambda q, v, t: 1e-26 * v[0] ** 2 / 2 - 1e-20 * (1 - np.cos(2 * np.pi * q[0] / 5e-10)), ["x"], position=[5e-11]
+    )
+    omega = 2 * np.pi / 5e-10 * np.sqrt(1e-20 / 1e-26)
+    with mpmath.workdps(30):
+        kept = 4 * mpmath.ellipk(mpmath.sin(mpmath.pi / 10) ** 2)
+    assert atom.period() == pytest.approx(float(kept) / omega, rel=1e-13)
+
+
+# A period of V = |x|ᵖ from x = 1 at rest: 4 ∫ dx/√(2(1 − xᵖ)) = 4/√2 √π Γ(1 + 1/p)/Γ(½ + 1/p).
+@pytest.mark.parametrize("power", [1, 3, 4, 20, 50])
+def test_periods_in_powers(power: int) -> None:
+    with mpmath.workdps(30):
+        p = mpmath.mpf(power)
+        exact = 4 / mpmath.sqrt(2) * mpmath.sqrt(mpmath.pi) * mpmath.gamma(1 + 1 / p)
+        exact /= mpmath.gamma(mpmath.mpf(1) / 2 + 1 / p)
+    found = one((lambda x: abs(x) ** power) if power % 2 else (lambda x: x**power), 1.0).period()
+    assert found == pytest.approx(float(exact), rel=1e-13)
+
+
+@pytest.mark.parametrize("missing", [1e-1, 1e-2])
+def test_periods_next_to_a_separatrix(missing: float) -> None:
+    """A pendulum that stands nearly upright: the period knows the distance to the top, a rounding of which is 2e-16."""
+    start = np.pi - missing
+    with mpmath.workdps(40):
+        exact = 4 * mpmath.ellipk(mpmath.cos((mpmath.pi - mpmath.mpf(start)) / 2) ** 2)
+    found = vv.systems.pendulum(g=1.0, position=[start]).period()
+    assert found == pytest.approx(float(exact), rel=1e-14 + 7e-15 / missing)
+    # Nearer by, where equal steps do not do, it is refused, and at once.
+    with pytest.raises(vv.InvalidInput, match="next to a separatrix"):
+        vv.systems.pendulum(g=1.0, position=[np.pi - 1e-8]).period()
+
+
+def test_a_period_many_turns_away() -> None:
+    """At an angle of 2π·10⁶ + 1, rounded to 5e-10 of the swing: 1e-8 of what energy is left near its ends."""
+    found = vv.systems.pendulum(g=1.0, position=[2e6 * np.pi + 1.0]).period()
+    assert found == pytest.approx(float(4 * mpmath.ellipk(mpmath.sin(0.5) ** 2)), rel=1e-7)
+
+
+def test_what_stands_still_has_no_period() -> None:
+    with pytest.raises(vv.InvalidInput, match="stands still"):
+        vv.systems.pendulum(position=[0.0]).period()
+    with pytest.raises(vv.InvalidInput, match="expected how far the coordinate goes"):
+        vv.systems.pendulum(position=[0.0], velocity=[10.0]).period(turn=0.0)
+    with pytest.raises(vv.InvalidInput, match="does not turn back"):
+        one(lambda x: -(x**2), 1.0).period()
+
+
+@pytest.mark.parametrize("interval", [1.0, 20.0, 100.0, 400.0])
+def test_lyapunov_exponents_know_no_interval(interval: float) -> None:
+    """On a hill x'' = x: ±1 but for (ln 2)/2t, of the first frame, and equal and opposite."""
+    hill = vv.Lagrangian(lambda q, v, t: (v[0] ** 2 + q[0] ** 2) / 2, ["x"], position=[0.0])
+    found = hill.lyapunov_exponents(400.0, interval=interval)
+    assert found.sum() == pytest.approx(0.0, abs=1e-9)
+    assert found[0] == pytest.approx(1.0, abs=1.0 / 400.0)

@@ -378,3 +378,10 @@ def test_the_core_refuses_arrays_that_do_not_belong_together() -> None:
     empty = np.empty(0)
     with pytest.raises(vv.InternalError):
         _core.interpolate((empty, empty, empty, empty), np.array([1.0]))
+
+
+def test_no_event_in_a_list_gives_lists_as_scipy_does() -> None:
+    found = vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], events=[])
+    assert found.t_events == []
+    assert found.y_events == []
+    assert vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).t_events is None

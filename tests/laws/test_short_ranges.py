@@ -5,7 +5,7 @@ import pytest
 
 import visviva as vv
 
-#: Of a step's tolerance of 1e-9: some ten steps of each meeting, beside the same with steps of a fiftieth of the length.
+#: Of a step's tolerance of 1e-9: some ten steps of each meeting, beside steps of a fiftieth of the length.
 CLOSE = 1e-6
 
 

@@ -28,9 +28,9 @@ _ON_THE_AXIS = 1e-7
 _BALANCED = 1e-8
 #: Places that differ by less than this part of their sizes are one.
 _SAME = 1e-8
-#: Starts of a search for equilibria, and their number times the work of a step from one.
+#: Starts of a search for equilibria, and of one of many coordinates.
 _MOST_STARTS = 2000
-_MOST_WORK = 2_000_000
+_MOST_OF_MANY = 256
 
 
 @known_keywords
@@ -226,8 +226,10 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
     place = system._start()[:n] if at is None else float_array("at", at, (n,))
     found = system._model.linearized(system.t0, place, system._values)
     # What rounding of the place, and of what a force is the sum of, makes of it: in any units, and next to zero too.
-    scale = np.abs(found["stiffness"]) @ np.abs(place) + _sizes_of_forces(system, place)
+    scale = np.abs(found["stiffness"]) @ np.abs(place)
     off = np.abs(found["forces"]) > _BALANCED * scale
+    if off.any():
+        off = np.abs(found["forces"]) > _BALANCED * (scale + _sizes_of_forces(system, place))
     if off.any():
         worst = int(np.argmax(np.abs(found["forces"]) * off))
         raise InvalidInput(
@@ -248,13 +250,14 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
 
 
 def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is nothing but itself."""
+    """Give the size of what each force at rest is the sum of; 0 for one of a single term, which is but itself."""
     c, n = Calculus(system), len(place)
-    slopes = [terms_of(c, [slope]) for slope in c.of_system("slopes")]
     further = c.taken(system._source.description["nodes"], system._source.description["forces"])
-    for terms, force in zip(slopes, further, strict=False):
-        terms += terms_of(c, [force])
-    several = [terms if len(terms) > 1 else [] for terms in slopes]
+    forces = [[slope] for slope in c.of_system("slopes")]
+    for force, other in zip(forces, further, strict=False):
+        force.append(other)
+    sums = [terms_of(c, force) for force in forces]
+    several = [terms if len(terms) > 1 else [] for terms in sums]
     flat = [term for terms in several for term in terms]
     if not flat:
         return np.zeros(n)
@@ -265,19 +268,18 @@ def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[
 
 
 def _starts(n: int) -> NDArray[np.float64]:
-    """Give places (S, n) over a turn from which equilibria are looked for: a grid or, for many coordinates, fewer than one."""
-    side = int(_MOST_STARTS ** (1.0 / n))
-    if side >= 2:
+    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
+    side = max(2, int(_MOST_STARTS ** (1.0 / n)))
+    if 2**n <= _MOST_OF_MANY:
         line = np.linspace(-np.pi, np.pi, min(side, 25))
         # Not on the symmetry lines themselves, where Newton's method may be caught.
         grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
         return np.stack([axis.ravel() for axis in grid], axis=1)
-    count = max(64, min(_MOST_STARTS, _MOST_WORK // n**3))
     # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
     root = 2.0
     for _ in range(64):
         root = (1.0 + root) ** (1.0 / (n + 1))
-    spread = (0.5 + np.arange(1, count + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
+    spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
     places = np.pi * (2.0 * spread - 1.0)
     # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
     places[::2] = np.pi * np.rint(places[::2] / np.pi) + 1e-3 * np.arange(1, n + 1)

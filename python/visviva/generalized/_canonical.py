@@ -1,4 +1,4 @@
-"""Whether a transformation (q, p) → (Q, P) is canonical: Lagrange's brackets, as expressions and at states of many sizes."""
+"""Whether a transformation (q, p) → (Q, P) is canonical: Lagrange's brackets, as expressions and at many states."""
 
 from __future__ import annotations
 
@@ -78,8 +78,9 @@ def canonical_test(system: Hamiltonian, transformation: Any) -> CanonicalTest:
     if worst <= VANISHES and undecided:
         raise InvalidInput(
             "transformation",
-            "not decided: some of the terms of its brackets are nowhere to be seen, 0 or drowned by others at all states "
-            "that were tried, of the sizes of the start, the parameters and 1; start where they are large, or take other units",
+            "not decided: some of the terms of its brackets are nowhere to be seen, 0 or drowned by others at all "
+            "states that were tried, of the sizes of the start, the parameters and 1; start where they are large, "
+            "or take other units",
         )
     matrix.flags.writeable = False
     return CanonicalTest(worst <= VANISHES, proved, worst, matrix)

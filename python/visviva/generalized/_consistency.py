@@ -1,7 +1,7 @@
 """Whether a start is on its constraints, but for round-off.
 
-The one idea: what round-off may leave of a constraint is a small part of the terms that it is the sum of, and of what it would
-change if the coordinates did by as much as they are: in any units.
+The one idea: what round-off may leave of a constraint is a small part of the terms that it is the sum of, and of what
+it would change if the coordinates did by as much as they are: in any units.
 """
 
 from __future__ import annotations

@@ -188,8 +188,9 @@ def noether(system: Lagrangian, generator: Any, time_shift: Any, gauge: Any) -> 
     if not failed and any(outcome.open for _, outcome in results):
         raise InvalidInput(
             "position",
-            "not decided: some of the terms that must cancel are nowhere to be seen, 0 or drowned by others at all states "
-            "that were tried, of the sizes of the start, the parameters and 1; start where they are large, or take other units",
+            "not decided: some of the terms that must cancel are nowhere to be seen, 0 or drowned by others at all "
+            "states that were tried, of the sizes of the start, the parameters and 1; start where they are large, "
+            "or take other units",
         )
     holds = not failed
     reason = kind

@@ -1,8 +1,8 @@
 """Whether sums vanish, seen at states of all sizes that a system may have.
 
-The one idea: a sum that vanishes does so at every state, but one that does not is seen only where its terms are not drowned by
-others, nor too small to be numbers. So states are of many sizes, the system's own first; a state tells something only beyond
-what its own rounding does to the terms; and where a term is seen at none of them, nothing is said.
+The one idea: a sum that vanishes does so at every state, but one that does not is seen only where its terms are not
+drowned by others, nor too small to be numbers. So states are of many sizes, the system's own first; a state tells
+something only beyond what its own rounding does to the terms; and where a term is seen at none, nothing is said.
 """
 
 from __future__ import annotations
@@ -83,7 +83,7 @@ class Probe:
         c = self._calculus
         terms = terms_of(c, parts)
         if not terms:
-            return Finding(True, 0.0, True, 0.0)
+            return Finding(known=True, residual=0.0, seen=True, largest=0.0)
         with np.errstate(all="ignore"):
             values = c.values(terms, self._t, self._states, c._system._values)
             moved = c.values(terms, self._moved_t, self._moved, c._system._values)

@@ -40,7 +40,12 @@ fn inverted(graph: &mut Graph, function: Id, numbers: &[Id], conjugates: &[Id]) 
     }
     let right: Vec<Id> =
         conjugates.iter().zip(&at_rest).map(|(&conjugate, &rest)| graph.subtract(conjugate, rest)).collect();
-    Ok(solved(graph, &matrix, &right))
+    solved(graph, &matrix, &right).ok_or_else(|| {
+        Error::invalid(
+            "L",
+            "degenerate: its momenta (or velocities) do not determine the velocities (or momenta)",
+        )
+    })
 }
 
 /// The Hamiltonian of a Lagrangian, or the Lagrangian of a Hamiltonian, of the same numbers: the second half of the state

@@ -1,7 +1,7 @@
 //! Near a state: equilibria, and the linear equations of small motions about them.
 //!
-//! The one idea: at rest nothing is left of the equations but F(q) = 0, whose zeros Newton's method finds; the derivatives
-//! there, M, C and K of M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
+//! The one idea: at rest nothing is left of the equations but F(q) = 0, whose zeros Newton's method finds; where K is singular,
+//! as where a system may be moved as a whole, its least step is taken. The derivatives there, M, C and K of M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
 
 use super::model::{Kind, Model};
 use crate::error::{Error, Result};
@@ -14,6 +14,13 @@ use std::sync::Arc;
 const MOST_STEPS: u32 = 100;
 /// Corrections below this, relative to the place, are round-off.
 const FOUND: f64 = 1e-13;
+/// Below this part of the places on the way, corrections may be round-off: they are, if they do not shrink to less than that.
+const NOISE: f64 = 1e-9;
+const SHRINKS: f64 = 0.9;
+/// Forces that no step does away with are round-off below this part of the stiffest one times the place.
+const UNBALANCED: f64 = 1e-10;
+/// Singular values of K, its rows and columns measured by masses, below this part of the largest are zero.
+const SINGULAR: f64 = 1e-10;
 
 /// Codes of forces at rest and of the matrices of small motions.
 #[derive(Clone, Debug)]
@@ -89,25 +96,83 @@ impl Linear {
     pub fn equilibrium(&self, t: f64, start: &[f64], parameters: &[f64]) -> Option<Vec<f64>> {
         let n = self.n;
         let mut q = start.to_vec();
-        for _ in 0..MOST_STEPS {
+        // Sizes are those of the places on the way, times the roots of masses: systems may be of any size.
+        let (mut visited, mut last) = (0.0_f64, f64::INFINITY);
+        for step in 1..=MOST_STEPS {
             let at = self.matrices(t, &q, parameters);
-            let slope = DMatrix::from_row_slice(n, n, &at.stiffness);
-            let correction = slope.lu().solve(&DVector::from_column_slice(&at.forces))?;
-            let mut largest = 0.0;
-            for (q, correction) in q.iter_mut().zip(correction.iter()) {
-                if !correction.is_finite() {
+            let units = units(&at.mass, n);
+            let Step { correction, remains, stiffest } = newton_step(&at, &units)?;
+            let (mut most, mut moved, mut close) = (0.0_f64, false, true);
+            for i in 0..n {
+                if !correction[i].is_finite() {
                     return None;
                 }
-                *q += correction;
-                let size = correction.abs() / (1.0 + q.abs());
-                largest = if size > largest { size } else { largest };
+                let next = q[i] + correction[i];
+                moved |= next != q[i];
+                close &= correction[i].abs() <= FOUND * next.abs();
+                visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
+                most = most.max(correction[i].abs() / units[i]);
+                q[i] = next;
             }
-            if largest < FOUND {
-                return Some(q);
+            // Next to zero a place has no digits of its own: it is found when steps are round-off, and no longer shrink.
+            let ended = most <= NOISE * visited && most >= SHRINKS * last;
+            let exhausted = step == MOST_STEPS && most <= FOUND * visited;
+            if !moved || close || ended || exhausted {
+                return (remains <= UNBALANCED * stiffest * visited).then_some(q);
             }
+            last = most;
         }
         None
     }
+}
+
+/// Newton's step to an equilibrium.
+struct Step {
+    correction: Vec<f64>,
+    /// The force that it does not do away with, and the largest stiffness, in units of masses.
+    remains: f64,
+    stiffest: f64,
+}
+
+/// Units of coordinates in which their masses are alike: angles beside lengths.
+fn units(mass: &[f64], n: usize) -> Vec<f64> {
+    let unit = |i: usize| {
+        let root = mass[i * n + i].abs().sqrt();
+        if root.is_normal() { 1.0 / root } else { 1.0 }
+    };
+    (0..n).map(unit).collect()
+}
+
+/// K⁻¹F; where K is singular the least step that does away with what it can of F.
+fn newton_step(at: &Matrices, units: &[f64]) -> Option<Step> {
+    let n = units.len();
+    let scaled = DMatrix::from_fn(n, n, |i, j| at.stiffness[i * n + j] * units[i] * units[j]);
+    let forces = DVector::from_fn(n, |i, _| at.forces[i] * units[i]);
+    if scaled.iter().chain(forces.iter()).any(|x| !x.is_finite()) {
+        return None;
+    }
+    let given = |step: &DVector<f64>| step.iter().zip(units).map(|(x, unit)| x * unit).collect();
+    let factors = scaled.clone().lu();
+    let pivots = factors.u().diagonal().abs();
+    let stiffest = scaled.amax();
+    if pivots.min() > SINGULAR * pivots.max()
+        && let Some(step) = factors.solve(&forces)
+    {
+        return Some(Step { correction: given(&step), remains: 0.0, stiffest });
+    }
+    let svd = scaled.try_svd(true, true, f64::EPSILON, 0)?;
+    let least = SINGULAR * svd.singular_values.max();
+    let (left, right) = (svd.u.as_ref()?, svd.v_t.as_ref()?);
+    let along = left.tr_mul(&forces);
+    let (mut step, mut remains) = (DVector::zeros(n), 0.0_f64);
+    for (k, &value) in svd.singular_values.iter().enumerate() {
+        if value > least {
+            step += right.row(k).transpose() * (along[k] / value);
+        } else {
+            remains = remains.max(along[k].abs());
+        }
+    }
+    Some(Step { correction: given(&step), remains, stiffest })
 }
 
 /// The eigenvalues of small motions as (real, imaginary), and, where they are those of a symmetric pair M, K with M positive

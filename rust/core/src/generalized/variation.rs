@@ -22,7 +22,10 @@ pub(super) fn rates_as_nodes(model: &mut Model) -> Vec<Id> {
     let graph = &mut model.source.graph;
     let mut unknowns = Vec::new();
     for system in &model.systems {
-        unknowns.extend(solved(graph, &system.matrix, &system.right));
+        let found = solved(graph, &system.matrix, &system.right);
+        // A system that is singular whatever the numbers has no rates, and is refused as such at the start.
+        let none = graph.constant(f64::NAN);
+        unknowns.extend(found.unwrap_or_else(|| vec![none; system.right.len()]));
     }
     let evaluated = model.rates.iter().map(|rate| match *rate {
         Output::Node(id) => id,

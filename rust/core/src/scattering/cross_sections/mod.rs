@@ -19,7 +19,7 @@ use crate::numerics::elementary::Exponential;
 use crate::parallel::Ticker;
 use core::f64::consts::{LN_2, PI};
 
-/// Octaves of impact parameters on either side of the potential's length.
+/// Octaves of impact parameters on either side of the potential's length at the energy.
 const OCTAVES: i32 = 24;
 /// Samples to an octave.
 const PER_OCTAVE: i32 = 12;
@@ -65,6 +65,8 @@ struct Sample {
 pub struct Structure<'a> {
     deflector: &'a Deflector,
     energy: f64,
+    /// [`Deflector::length`].
+    length: f64,
     /// Monotone between neighbours of one stretch.
     stretches: Vec<Vec<Sample>>,
     edges: Vec<Edge>,
@@ -78,7 +80,8 @@ impl<'a> Structure<'a> {
     /// As [`Deflector::deflect`].
     pub fn new(deflector: &'a Deflector, energy: f64, ticker: &mut Ticker<'_>) -> Result<Self> {
         let edges = deflector.edges(energy);
-        let mut made = Self { deflector, energy, stretches: Vec::new(), edges, rainbows: Vec::new() };
+        let length = deflector.length(energy);
+        let mut made = Self { deflector, energy, length, stretches: Vec::new(), edges, rainbows: Vec::new() };
         let ends: Vec<f64> = [0.0]
             .into_iter()
             .chain(made.edges.iter().map(|edge| edge.impact_parameter))
@@ -137,7 +140,7 @@ impl<'a> Structure<'a> {
     }
     /// Samples between two edges, cut where the derivative changes its sign.
     fn cut(&mut self, ends: [f64; 2], ticker: &mut Ticker<'_>) -> Result<()> {
-        let places = places(ends, &self.edges, self.deflector.length());
+        let places = places(ends, &self.edges, self.length);
         let energies = vec![self.energy; places.len()];
         let found = self.deflector.deflect(&energies, &places, true, 1, ticker)?;
         let mut stretch: Vec<Sample> = Vec::new();
@@ -156,10 +159,7 @@ impl<'a> Structure<'a> {
             }
             stretch.push(next);
             // What is still to come is even less.
-            if next.angle.abs() < SMALLEST
-                && next.b > 4.0 * self.deflector.length()
-                && ends[1] == f64::INFINITY
-            {
+            if next.angle.abs() < SMALLEST && next.b > 4.0 * self.length && ends[1] == f64::INFINITY {
                 break;
             }
         }

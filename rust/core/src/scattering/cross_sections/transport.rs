@@ -105,7 +105,7 @@ fn transport_to(
             ),
         ));
     }
-    let mut pending = intervals(deflector, &edges);
+    let mut pending = intervals(deflector, energy, &edges);
     let (mut sum, mut error) = (0.0, 0.0);
     let mut done: Vec<[f64; 2]> = Vec::new();
     for round in 0..ROUNDS {
@@ -148,8 +148,8 @@ fn transport_to(
 }
 
 /// Intervals between edges, towards them and far out.
-fn intervals(deflector: &Deflector, edges: &[Edge]) -> Vec<Interval> {
-    let range = deflector.range();
+fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval> {
+    let (range, length) = (deflector.range(), deflector.length(energy));
     let mut ends: Vec<f64> =
         [0.0].into_iter().chain(edges.iter().map(|edge| edge.impact_parameter)).collect();
     ends.retain(|b| *b < range);
@@ -164,7 +164,6 @@ fn intervals(deflector: &Deflector, edges: &[Edge]) -> Vec<Interval> {
     };
     for pair in ends.windows(2) {
         let [low, high] = [pair[0], pair[1]];
-        let length = deflector.length();
         let middle = if high < f64::INFINITY { 0.5 * (low + high) } else { low + length };
         if low > 0.0 {
             let most = ln(middle - low);

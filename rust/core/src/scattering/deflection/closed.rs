@@ -55,6 +55,15 @@ impl Closed {
             _ => Vec::new(),
         }
     }
+    /// Where |V| is the energy, or where V ends.
+    pub(super) fn length(self, energy: f64) -> f64 {
+        match self {
+            Self::Coulomb(k) => rutherford::half_distance(k, energy).abs(),
+            Self::InverseSquare(c) => (c / energy).abs().sqrt(),
+            Self::InverseFourth(c) => (c / energy).abs().sqrt().sqrt(),
+            Self::HardSphere(radius) | Self::SquareWell(_, radius) => radius,
+        }
+    }
     /// Beyond which there is no deflection.
     pub(super) fn range(self) -> f64 {
         match self {

@@ -149,9 +149,14 @@ impl Deflector {
     pub fn critical_energies(&self) -> Vec<f64> {
         self.profile.as_ref().map(Profile::critical_energies).unwrap_or_default()
     }
-    /// A length of the potential's own, of which impact parameters are multiples or parts.
-    pub fn length(&self) -> f64 {
-        self.profile.as_ref().map_or(1.0, |profile| profile.give_length(1.0))
+    /// A length of which the impact parameters of an energy are multiples or parts: the potential's own or, if it has none
+    /// (k/rⁿ), the one that it has at that energy.
+    pub fn length(&self, energy: f64) -> f64 {
+        let known = self.closed.map(|closed| closed.length(energy));
+        let length =
+            known.or_else(|| self.profile.as_ref().map(|profile| profile.length_at(energy))).unwrap_or(1.0);
+        // Of no potential at all, and where a quotient leaves the range of numbers.
+        if length.is_normal() { length } else { 1.0 }
     }
     /// The deflections of pairs; derivatives and delays (else NaN) only if `all`. The bits of a pair do not depend on
     /// the others, nor on the number of threads.

@@ -29,6 +29,8 @@ pub(super) struct Profile {
     potential: Arc<dyn Potential>,
     /// Exponents of the units of length and energy.
     length: i32,
+    /// Whether that is a length of the potential's own.
+    has_length: bool,
     energy: i32,
     grid: Grid,
     repels: bool,
@@ -47,7 +49,8 @@ pub(super) struct Profile {
 
 impl Profile {
     pub(super) fn new(potential: &Arc<dyn Potential>) -> Self {
-        let length = own_length(potential.as_ref());
+        let own = own_length(potential.as_ref());
+        let length = own.unwrap_or(0);
         let (scaled, energy) = potential.near_one(length).unwrap_or_else(|| (Arc::clone(potential), 0));
         let domain = scaled.domain().map_or([0.0, f64::INFINITY], |(first, last)| [first, last]);
         let inside = [
@@ -71,6 +74,7 @@ impl Profile {
         let mut made = Self {
             potential: scaled,
             length,
+            has_length: own.is_some(),
             energy,
             grid,
             repels,
@@ -110,6 +114,16 @@ impl Profile {
     #[inline]
     pub(super) fn give_length(&self, r: f64) -> f64 {
         scale(r, self.length)
+    }
+    /// The length by which impact parameters of an energy are looked for, in the caller's units: the potential's own or, if
+    /// it has none, the distance within which |V| is more than the energy.
+    pub(super) fn length_at(&self, energy: f64) -> f64 {
+        if self.has_length {
+            return self.give_length(1.0);
+        }
+        let energy = self.take_energy(energy).abs();
+        let outermost = self.grid.value.iter().rposition(|value| value.abs() >= energy);
+        self.give_length(outermost.map_or(1.0, radius))
     }
     /// An energy of these units, from one of the caller's.
     #[inline]
@@ -373,13 +387,13 @@ impl Rounded for f64 {
     }
 }
 
-/// The exponent of the first length among the parameters; 0 for a power law, which has none.
-fn own_length(potential: &dyn Potential) -> i32 {
+/// The exponent of the first length among the parameters; a power law has none.
+fn own_length(potential: &dyn Potential) -> Option<i32> {
     let parameters = potential.parameters();
     let dimensions = potential.declaration().exponents(parameters);
     let mut lengths =
         parameters.iter().zip(dimensions).filter(|(_, dimension)| *dimension == [1.0, 0.0, 0.0]);
-    lengths.next().map_or(0, |(length, _)| exponent(length.size()))
+    lengths.next().map(|(length, _)| exponent(length.size()))
 }
 
 /// The highest place of a function with one maximum between two distances, to half the digits, as it has no more.
