@@ -91,7 +91,7 @@ fn both<V: Vector8 + InverseCube, const PLANAR: bool>(
     }
     let mut second = second_row::<V, PLANAR>(&rows.second, row::<V, PLANAR>(q, stride, 1));
     for c in 0..components {
-        second[c] = second[c] + across[c];
+        second[c] += across[c];
     }
     [sum, second]
 }

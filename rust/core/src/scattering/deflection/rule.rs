@@ -210,15 +210,14 @@ fn integrands<V: Vector8>(
         let p = excess / (root * (root + one));
         let compared = square.multiply_add(squared, one);
         let [c1, c2, c3] = comparison.series;
-        let (mut off, mut below) = (zero, p);
-        if comparison.strong {
-            off = one / root - one / compared.sqrt();
-            below = -off;
+        let (off, below) = if comparison.strong {
+            let off = one / root - one / compared.sqrt();
+            (off, -off)
         } else {
             let series = V::splat(c3).multiply_add(squared, V::splat(c2)).multiply_add(squared, V::splat(c1))
                 * squared;
-            off = series - p;
-        }
+            (series - p, p)
+        };
         out[0][row] = (scale * (off * u)).store();
         if task.wanted > 1 {
             // (r F(r) − r₀F(r₀) u²)/E/tanh² w.
