@@ -172,3 +172,17 @@ def test_what_stays_of_a_free_body():
     assert OUT.casimir == pytest.approx((OUT.angular_momentum**2).sum(axis=-1), rel=1e-13)
     single = vv.rigid.free_rotation(MOMENTS, [1.0, 2.0, 3.0], 0.0)
     assert single.casimir == pytest.approx(1 + 16 + 56.25)
+
+
+def test_pictures_go_where_they_are_asked_to():
+    from matplotlib.figure import Figure
+
+    figure = Figure()
+    flat, solid = figure.add_subplot(1, 2, 1), figure.add_subplot(1, 2, 2, projection="3d")
+    assert OUT.plot("components", ax=flat) is figure
+    assert OUT.plot("polhode", ax=solid) is figure
+    assert len(flat.lines) == 3
+    assert SPUN.plot("theta", ax=flat) is figure
+    for motion, kind, wrong in ((OUT, "polhode", flat), (OUT, "herpolhode", solid), (SPUN, "nutation", flat)):
+        with pytest.raises(vv.InvalidInput, match=r"^ax: expected axes of (two|three) dimensions"):
+            motion.plot(kind, ax=wrong)
