@@ -214,3 +214,11 @@ def test_random_trees_come_back(seed: int) -> None:
         assert float(shown.xreplace(exact).evalf(30)) == pytest.approx(value, rel=1e-13, abs=1e-13)
         state = one.at(position=[at[x]], velocity=[at[u]], t0=at[sp.Symbol("t")])
         assert state.evaluate(expression + u**2 / 2)[0] == pytest.approx(value, rel=1e-12, abs=1e-12)
+
+
+@pytest.mark.parametrize("power", [3, 50, 64, 65, 100, 101, 1000])
+def test_whole_powers_are_known_below_zero(power: int) -> None:
+    """Beyond 64 they were exponentials of logarithms, and NaN there."""
+    system = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - q[0] ** power, ["x"], position=[-0.999])
+    exact = (-0.999) ** power
+    assert abs(system.energy - exact) <= power * np.finfo(float).eps * abs(exact)

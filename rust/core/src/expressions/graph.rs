@@ -50,7 +50,9 @@ pub enum Dependence {
     State,
 }
 
-/// Whole powers up to this are multiplied out.
+/// Whole powers up to this are multiplied out, by squares: they are known below zero, too.
+const WHOLE: f64 = 65_536.0;
+/// The powers up to this that are a half more are multiplied out beside the root.
 const MULTIPLIED: f64 = 64.0;
 
 /// Expressions that share what they have in common.
@@ -311,7 +313,7 @@ impl Graph {
         if exponent == 0.5 {
             return self.call(Function::Sqrt, a);
         }
-        if exponent.fract() == 0.0 && exponent <= MULTIPLIED {
+        if exponent.fract() == 0.0 && exponent <= WHOLE {
             return self.whole_power(a, exponent as u32);
         }
         if exponent.fract() == 0.5 && exponent <= MULTIPLIED {
