@@ -40,21 +40,27 @@ def judge(result: dict[str, Any], *, ensemble: bool) -> None:
         dt, span = result["dt_beyond"]
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"
         warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
-    if "too_long" in result:
-        copy, (body, about), steps, fewest = result["too_long"]
-        whose = f"in copy {copy}, " if ensemble else ""
-        message = (
-            f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of "
-            f"orbits with fewer than {fewest:g}: take a step that is {fewest / steps:.2g} times shorter or less, or an "
-            "adaptive method (taylor, dop853)"
-        )
-        warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
     copy, error, dt, order = result.get("energy_error", (0, 0.0, None, 1))
     if error <= _TOLERATED:
+        _judge_turns(result, ensemble=ensemble)
         return
     whose = f"in copy {copy}, " if ensemble else ""
     advice = _advice(result, error, dt, order)
     message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {advice}"
+    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
+
+
+def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
+    """Warn of an orbit with too few steps: total energies hardly know of a light body that is lost."""
+    if "too_long" not in result:
+        return
+    copy, (body, about), steps, fewest = result["too_long"]
+    whose = f"in copy {copy}, " if ensemble else ""
+    message = (
+        f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of "
+        f"orbits with fewer than {fewest:g}: take a step that is {fewest / steps:.2g} times shorter or less, or an "
+        "adaptive method (taylor, dop853)"
+    )
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 
 

@@ -69,6 +69,7 @@ class Lines(Exported, Shown):
     def __iter__(self) -> Iterator[Any]:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")
 
+    @known_keywords
     def of(self, which: int) -> Self:
         """The lines of one event.
 

@@ -34,8 +34,30 @@ def test_many_bodies_and_forces_without_series_are_stepped_by_dop853() -> None:
 
     assert method(vv.Scene(bodies(8), vv.Gravity(1.0))) == "taylor"
     assert method(vv.Scene(bodies(9), vv.Gravity(1.0))) == "dop853"
-    assert method(vv.Scene(bodies(40), vv.Harmonic(1.0), vv.RotatingFrame([0.1, 0.0, 0.3]))) == "taylor"  # each alone
+    # Other forces may have parameters of their own for each copy, and series share no lanes then.
+    assert method(vv.Scene(bodies(3), vv.Gravity(1.0), vv.LinearDrag(10.0))) == "dop853"
     assert method(vv.Scene(bodies(3), vv.Gravity(1.0), vv.QuadraticDrag(0.1))) == "dop853"
-    # √(x²) ends a motion by series where it turns.
-    bend = vv.ExpressionForce(potential=lambda r, v, t: (r[0] ** 2) ** 0.5)
-    assert method(vv.Scene(bodies(1), bend)) == "dop853"
+
+
+def test_massless_bodies_do_not_enter_the_choice() -> None:
+    """Massive bodies have the bits that they have without them."""
+    random = np.random.default_rng(1)
+    particles = KOZAI.particles
+    many = vv.Particles(
+        [*particles.mass, *[0.0] * 20],
+        np.r_[particles.position, 3.0 * random.normal(size=(20, 3))],
+        np.r_[particles.velocity, random.normal(size=(20, 3))],
+    )
+    out = vv.Scene(many, vv.Gravity(1.0)).run(t=3.0)
+    assert out.plan.method == "taylor"
+    assert (out.position[:, :3] == KOZAI.run(t=3.0).position).all()
+
+
+def test_massless_bodies_that_may_touch_are_not_expanded() -> None:
+    """They did not move at all, with status OK, where `taylor` was named beside `collisions`."""
+    place = [[0.0, 0, 0], [1.0, 0, 0]]
+    scene = vv.Scene(vv.Particles([1.0, 0.0], place, np.zeros((2, 3)), radius=[0.1, 0.0]), vv.Gravity(1.0))
+    out = scene.run(t=2.0, collisions="merge")
+    assert out.collisions.t == pytest.approx([1.0953283], abs=1e-6)
+    with pytest.raises(vv.InvalidInput, match="no massless bodies where all are on one step"):
+        scene.run(t=2.0, method="taylor", collisions="merge")

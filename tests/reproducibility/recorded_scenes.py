@@ -253,7 +253,8 @@ def _eights(count: int) -> NDArray[np.float64]:
 
 @scene("dop853: eleven figure eights, two threads")
 def _() -> Arrays:
-    out = vv.problems.figure_eight().scene.ensemble(position=_eights(11)).run(t=[1.0, 6.0], rtol=1e-10, threads=2)
+    out = vv.problems.figure_eight().scene.ensemble(position=_eights(11))
+    out = out.run(t=[1.0, 6.0], method="dop853", rtol=1e-10, threads=2)
     return states(out)
 
 

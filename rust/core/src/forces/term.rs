@@ -155,11 +155,6 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
         false
     }
 
-    /// Whether they can wherever the force is finite: a root that vanishes on the way, say, ends a motion by series only.
-    fn has_series_everywhere(&self) -> bool {
-        self.has_series()
-    }
-
     /// Its potential energy of these bodies, zero if it has none, and Σ r·F; the same on any number of threads.
     ///
     /// # Errors

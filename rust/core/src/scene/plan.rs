@@ -172,9 +172,9 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        series::check(method, &forces, &active, &passive, &groups)?;
+        series::check(method, &forces, &active, &passive, (&groups, touching))?;
         let chosen = if automatic && !turning.steps() {
-            series::first_choice(scene.particles, &forces, (&active, &passive), &groups)
+            series::first_choice(&forces, &active, &passive, (&groups, touching))
         } else {
             None
         };

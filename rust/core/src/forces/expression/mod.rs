@@ -162,9 +162,6 @@ impl ForceTerm for ExpressionForce {
     fn has_series(&self) -> bool {
         self.expressions.series.is_some()
     }
-    fn has_series_everywhere(&self) -> bool {
-        false
-    }
 
     fn potential_and_virial(
         &self,
