@@ -6,7 +6,7 @@ use super::nodes::Ladder;
 use super::pack::{Pack, angles_tier};
 use super::profile::{Center, Profile};
 use super::refine::Turned;
-use super::trapezoid::{self, INTEGRALS, LEFT_OUT, Sums, Work};
+use super::trapezoid::{self, INTEGRALS, Sums, Work};
 use super::turning::{self, Critical, Way};
 use super::{Deflection, Status};
 use crate::Result;
@@ -25,6 +25,8 @@ const NEAR_BARRIER: f64 = 0.003;
 const CANCELLED: f64 = 0.05;
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
 const TINY: f64 = 1.0 / (1 << 26) as f64;
+/// What nodes leave out, as a part of the tolerance.
+const LEFT_OUT: f64 = 0.05;
 
 /// Pairs by quadrature.
 pub(super) struct Quadrature<'a> {

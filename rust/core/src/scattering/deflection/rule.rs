@@ -10,6 +10,7 @@ use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH, as_numbers};
+use crate::numerics::real::Mask;
 use crate::scattering::kronrod;
 use crate::tiered;
 

@@ -24,9 +24,6 @@ const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// Where G comes nearer to zero, a barrier is near.
 const NEAR_ZERO: f64 = 0.004;
 
-/// What nodes leave out, as a part of the tolerance.
-pub(super) const LEFT_OUT: f64 = 0.05;
-
 /// How many integrals: ψ, dψ/db, delay.
 pub(super) const INTEGRALS: usize = 3;
 
@@ -204,10 +201,7 @@ fn judge<V: Vector8, const N: usize>(
         let error = spectra[i].error::<V>();
         met = met.and(error.less_equal(tolerance * size));
         if i == 0 {
-            // What nodes leave out is at most that part of what they were asked to leave out of.
-            let left_out = tolerance * V::splat(LEFT_OUT) * V::load(constants.beside[0]);
-            let error = error.max(V::splat(ROUNDING) * size) + left_out;
-            done.error = V::select(open, error, V::load(done.error)).store();
+            done.error = V::select(open, error.max(V::splat(ROUNDING) * size), V::load(done.error)).store();
         }
         let mut sum = h * V::load(running.sum[i]);
         if i == 0 {
