@@ -28,16 +28,11 @@ pub(super) struct Estimate {
     pub(super) size: f64,
 }
 
-/// The k-th point between −1 and 1.
-#[inline(always)]
-pub(super) const fn abscissa(k: usize) -> f64 {
-    if k < 8 { -RULE[k][0] } else { RULE[14 - k][0] }
-}
-
 /// The k-th point between two ends.
 #[inline(always)]
 pub(super) fn place([from, to]: [f64; 2], k: usize) -> f64 {
-    (0.5 * (to - from)).mul_add(abscissa(k), 0.5 * (from + to))
+    let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
+    if k < 8 { half.mul_add(-RULE[k][0], middle) } else { half.mul_add(RULE[14 - k][0], middle) }
 }
 
 /// Of the values at all points.

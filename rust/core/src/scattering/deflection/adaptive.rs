@@ -144,12 +144,7 @@ fn totals(intervals: &[Interval]) -> ([f64; INTEGRALS], [f64; INTEGRALS], [f64; 
 }
 
 /// The first intervals between two marks, stretched beside peaks.
-fn divide(
-    task: &Task<'_>,
-    (from, before): (f64, f64),
-    (to, after): (f64, f64),
-    intervals: &mut Vec<Interval>,
-) {
+fn divide(task: &Task<'_>, (from, before): (f64, f64), (to, after): (f64, f64), intervals: &mut Vec<Interval>) {
     let narrow = |width: f64| width > 0.0 && width < NARROW;
     let share = if narrow(before) && narrow(after) { 0.5 } else { 1.0 };
     let most = STRETCHED.min(share * (to - from));

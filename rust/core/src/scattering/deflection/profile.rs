@@ -250,37 +250,10 @@ impl Profile {
     pub(super) fn critical_radii(&self, energy: f64) -> Vec<f64> {
         let crossing = |pair: &[[f64; 2]]| {
             let ([low, below], [high, above]) = (pair[0], pair[1]);
-            ((below < energy) != (above < energy)).then(|| self.passed([low, high], below < energy, energy))
+            ((below < energy) != (above < energy))
+                .then(|| bisected(low, high, |r| (self.circular_energy(r) < energy) == (below < energy)))
         };
         self.extrema.windows(2).rev().filter_map(crossing).collect()
-    }
-    /// Where U passes an energy, to the last digit, being below it or not at the first of two distances.
-    fn passed(&self, [mut low, mut high]: [f64; 2], below: bool, energy: f64) -> f64 {
-        loop {
-            // Eight places at once part it in nine.
-            let part = (high - low) / (WIDTH + 1) as f64;
-            let r = [Lanes(core::array::from_fn(|lane| part * (lane + 1) as f64 + low))];
-            let (mut value, mut force) = (r, r);
-            self.values(&r, &mut value);
-            self.forces(&r, &mut force);
-            let mut ends = [low, high];
-            for lane in 0..WIDTH {
-                let r = r[0].0[lane];
-                if r <= low || r >= high {
-                    continue;
-                }
-                let u = value[0].0[lane] - 0.5 * r * force[0].0[lane];
-                if (u < energy) != below {
-                    ends[1] = r;
-                    break;
-                }
-                ends[0] = r;
-            }
-            if ends == [low, high] {
-                return high;
-            }
-            [low, high] = ends;
-        }
     }
     /// The energy from which on h rises wherever it is positive, so that there is one turning point.
     pub(super) fn one_turning_point_from(&self) -> f64 {
@@ -394,6 +367,17 @@ fn own_length(potential: &dyn Potential) -> Option<i32> {
     let mut lengths =
         parameters.iter().zip(dimensions).filter(|(_, dimension)| *dimension == [1.0, 0.0, 0.0]);
     lengths.next().map(|(length, _)| exponent(length.size()))
+}
+
+/// Where a condition that holds at `low` and not at `high` ceases to, to the last digit.
+fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if holds(middle) { low = middle } else { high = middle }
+    }
 }
 
 /// The highest place of a function with one maximum between two distances, to half the digits, as it has no more.
