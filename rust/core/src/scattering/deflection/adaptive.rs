@@ -2,32 +2,33 @@
 //! where what is asked for is a small rest.
 //!
 //! The one idea: intervals in w, r = r₀ cosh w, ending wherever h is stationary or V has an edge, so that none hides a
-//! peak, and stretched beside those that are narrow (`rule`); the one with the largest error is halved until all are within
-//! the tolerance. Near w = 0, where V(r₀) − V(r) would cancel, it is the mean of the force in between.
+//! peak; the one with the largest error is halved until all are within the tolerance. Near w = 0, where V(r₀) − V(r)
+//! would cancel, it is the mean of the force in between.
 
 use super::comparison::Comparison;
-use super::nodes::Node;
+use super::nodes::{Node, sinh};
 use super::profile::Profile;
-use super::rule::{Interval, Measure, Task};
 use super::trapezoid::INTEGRALS;
-use crate::numerics::elementary::ln;
 use crate::numerics::lanes::{Lanes, WIDTH};
-use std::sync::OnceLock;
+use crate::scattering::kronrod;
 
+/// Points of a rule, filled up to whole rows.
+const POINTS: usize = 2 * WIDTH;
 /// Intervals at most.
 const MOST: usize = 600;
 /// What is asked of ψ, of dψ/db and of the delay, as parts of the tolerance.
 const LOOSER: [f64; INTEGRALS] = [1.0, 10.0, 100.0];
-/// An interval is no longer than this at first, …
+/// An interval is no longer than this at first.
 const LONGEST: f64 = 1.5;
-/// … and where it is stretched than this.
-const LONGEST_STRETCHED: f64 = 3.0;
-/// Peaks narrower than this are stretched, …
-const NARROW: f64 = 0.1;
-/// … up to this far from them.
-const STRETCHED: f64 = 1.0;
 /// Up to this w at most the mean force is taken, by four points.
 const NEAR: f64 = 0.25;
+/// Of Gauss and Legendre between 0 and 1: places and weights.
+const MEAN: [[f64; 2]; 4] = [
+    [0.069_431_844_202_973_71, 0.173_927_422_568_726_93],
+    [0.330_009_478_207_571_87, 0.326_072_577_431_273_07],
+    [0.669_990_521_792_428_1, 0.326_072_577_431_273_07],
+    [0.930_568_155_797_026_3, 0.173_927_422_568_726_93],
+];
 /// What is left out at the far end, as a part of the tolerance.
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
@@ -72,11 +73,12 @@ pub(super) struct Whole {
     pub(super) error: f64,
 }
 
-/// A distance at which an interval ends, and how wide a peak it has in w; 0 for none.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Mark {
-    pub(super) distance: f64,
-    pub(super) width: f64,
+struct Interval {
+    ends: [f64; 2],
+    integral: [f64; INTEGRALS],
+    error: [f64; INTEGRALS],
+    size: [f64; INTEGRALS],
 }
 
 /// The integrals over all w ≥ 0 with intervals that end at the given distances.
@@ -84,31 +86,32 @@ pub(super) fn integrate(
     profile: &Profile,
     pair: &Pair,
     integrand: Integrand,
-    ends: &[Mark],
+    ends: &[f64],
     (tolerance, wanted): (f64, usize),
 ) -> Whole {
-    let comparison = Comparison::of(pair.value, pair.root);
-    let task = Task { profile, pair, comparison, integrand, wanted };
     let mut known = [0.0; INTEGRALS];
     if integrand == Integrand::Deflection {
-        known[0] = comparison.closed;
+        known[0] = Comparison::of(pair.value, pair.root).closed;
     }
     let whole = |sum: [f64; INTEGRALS], error: f64, size: f64| Whole {
         integral: core::array::from_fn(|i| known[i] + sum[i]),
         error: error.max(ROUNDING * size),
     };
-    let farthest = farthest(&task, LEFT_OUT * tolerance);
-    // At a turning point G is as small as h is near to stationary.
-    let at_start = (1.0 + 0.5 * pair.force - pair.value).max(0.0).sqrt();
-    let mut marks = vec![(0.0, at_start), (farthest, 0.0)];
-    let outside = ends.iter().filter(|mark| mark.distance > pair.turning);
-    marks.extend(outside.map(|mark| (inverse_cosh(mark.distance / pair.turning), mark.width)));
-    marks.retain(|(w, _)| *w <= farthest);
-    marks.sort_by(|a, b| a.0.total_cmp(&b.0));
-    marks.dedup_by(|later, first| later.0 == first.0);
+    let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
+    let mut marks = vec![0.0, farthest];
+    marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
+    marks.retain(|w| *w <= farthest);
+    marks.sort_by(f64::total_cmp);
+    marks.dedup();
     let mut intervals = Vec::new();
     for pair_of_marks in marks.windows(2) {
-        divide(&task, pair_of_marks[0], pair_of_marks[1], &mut intervals);
+        let parts = ((pair_of_marks[1] - pair_of_marks[0]) / LONGEST).ceil().max(1.0);
+        let length = (pair_of_marks[1] - pair_of_marks[0]) / parts;
+        for part in 0..parts as usize {
+            let from = length.mul_add(part as f64, pair_of_marks[0]);
+            let to = if part + 1 == parts as usize { pair_of_marks[1] } else { from + length };
+            intervals.push(rule(profile, pair, integrand, [from, to]));
+        }
     }
     loop {
         let (sum, error, size) = totals(&intervals);
@@ -120,13 +123,13 @@ pub(super) fn integrate(
         };
         let largest = |a: &Interval, b: &Interval| a.error[worst].total_cmp(&b.error[worst]);
         let at = (0..intervals.len()).max_by(|a, b| largest(&intervals[*a], &intervals[*b])).unwrap_or(0);
-        let Interval { measure, ends: [from, to], .. } = intervals[at];
+        let [from, to] = intervals[at].ends;
         let middle = 0.5 * (from + to);
         if middle <= from || middle >= to {
             return whole(sum, error[0], size[0]);
         }
-        intervals[at] = Interval::new(&task, measure, [from, middle]);
-        intervals.push(Interval::new(&task, measure, [middle, to]));
+        intervals[at] = rule(profile, pair, integrand, [from, middle]);
+        intervals.push(rule(profile, pair, integrand, [middle, to]));
     }
 }
 
@@ -143,49 +146,106 @@ fn totals(intervals: &[Interval]) -> ([f64; INTEGRALS], [f64; INTEGRALS], [f64; 
     all
 }
 
-/// The first intervals between two marks, stretched beside peaks.
-fn divide(task: &Task<'_>, (from, before): (f64, f64), (to, after): (f64, f64), intervals: &mut Vec<Interval>) {
-    let narrow = |width: f64| width > 0.0 && width < NARROW;
-    let share = if narrow(before) && narrow(after) { 0.5 } else { 1.0 };
-    let most = STRETCHED.min(share * (to - from));
-    let stretched = |width: f64| if narrow(width) && 4.0 * width < most { most } else { 0.0 };
-    let (left, right) = (stretched(before), stretched(after));
-    let mut parts = |measure: Measure, [from, to]: [f64; 2], longest: f64| {
-        let parts = ((to - from) / longest).ceil().max(1.0);
-        let length = (to - from) / parts;
-        for part in 0..parts as usize {
-            let start = length.mul_add(part as f64, from);
-            let end = if part + 1 == parts as usize { to } else { start + length };
-            intervals.push(Interval::new(task, measure, [start, end]));
-        }
-    };
-    for (place, way, width) in [(from, left, before), (to, right, -after)] {
-        if way > 0.0 {
-            let share = way / width.abs();
-            let end = ln(share + share.mul_add(share, 1.0).sqrt());
-            parts(Measure { from: place, width }, [0.0, end], LONGEST_STRETCHED);
-        }
+/// Both rules over one interval.
+fn rule(profile: &Profile, pair: &Pair, integrand: Integrand, ends: [f64; 2]) -> Interval {
+    // One more, to fill the row.
+    let places = core::array::from_fn(|k| kronrod::place(ends, k.min(kronrod::POINTS - 1)));
+    let values = integrands(profile, pair, integrand, &places);
+    let mut interval =
+        Interval { ends, integral: [0.0; INTEGRALS], error: [0.0; INTEGRALS], size: [0.0; INTEGRALS] };
+    for i in 0..INTEGRALS {
+        let found = kronrod::estimate(ends, |k| values[k][i]);
+        interval.integral[i] = found.integral;
+        interval.error[i] = found.error;
+        interval.size[i] = found.size;
     }
-    let (from, to) = (from + left, to - right);
-    if to > from {
-        parts(Measure::default(), [from, to], LONGEST);
-    }
+    interval
 }
 
-/// cosh w of w = ½, 1, …, eight by eight, as far as intervals go.
-fn coarse() -> &'static [Lanes] {
-    static COARSE: OnceLock<Vec<Lanes>> = OnceLock::new();
-    COARSE.get_or_init(|| {
-        let cosh = |at: usize| Node::at(0.5 * (at + 1) as f64).cosh;
-        let rows = (2.0 * FARTHEST) as usize / WIDTH;
-        (0..rows).map(|row| Lanes(core::array::from_fn(|lane| cosh(row * WIDTH + lane)))).collect()
+/// The integrands at places w.
+fn integrands(
+    profile: &Profile,
+    pair: &Pair,
+    integrand: Integrand,
+    places: &[f64; POINTS],
+) -> [[f64; INTEGRALS]; POINTS] {
+    let nodes = places.map(Node::at);
+    let rows = |of: &dyn Fn(usize) -> f64| -> [Lanes; 2] {
+        core::array::from_fn(|row| Lanes(core::array::from_fn(|lane| of(row * WIDTH + lane))))
+    };
+    let distance = rows(&|k| pair.turning * nodes[k].cosh);
+    let (mut value, mut force) = (distance, distance);
+    profile.values(&distance, &mut value);
+    profile.forces(&distance, &mut force);
+    let mean = mean_forces(profile, pair, places);
+    let (x, y, square) = (pair.value, pair.force, pair.root * pair.root);
+    let comparison = Comparison::of(x, pair.root);
+    core::array::from_fn(|k| {
+        let (row, lane) = (k / WIDTH, k % WIDTH);
+        let node = nodes[k];
+        let (v, u) = (value[row].0[lane] / pair.energy, node.ratio);
+        let pull = distance[row].0[lane] * force[row].0[lane] / pair.energy;
+        let squared = u * u;
+        let excess = mean[k].map_or((x * squared - v) * node.weight, |mean| {
+            // (V₀ − V)/tanh² w is the mean force times r₀ cosh² w/(1 + cosh w).
+            mean * (node.cosh * node.cosh / (1.0 + node.cosh)) - x
+        });
+        // Near a barrier, and near b = 0, 1 − V₀/E is (b/r₀)² with more digits.
+        let g = mean[k].map_or(1.0 + excess, |_| square + (excess + x));
+        let root = g.sqrt();
+        if integrand == Integrand::Turning {
+            // b/r times r F/E over (1 − V/E).
+            return [pair.root * u * pull / (1.0 - v) / root, 0.0, 0.0];
+        }
+        let p = excess / (root * (root + 1.0));
+        let compared = (1.0 + square * squared).sqrt();
+        let [c1, c2, c3] = comparison.series;
+        let off = if comparison.strong {
+            1.0 / root - 1.0 / compared
+        } else {
+            c3.mul_add(squared, c2).mul_add(squared, c1) * squared - p
+        };
+        let below = if comparison.strong { -off } else { p };
+        let slope = -(y * below) - square * (bend(pair, places[k], pull, node) / (g * root));
+        [off * u, slope * u, (p - 0.5 * x * squared / (compared * compared)) * node.cosh]
     })
 }
 
+/// (r F(r) − r₀F(r₀) u²)/E/tanh² w.
+fn bend(pair: &Pair, w: f64, pull: f64, node: Node) -> f64 {
+    if w > 0.0 { (pull - pair.force * node.ratio * node.ratio) * node.weight } else { 0.0 }
+}
+
+/// r₀/E times the mean force between r₀ and each near place; nothing for others.
+fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<f64>; POINTS] {
+    let mut means = [None; POINTS];
+    if places[0] >= pair.near {
+        return means;
+    }
+    let mut rows = [Lanes([pair.turning; WIDTH]); POINTS * 4 / WIDTH];
+    let mut force = rows;
+    for (k, w) in places.iter().enumerate() {
+        let half = sinh(0.5 * w);
+        let way = 2.0 * half * half;
+        for (i, [place, _]) in MEAN.iter().enumerate() {
+            let at = 4 * k + i;
+            rows[at / WIDTH].0[at % WIDTH] = (pair.turning * place).mul_add(way, pair.turning);
+        }
+    }
+    profile.forces(&rows, &mut force);
+    for (k, w) in places.iter().enumerate() {
+        let one = |i: usize| MEAN[i][1] * force[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
+        if *w < pair.near {
+            means[k] = Some(pair.turning / pair.energy * ((one(0) + one(3)) + (one(1) + one(2))));
+        }
+    }
+    means
+}
+
 /// Where the rest no longer counts: neither what V adds, nor what is left of the comparison, which falls as u³.
-fn farthest(task: &Task<'_>, rest: f64) -> f64 {
-    let Task { profile, pair, comparison, .. } = task;
-    let turning = task.integrand == Integrand::Turning;
+fn farthest(profile: &Profile, pair: &Pair, integrand: Integrand, rest: f64) -> f64 {
+    let comparison = Comparison::of(pair.value, pair.root);
+    let turning = integrand == Integrand::Turning;
     let mut scale = match (turning, comparison.strong) {
         (true, _) => 0.0,
         (_, true) => comparison.closed,
@@ -193,27 +253,20 @@ fn farthest(task: &Task<'_>, rest: f64) -> f64 {
     };
     let left =
         if turning { 0.0 } else { pair.root.max(1.0) * pair.root.max(1.0) * pair.value.abs().min(1.0) };
-    for (row, cosh) in coarse().iter().enumerate() {
-        let distance = [cosh.map(|cosh| pair.turning * cosh)];
-        let (mut value, mut force) = (distance, distance);
-        profile.values(&distance, &mut value);
+    let mut w = 0.5;
+    while w < FARTHEST {
+        let u = Node::at(w).ratio;
+        let r = pair.turning / u;
         if turning {
-            profile.forces(&distance, &mut force);
+            let rate = profile.force(r) * r / pair.energy / (1.0 - profile.value(r) / pair.energy);
+            scale = scale.max(u * rate.abs());
+        } else if !comparison.strong {
+            scale = scale.max((u * profile.value(r) / pair.energy).abs().min(1.0));
         }
-        for lane in 0..WIDTH {
-            let (u, r) = (1.0 / cosh.0[lane], distance[0].0[lane]);
-            let v = value[0].0[lane] / pair.energy;
-            if turning {
-                let rate = force[0].0[lane] * r / pair.energy / (1.0 - v);
-                scale = scale.max(u * rate.abs());
-            } else if !comparison.strong {
-                scale = scale.max((u * v).abs().min(1.0));
-            }
-            let over = profile.grid().beyond(r, 1) / pair.energy * u > rest * scale;
-            if !over && left * u * u * u <= rest * scale {
-                return 0.5 * (row * WIDTH + lane + 1) as f64;
-            }
+        if profile.grid().beyond(r, 1) / pair.energy * u <= rest * scale && left * u * u * u <= rest * scale {
+            return w;
         }
+        w += 0.5;
     }
     FARTHEST
 }
@@ -221,5 +274,5 @@ fn farthest(task: &Task<'_>, rest: f64) -> f64 {
 /// The w ≥ 0 of a cosh w ≥ 1.
 fn inverse_cosh(x: f64) -> f64 {
     let excess = x - 1.0;
-    ln(x + (excess * (x + 1.0)).sqrt())
+    crate::numerics::elementary::ln(x + (excess * (x + 1.0)).sqrt())
 }

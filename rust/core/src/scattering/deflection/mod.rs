@@ -16,7 +16,6 @@ mod pack;
 mod pairs;
 mod profile;
 mod refine;
-mod rule;
 mod spectrum;
 mod trapezoid;
 mod turning;

@@ -1,6 +1,6 @@
 //! Pairs by quadrature, a chunk at a time: where they turn, how far their integrands reach, and what the sums make.
 
-use super::adaptive::{self, Integrand, Mark, Pair};
+use super::adaptive::{self, Integrand, Pair};
 use super::comparison::{self, Comparison, STRONG};
 use super::nodes::Ladder;
 use super::pack::{Pack, angles_tier};
@@ -317,13 +317,7 @@ impl Quadrature<'_> {
         barriers: &[f64],
         tolerance: f64,
     ) -> ([f64; INTEGRALS], f64) {
-        let mark = |distance: f64, width: f64| Mark { distance, width };
-        let mut ends: Vec<Mark> = self.profile.breaks().iter().map(|r| mark(*r, 0.0)).collect();
-        for (at, r) in barriers.iter().enumerate() {
-            // The peak of 1/√G is about √(2 × nearness) wide where h is least, and there is none where it is largest.
-            let off = turning::nearness(self.profile, pair.energy, pair.turning * pair.root, &[*r]);
-            ends.push(mark(*r, if at % 2 == 0 && off.is_finite() { (2.0 * off).sqrt() } else { 0.0 }));
-        }
+        let ends = [barriers, self.profile.breaks()].concat();
         let wanted = if self.all && integrand == Integrand::Deflection { INTEGRALS } else { 1 };
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)
