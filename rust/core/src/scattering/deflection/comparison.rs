@@ -46,23 +46,15 @@ impl Comparison {
 
 /// ψ and π − |ψ| from V(r₀)/E, r₀F(r₀)/E, b/r₀ and `whole` = ∫ u/√G, less π/2 if it is compared with the series.
 #[inline(always)]
-pub(super) fn angle<S: Real>([x, y]: [S; 2], root: S, whole: S) -> (S, S) {
-    let (zero, one, two, pi) = (S::zero(), S::one(), S::splat(2.0), S::splat(PI));
-    let strong = x.less(S::splat(STRONG));
-    let turned = two * root * whole;
-    let far = pi - turned;
-    let far_complement = S::select(zero.less(far), turned, pi + far);
+pub(super) fn angle(strong: bool, [x, y]: [f64; 2], root: f64, whole: f64) -> (f64, f64) {
+    if strong {
+        let angle = PI - 2.0 * root * whole;
+        return (angle, if angle > 0.0 { 2.0 * root * whole } else { PI + angle });
+    }
     // Of r₀ rounded V(r₀) knows less than b/r₀ where it is steep, and b/r₀ less of small differences.
-    let short = S::select(y.abs().less(one), x / (one + root), one - root);
-    let angle = pi * short - turned;
-    let complement = S::select(one.less(angle), root * (pi + two * whole), pi - angle.abs());
-    (S::select(strong, far, angle), S::select(strong, far_complement, complement))
-}
-
-/// How far an angle may be off whose integral may be off by so much.
-#[inline(always)]
-pub(super) fn error<S: Real>(root: S, off: S, angle: S) -> S {
-    S::splat(2.0) * root * off + S::splat(f64::EPSILON) * angle.abs()
+    let short = if y.abs() < 1.0 { x / (1.0 + root) } else { 1.0 - root };
+    let angle = PI * short - 2.0 * root * whole;
+    (angle, if angle > 1.0 { root * (PI + 2.0 * whole) } else { PI - angle.abs() })
 }
 
 /// The integral of ½(V₀/E)u²/(1 + (bu/r₀)²) cosh w, which the delay's integrand goes without.

@@ -9,8 +9,6 @@ const OCTAVES: usize = 64;
 const DIVISIONS: u32 = 4;
 /// Distances of the grid.
 pub(super) const POINTS: usize = (2 * OCTAVES) << DIVISIONS;
-/// Half octaves of energies.
-const ENERGIES: usize = 4096;
 /// The bits of a distance before those of its place in a cell of the grid.
 const SHIFT: u32 = 52 - DIVISIONS;
 /// How many numbers are known of a cell, three at either end.
@@ -83,11 +81,9 @@ impl Grid {
     pub(super) fn places(&self, energy: &[f64; WIDTH], b: &[f64; WIDTH]) -> [usize; WIDTH] {
         let [first, last] = self.inside;
         let (mut at, mut inverse, mut square) = ([first; WIDTH], [0.0; WIDTH], [0.0; WIDTH]);
-        let Some(value) = self.value.first_chunk::<POINTS>() else { return [0; WIDTH] };
-        let Some(climbed) = self.climbed.first_chunk::<ENERGIES>() else { return [0; WIDTH] };
         let short = |inverse: f64, square: f64, at: usize| {
             let r = radius(at);
-            let h = (1.0 - value[at & (POINTS - 1)] * inverse) * (r * r);
+            let h = (1.0 - self.value[at & (POINTS - 1)] * inverse) * (r * r);
             (usize::from(h >= square) ^ 1) & usize::from(at <= last)
         };
         let mut near = 1;
@@ -95,7 +91,7 @@ impl Grid {
             inverse[lane] = 1.0 / energy[lane];
             square[lane] = b[lane] * b[lane];
             // Where V > E nothing comes, and where it repels nothing comes nearer than b.
-            at[lane] = usize::from(climbed[(energy[lane].to_bits() >> 51) as usize & (ENERGIES - 1)]);
+            at[lane] = usize::from(self.climbed[(energy[lane].to_bits() >> 51) as usize & 4095]);
             if self.repels {
                 at[lane] = at[lane].max(place(b[lane])).min(last);
             }

@@ -1,7 +1,7 @@
 //! Eight pairs side by side: what is known of them before the first node, and at w = 0.
 
-use super::comparison::{self, Comparison, STRONG};
-use super::trapezoid::{INTEGRALS, Sums};
+use super::comparison::{Comparison, STRONG};
+use super::trapezoid::INTEGRALS;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
 use crate::numerics::real::Mask;
 use crate::tiered;
@@ -134,23 +134,6 @@ fn begin<V: Vector8>(pack: &Pack, constants: &mut Constants, running: &mut Runni
     running.least = g.store();
 }
 
-/// What the sums make of eight pairs.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Angles {
-    pub(super) angle: Lanes,
-    pub(super) complement: Lanes,
-    pub(super) error: Lanes,
-}
-
-#[inline(always)]
-fn angles<V: Vector8>(pack: &Pack, sums: &Sums) -> Angles {
-    let (x, y, root) = (V::load(pack.value), V::load(pack.force), V::load(pack.root));
-    let (angle, complement) = comparison::angle([x, y], root, V::load(sums.integral[0]));
-    let error = comparison::error(root, V::load(sums.error), angle);
-    Angles { angle: angle.store(), complement: complement.store(), error: error.store() }
-}
-
 tiered! {
-    pub(super) fn angles_tier[][](pack: &Pack, sums: &Sums) -> Angles = angles;
     pub(super) fn begin_tier[][](pack: &Pack, constants: &mut Constants, running: &mut Running) = begin;
 }

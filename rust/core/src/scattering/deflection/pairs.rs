@@ -3,7 +3,7 @@
 use super::adaptive::{self, Integrand, Pair};
 use super::comparison::{self, Comparison, STRONG};
 use super::nodes::Ladder;
-use super::pack::{Pack, angles_tier};
+use super::pack::Pack;
 use super::profile::{Center, Profile};
 use super::refine::Turned;
 use super::trapezoid::{self, INTEGRALS, Sums, Work};
@@ -100,7 +100,6 @@ impl Quadrature<'_> {
             Center::Attractive(power) if power >= 2.0 => f64::INFINITY,
             _ => profile.one_turning_point_from(),
         };
-        let everywhere = profile.everywhere();
         for from in (0..energy.len()).step_by(WIDTH) {
             ticker.tick()?;
             let (mut energies, mut impacts) = ([0.0; WIDTH], [0.0; WIDTH]);
@@ -110,21 +109,7 @@ impl Quadrature<'_> {
                 impacts[at] = profile.take_length(b[place]);
             }
             let cells = profile.grid().places(&energies, &impacts);
-            let (next, count) = (turning.places.len(), WIDTH.min(energy.len() - from));
-            let mut simple = everywhere && count == WIDTH && next.is_multiple_of(WIDTH);
-            for at in 0..WIDTH {
-                simple &= cells[at] > 0 && impacts[at] > 0.0 && energies[at] >= simple_from;
-            }
-            if simple {
-                turned.put_row(next / WIDTH, &energies, &impacts, profile.grid(), &cells);
-                turning.places.extend(from as u16..(from + WIDTH) as u16);
-                turning.nearness.extend([f64::INFINITY; WIDTH]);
-                for found in &mut found[from..from + WIDTH] {
-                    found.turning_points = 1;
-                }
-                continue;
-            }
-            for at in 0..count {
+            for at in 0..WIDTH.min(energy.len() - from) {
                 let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
                 let next = turning.places.len();
@@ -180,9 +165,6 @@ impl Quadrature<'_> {
             as_numbers(&turned.curvature),
             as_numbers(&turned.root),
         ];
-        // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
-        let passes = matches!(profile.center(), Center::Open(_));
-        let quick = !(self.all || passes);
         // Those that reach as far side by side.
         let order = by_reach(&reach);
         for group in order.chunks(WIDTH) {
@@ -210,18 +192,9 @@ impl Quadrature<'_> {
             } else {
                 trapezoid::integrate::<1>(profile, ladder, &pack, self.tolerance, &mut work);
             }
-            let angles = angles_tier(&pack, &work.sums);
             for (lane, at) in group.iter().enumerate() {
                 let at = usize::from(*at);
                 let found = &mut found[usize::from(turning.places[at])];
-                found.angle = angles.angle.0[lane];
-                found.complement = angles.complement.0[lane];
-                found.error = angles.error.0[lane];
-                found.closest_approach = pack.turning.0[lane];
-                found.status = Status::Scattered;
-                if quick && work.sums.met.lane(lane) && turning.nearness[at] >= NEAR_ORBITING {
-                    continue;
-                }
                 self.finish((turning, at), &pack, &work.sums, lane, found);
             }
         }
@@ -263,7 +236,7 @@ impl Quadrature<'_> {
         reaches
     }
 
-    /// What else there is of a lane whose angle is what the sums make of it; if they are not good enough, its intervals.
+    /// What the sums of a lane make, or if they are not good enough its intervals.
     fn finish(
         &self,
         (turning, at): (&Turning, usize),
@@ -276,31 +249,32 @@ impl Quadrature<'_> {
         let nearness = turning.nearness[at];
         let (r, x, y, root) =
             (pack.turning.0[lane], pack.value.0[lane], pack.force.0[lane], pack.root.0[lane]);
-        if nearness < NEAR_ORBITING {
-            found.status = Status::NearOrbiting;
-        }
+        found.closest_approach = r;
+        found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
+        let strong = x < STRONG;
         let single = || {
             let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
             Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, near }
         };
-        let mut integral = sums.integral.map(|integral| integral.0[lane]);
-        if !sums.met.lane(lane) {
+        let (integral, mut error) = if sums.met.lane(lane) {
+            let integral = &sums.integral;
+            ([integral[0].0[lane], integral[1].0[lane], integral[2].0[lane]], sums.error.0[lane])
+        } else {
             let tolerance = self.tolerance.max(ROUNDING / nearness);
-            let error;
-            (integral, error) =
-                self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance);
-            (found.angle, found.complement) = comparison::angle([x, y], root, integral[0]);
-            found.error = comparison::error(root, error, found.angle);
-        }
+            self.by_intervals(&single(), Integrand::Deflection, turning.barriers(at), tolerance)
+        };
+        (found.angle, found.complement) = comparison::angle(strong, [x, y], root, integral[0]);
+        // Where a center can be passed, small b turn little; elsewhere a small angle is one that crosses zero.
         let passes = matches!(profile.center(), Center::Open(_));
         let short = CANCELLED * PI * (x / (1.0 + root)).abs().min(1.0);
         if passes && found.angle.abs() < short {
             let (turns, off) =
                 self.by_intervals(&single(), Integrand::Turning, turning.barriers(at), self.tolerance);
             (found.angle, found.complement) = (turns[0], PI - turns[0].abs());
-            found.error = comparison::error(root, 0.5 * off / root, found.angle);
+            error = 0.5 * off / root;
         }
+        found.error = 2.0 * root * error + f64::EPSILON * found.angle.abs();
         if self.all {
             let steep = 2.0_f64.mul_add(root * root, y);
             let lost = integral[2] + comparison::closed_delay(x, root);

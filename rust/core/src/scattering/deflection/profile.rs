@@ -195,11 +195,6 @@ impl Profile {
     pub(super) fn endless_delay(&self) -> f64 {
         self.endless_delay
     }
-    /// Whether it is everywhere, so that there is nothing to refuse.
-    #[inline]
-    pub(super) fn everywhere(&self) -> bool {
-        self.domain == [0.0, f64::INFINITY]
-    }
     /// Refuses a table that ends before V does.
     ///
     /// # Errors

@@ -5,7 +5,7 @@
 //! the rest: one, as a rule, so short that Taylor's series knows V and dV/dr after it. What leaves the bracket is halved
 //! instead. Each lane goes by itself.
 
-use super::grid::{ENDS, Grid};
+use super::grid::ENDS;
 use super::profile::Profile;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::real::Mask;
@@ -80,31 +80,6 @@ impl Turned {
         as_numbers_mut(&mut self.high)[at] = high;
         for (row, end) in self.ends.iter_mut().zip(ends) {
             as_numbers_mut(row)[at] = end;
-        }
-    }
-    /// Writes a row of pairs that turn in cells of the grid down.
-    #[inline(always)]
-    pub(super) fn put_row(
-        &mut self,
-        row: usize,
-        energy: &[f64; WIDTH],
-        b: &[f64; WIDTH],
-        grid: &Grid,
-        cells: &[usize; WIDTH],
-    ) {
-        let (mut low, mut high) = ([0.0; WIDTH], [0.0; WIDTH]);
-        let mut ends = [[0.0; WIDTH]; ENDS];
-        for lane in 0..WIDTH {
-            [low[lane], high[lane]] = grid.cell(cells[lane]);
-            let around = grid.around(cells[lane]);
-            for end in 0..ENDS {
-                ends[end][lane] = around[end];
-            }
-        }
-        (self.energy[row], self.b[row]) = (Lanes(*energy), Lanes(*b));
-        (self.low[row], self.high[row]) = (Lanes(low), Lanes(high));
-        for end in 0..ENDS {
-            self.ends[end][row] = Lanes(ends[end]);
         }
     }
     /// Fills the last row up with its last pair, and forgets the rows after it.
