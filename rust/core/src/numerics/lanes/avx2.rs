@@ -83,7 +83,9 @@ impl Real for Avx2Half {
     }
     #[inline(always)]
     fn select_up_to(self, most: Self, if_true: Self, if_false: Self) -> Self {
-        Self(unsafe { _mm256_blendv_pd(if_false.0, if_true.0, _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, most.0)) })
+        Self(unsafe {
+            _mm256_blendv_pd(if_false.0, if_true.0, _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, most.0))
+        })
     }
     #[inline(always)]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {

@@ -11,8 +11,6 @@ const DIVISIONS: u32 = 4;
 pub(super) const POINTS: usize = (2 * OCTAVES) << DIVISIONS;
 /// The bits of a distance before those of its place in a cell of the grid.
 const SHIFT: u32 = 52 - DIVISIONS;
-/// How many numbers are known of a cell, three at either end.
-pub(super) const ENDS: usize = 6;
 /// Cells in which most turning points are found, beyond b and where V passes E.
 const NEAR_CELLS: usize = 16;
 /// The first distance, as such bits.
@@ -21,10 +19,9 @@ const BASE: u64 = (1023 - OCTAVES as u64) << DIVISIONS;
 /// What a potential is on the grid.
 #[derive(Debug)]
 pub(super) struct Grid {
-    /// V, −r dV/dr and r² d²V/dr².
+    /// V and −r dV/dr.
     pub(super) value: Vec<f64>,
     pub(super) pull: Vec<f64>,
-    bend: Vec<f64>,
     /// The part of it where there is a potential: first and last place.
     pub(super) inside: [usize; 2],
     /// The largest |V| and |r dV/dr| from there on.
@@ -50,8 +47,8 @@ pub(super) fn place(r: f64) -> usize {
 }
 
 impl Grid {
-    /// Of V, −r dV/dr and r² d²V/dr² at all places.
-    pub(super) fn new([value, pull, bend]: [Vec<f64>; 3], inside: [usize; 2]) -> Self {
+    /// Of V and −r dV/dr at all places.
+    pub(super) fn new(value: Vec<f64>, pull: Vec<f64>, inside: [usize; 2]) -> Self {
         let mut beyond = vec![[0.0; 2]; POINTS + 1];
         let mut tail = [vec![0.0; POINTS], vec![0.0; POINTS]];
         let larger = |old: f64, new: f64| if new.abs() > old { new.abs() } else { old };
@@ -69,7 +66,7 @@ impl Grid {
         climbed.rotate_left(1);
         let repels = pull[inside[0]..=inside[1]].iter().all(|pull| *pull >= 0.0);
         let faint = tail.map(|tail| falls_to::<52>(&tail, 0));
-        Self { value, pull, bend, inside, beyond, faint, climbed, repels }
+        Self { value, pull, inside, beyond, faint, climbed, repels }
     }
     /// The largest |V| (0) or |r dV/dr| (1) at this distance and beyond, or a little more.
     pub(super) fn beyond(&self, r: f64, which: usize) -> f64 {
@@ -111,18 +108,17 @@ impl Grid {
     pub(super) fn cell(&self, place: usize) -> [f64; 2] {
         [radius(place - 1), radius(place)]
     }
-    /// V, −r dV/dr and r² d²V/dr² at both ends of the cell that ends at a place.
+    /// V and −r dV/dr at both ends of the cell that ends at a place.
     #[inline(always)]
-    pub(super) fn around(&self, place: usize) -> [f64; ENDS] {
-        let (from, to) = (place - 1, place);
-        [self.value[from], self.value[to], self.pull[from], self.pull[to], self.bend[from], self.bend[to]]
+    pub(super) fn around(&self, place: usize) -> [f64; 4] {
+        [self.value[place - 1], self.value[place], self.pull[place - 1], self.pull[place]]
     }
-    /// The same of a cell of the grid, by its ends; NaN of what is none.
+    /// V and −r dV/dr at both ends of a cell of the grid; NaN of what is none.
     #[inline]
-    pub(super) fn ends(&self, [low, high]: [f64; 2]) -> [f64; ENDS] {
+    pub(super) fn ends(&self, [low, high]: [f64; 2]) -> [f64; 4] {
         let (from, to) = (place(low), place(high));
         if radius(from) != low || radius(to) != high || to != from + 1 {
-            return [f64::NAN; ENDS];
+            return [f64::NAN; 4];
         }
         self.around(to)
     }

@@ -65,7 +65,7 @@ impl Quadrature<'_> {
         let mut turned = Turned::default();
         let turning = self.turning(energy, b, (&mut turned, &mut found), ticker)?;
         if !turning.places.is_empty() {
-            turned.refine(profile, self.all);
+            turned.refine(profile);
             self.integrate(&turned, &turning, &mut found, ticker)?;
         }
         for (place, found) in found.iter_mut().enumerate() {

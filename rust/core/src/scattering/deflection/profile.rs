@@ -61,15 +61,14 @@ impl Profile {
         let rows: Vec<Lanes> = (0..POINTS / WIDTH)
             .map(|row| Lanes(core::array::from_fn(|lane| radius(row * WIDTH + lane))))
             .collect();
-        let (mut value, mut force, mut curvature) = (rows.clone(), rows.clone(), rows.clone());
-        scaled.all_rows(&rows, &mut value, &mut force, &mut curvature);
-        for out in [&mut value, &mut force, &mut curvature] {
+        let (mut value, mut force) = (rows.clone(), rows.clone());
+        scaled.all_rows(&rows, &mut value, &mut force, &mut []);
+        for out in [&mut value, &mut force] {
             end(domain[1], &rows, out);
         }
-        let (force, curvature) = (as_numbers(&force), as_numbers(&curvature));
+        let force = as_numbers(&force);
         let pull = (0..POINTS).map(|at| radius(at) * force[at]).collect();
-        let bend = (0..POINTS).map(|at| radius(at) * radius(at) * curvature[at]).collect();
-        let grid = Grid::new([as_numbers(&value).to_vec(), pull, bend], inside);
+        let grid = Grid::new(as_numbers(&value).to_vec(), pull, inside);
         let repels = breaks.is_empty() && grid.repels;
         let mut made = Self {
             potential: scaled,
