@@ -76,7 +76,7 @@ fn exponential<S: Binary>(x: S) -> S {
     let half = nearest_integer(n * S::splat(0.5));
     let scaled = value * half.power_of_two() * (n - half).power_of_two();
     // `max` and `min` lose a NaN: give it back.
-    x.select_up_to(x, scaled, x)
+    S::select(x.less_equal(x), scaled, x)
 }
 
 /// (e⁻ˢ − 1 + s)/s² for |s| ≤ ln 2/2, through the zeros of Chebyshev's polynomial: what it makes of e⁻ˢ errs by less than
@@ -98,10 +98,9 @@ const LN2_REST: f64 = 2.319_046_813_846_299_6e-17;
 /// Up to here e⁻ˣ is a normal number.
 const NORMAL: f64 = 708.0;
 
-/// Several e⁻ˣ side by side, of x that are not negative, as far as each `key` is not above its `last`; use
-/// [`Exponential::falling_exps`] and [`Exponential::fading_exps`].
+/// Several e⁻ˣ side by side, of x that are not negative; use [`Exponential::falling_exps`].
 #[inline(always)]
-fn falling<S: Binary, const N: usize>(x: [S; N], key: [S; N], last: [S; N]) -> [S; N] {
+fn falling<S: Binary, const N: usize>(x: [S; N]) -> [S; N] {
     let (shift, one) = (S::splat(INTEGER_SHIFT), S::one());
     let clamped = each!(i < N => x[i].min(S::splat(NORMAL)));
     let n =
@@ -116,19 +115,7 @@ fn falling<S: Binary, const N: usize>(x: [S; N], key: [S; N], last: [S; N]) -> [
     let square = each!(i < N => s[i] * s[i]);
     let less = each!(i < N => square[i].multiply_subtract_from(p[i], s[i]));
     let value = each!(i < N => (one - less[i]) * n[i].power_of_two());
-    each!(i < N => key[i].select_up_to(last[i], value[i], S::zero()))
-}
-
-/// Of those without a last x of their own the last is where e⁻ᵘ is no longer normal.
-#[inline(always)]
-fn fading<S: Binary, const N: usize>(u: [S; N], x: S, last: [f64; N]) -> [S; N] {
-    let (mut key, mut most) = (u, [S::splat(NORMAL); N]);
-    for i in 0..N {
-        if last[i] < f64::INFINITY {
-            (key[i], most[i]) = (x, S::splat(last[i]));
-        }
-    }
-    falling(u, key, most)
+    each!(i < N => S::select(x[i].less_equal(S::splat(NORMAL)), value[i], S::zero()))
 }
 
 /// Scalars that have an exponential function.
@@ -140,9 +127,6 @@ pub trait Exponential: Real {
     /// Several e⁻ˣ, faster together than one by one: of 0 and above, within 1.1 units in the last place (measured 1.00); 0
     /// above 708, where it would be next to subnormal, and of NaN.
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N];
-    /// Several e⁻ᵘ of multiples u of one x, in the same way, that are 0 where x is above the `last` of each; u is at most 708
-    /// at those that are finite.
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N];
 }
 
 impl Exponential for f64 {
@@ -152,11 +136,7 @@ impl Exponential for f64 {
     }
     #[inline(always)]
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
-        falling(x, x, [Self::splat(NORMAL); N])
-    }
-    #[inline(always)]
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N] {
-        fading(u, x, last)
+        falling(x)
     }
 }
 impl Exponential for Lanes {
@@ -166,11 +146,7 @@ impl Exponential for Lanes {
     }
     #[inline(always)]
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
-        falling(x, x, [Self::splat(NORMAL); N])
-    }
-    #[inline(always)]
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N] {
-        fading(u, x, last)
+        falling(x)
     }
 }
 #[cfg(target_arch = "x86_64")]
@@ -181,11 +157,7 @@ impl Exponential for Avx2 {
     }
     #[inline(always)]
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
-        falling(x, x, [Self::splat(NORMAL); N])
-    }
-    #[inline(always)]
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N] {
-        fading(u, x, last)
+        falling(x)
     }
 }
 #[cfg(target_arch = "x86_64")]
@@ -196,19 +168,12 @@ impl Exponential for Avx512 {
     }
     #[inline(always)]
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
-        falling(x, x, [Self::splat(NORMAL); N])
-    }
-    #[inline(always)]
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N] {
-        fading(u, x, last)
+        falling(x)
     }
 }
 impl Exponential for DoubleDouble {
     fn falling_exps<const N: usize>(x: [Self; N]) -> [Self; N] {
         x.map(|x| (-x).exp())
-    }
-    fn fading_exps<const N: usize>(u: [Self; N], x: Self, last: [f64; N]) -> [Self; N] {
-        core::array::from_fn(|i| if x.high() <= last[i] { (-u[i]).exp() } else { Self::zero() })
     }
     /// About 30 digits relative to (1 + |x|); for references.
     fn exp(self) -> Self {

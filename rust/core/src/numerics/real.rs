@@ -109,11 +109,6 @@ pub trait Real:
     fn less_equal(self, other: Self) -> Self::Mask;
     /// `if_true` where the mask holds, else `if_false`.
     fn select(mask: Self::Mask, if_true: Self, if_false: Self) -> Self;
-    /// `if_true` where `self <= most`, else `if_false`: less than a comparison and a selection where masks are bits.
-    #[inline(always)]
-    fn select_up_to(self, most: Self, if_true: Self, if_false: Self) -> Self {
-        Self::select(self.less_equal(most), if_true, if_false)
-    }
     /// `coefficient * self` as an unevaluated sum (high, low), so that a coefficient that the
     /// scalar cannot represent does not bias a long integration.
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self);

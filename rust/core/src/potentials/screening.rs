@@ -135,14 +135,14 @@ fn exponentials<S: Analytic, const N: usize, const M: usize>(
     x: S,
     orders: [usize; M],
 ) -> [S; M] {
-    let x = x.min(S::splat(FAR));
+    let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
     sums(terms, x, orders, [f64::INFINITY; N])
 }
 
 /// As [`exponentials`], of four of which the first two fade before the others.
 #[inline(always)]
 fn fading<S: Analytic, const M: usize>(terms: &Terms<4>, x: S, orders: [usize; M]) -> [S; M] {
-    let x = x.min(S::splat(FAR));
+    let x = S::select(x.less_equal(S::splat(FAR)), x, S::splat(FAR));
     let [_, b, c, d] = *terms;
     let [first, second] = FADED;
     // A lane's bits do not depend on the others: what has faded is nothing in either way.
@@ -167,10 +167,13 @@ fn sums<S: Analytic, const N: usize, const M: usize>(
     for i in 0..N {
         u[i] = x * S::splat(terms[i][1]);
     }
-    let falling = S::fading_exps(u, x, last);
+    let falling = S::falling_exps(u);
     let mut sums = [S::zero(); M];
     for i in 0..N {
-        let decay = falling[i];
+        let mut decay = falling[i];
+        if last[i] < f64::INFINITY {
+            decay = S::select(x.less_equal(S::splat(last[i])), decay, S::zero());
+        }
         for m in 0..M {
             sums[m] = decay.multiply_add(weight(u[i], terms[i][0], orders[m]), sums[m]);
         }

@@ -82,12 +82,6 @@ impl Real for Avx2Half {
         Self(unsafe { _mm256_blendv_pd(if_false.0, if_true.0, _mm256_castsi256_pd(spread(mask))) })
     }
     #[inline(always)]
-    fn select_up_to(self, most: Self, if_true: Self, if_false: Self) -> Self {
-        Self(unsafe {
-            _mm256_blendv_pd(if_false.0, if_true.0, _mm256_cmp_pd::<_CMP_LE_OQ>(self.0, most.0))
-        })
-    }
-    #[inline(always)]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
         scaled_by(self, coefficient)
     }
@@ -193,13 +187,6 @@ impl Real for Avx2 {
         Self(
             Avx2Half::select(mask, if_true.0, if_false.0),
             Avx2Half::select(Bits(mask.0 >> 4), if_true.1, if_false.1),
-        )
-    }
-    #[inline(always)]
-    fn select_up_to(self, most: Self, if_true: Self, if_false: Self) -> Self {
-        Self(
-            self.0.select_up_to(most.0, if_true.0, if_false.0),
-            self.1.select_up_to(most.1, if_true.1, if_false.1),
         )
     }
     #[inline(always)]
