@@ -71,9 +71,13 @@ def axes_or_new(axes: Axes | None) -> Axes:
     Raises
     ------
     visviva.InvalidInput
-        If there are none and matplotlib is not installed.
+        If there are none and matplotlib is not installed; for what are no axes.
     """
-    return new_figure(1, (5.5, 4.0))[1][0] if axes is None else axes
+    if axes is None:
+        return new_figure(1, (5.5, 4.0))[1][0]
+    if not hasattr(axes, "plot"):
+        raise InvalidInput("ax", f"expected axes of matplotlib, as of plt.subplots(), or None, got {axes!r}")
+    return axes
 
 
 def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
@@ -82,7 +86,7 @@ def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, a
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     solid = len(shown) == 3
     if ax is not None:
-        if solid is not hasattr(ax, "get_zlim"):
+        if not hasattr(ax, "plot") or solid is not hasattr(ax, "get_zlim"):
             wanted = "three" if solid else "two"
             raise InvalidInput("ax", f"expected axes of {wanted} dimensions for plane={plane!r}, got {ax!r}")
         _orbits(ax, trajectory, chosen, shown)

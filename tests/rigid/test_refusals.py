@@ -35,6 +35,7 @@ WRONG: dict[str, list[Any]] = {
     "vertices": [[[NAN] * 3] * 4, [[0.0, 0.0]] * 4, [0.0, 0.0, 0.0], None, *NO_ARRAY],
     "faces": [[[0, 1]], [[0, 1, 4]], [[-1, 1, 2]], [[0, 0, 1]], [[0.5, 1.0, 2.0]], [0, 1, 2], None, *NO_ARRAY],
     "quaternion": [[0.0] * 4, [0.0, 0.0, 0.0, 1.1], [NAN, 0.0, 0.0, 1.0], [0.0, 0.0, 1.0], 1.0, None, *NO_ARRAY],
+    "axes": ["here", 1.0, np.zeros(3)],
     "moments": [
         [1.0, 2.0, 3.1],
         [0.0, 0.0, 0.0],
@@ -155,8 +156,11 @@ CALLS: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
         TOP.solve,
         {"t": ([0.0, 1.0], "numbers"), **START, "phi": (0.0, "number"), "psi": (0.0, "number")},
     ),
-    "TopMotion.plot": (TOP.solve([0.0, 0.1], theta=0.5, psi_dot=20.0).plot, {"kind": ("theta", "frame")}),
-    "FreeRotation.plot": (FREE.plot, {"kind": ("axes", "frame")}),
+    "TopMotion.plot": (
+        TOP.solve([0.0, 0.1], theta=0.5, psi_dot=20.0).plot,
+        {"kind": ("theta", "frame"), "ax": (None, optional("axes"))},
+    ),
+    "FreeRotation.plot": (FREE.plot, {"kind": ("axes", "frame"), "ax": (None, optional("axes"))}),
     "FreeRotation.animate": (
         FREE.animate,
         {

@@ -56,7 +56,7 @@ def _plotted(motion: Any, kind: str, pictures: dict[str, Callable[[Any, Any], No
     solid = kind in _SOLID
     if ax is None:
         _, (ax,) = new_figure(1, (5.5, 5.0), solid=(0,) if solid else ())
-    elif solid is not hasattr(ax, "get_zlim"):
+    elif not hasattr(ax, "plot") or solid is not hasattr(ax, "get_zlim"):
         wanted = "three" if solid else "two"
         raise InvalidInput("ax", f"expected axes of {wanted} dimensions for kind={kind!r}, got {ax!r}")
     pictures[kind](ax, motion)
