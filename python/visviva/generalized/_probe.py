@@ -134,7 +134,8 @@ def _states(system: GeneralizedSystem) -> tuple[NDArray[np.float64], NDArray[np.
         (still, place * 10.0 ** rng.uniform(-3.0, 3.0, n), speed * 10.0 ** rng.uniform(-3.0, 3.0, n), 1.0)
         for _ in range(4)
     ]
-    times, states = [], []
+    times: list[NDArray[np.float64]] = []
+    states: list[NDArray[np.float64]] = []
     for center, scale, other, span in near + far:
         count = 4 * _STATES if len(times) < len(near) else _STATES
         states.append(center + np.concatenate([scale, other]) * rng.normal(size=(count, 2 * n)))
