@@ -218,6 +218,11 @@ impl Vector8 for Avx2 {
         Self::load(self.store().permute(index))
     }
     #[inline(always)]
+    fn sum_in_every_lane(self) -> Self {
+        let (low, high) = (sum_of_half(self.0), sum_of_half(self.1));
+        Self(low + high, low + high)
+    }
+    #[inline(always)]
     fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
         let [a, b, c] = interleave_half(x.0, y.0, z.0);
         let [d, e, f] = interleave_half(x.1, y.1, z.1);
@@ -230,6 +235,13 @@ impl Vector8 for Avx2 {
             write_half_where(self.1, Bits(mask.0 >> 4), to.wrapping_add(WIDTH / 2));
         }
     }
+}
+
+/// As [`Vector8::sum_in_every_lane`], of a half: it is moved about in registers.
+#[inline(always)]
+fn sum_of_half(half: Avx2Half) -> Avx2Half {
+    let pairs = half + Avx2Half(unsafe { _mm256_permute_pd::<0b0101>(half.0) });
+    pairs + Avx2Half(unsafe { _mm256_permute2f128_pd::<1>(pairs.0, pairs.0) })
 }
 
 /// As [`Vector8::write_where`], of a half.

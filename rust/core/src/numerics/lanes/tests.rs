@@ -4,7 +4,7 @@ use proptest::prelude::*;
 
 /// What every tier must agree on, bit for bit.
 #[inline(always)]
-fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 18] {
+fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 19] {
     let [a, b, c] = input.map(V::load);
     let mask = a.less(b).or(b.less_equal(c).not());
     let [first, second, third] = V::interleave(a, b, c);
@@ -20,6 +20,7 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 18] {
         V::select(mask, a, -b),
         a.permute(&[7, 0, 3, 3, 1, 2, 6, 5]),
         V::splat(a.store().horizontal_sum()),
+        a.sum_in_every_lane(),
         a.scaled_by(DoubleDouble::PI).0,
         a.scaled_by(DoubleDouble::PI).1,
         a.multiply_add(b, c),
@@ -36,10 +37,10 @@ fn exercise<V: Vector8 + Binary>(input: &[Lanes; 3]) -> [Lanes; 18] {
 }
 
 crate::tiered! {
-    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 18] = exercise;
+    fn exercised[][](input: &[Lanes; 3]) -> [Lanes; 19] = exercise;
 }
 
-fn bits(lanes: [Lanes; 18]) -> Vec<u64> {
+fn bits(lanes: [Lanes; 19]) -> Vec<u64> {
     lanes.iter().flat_map(|lane| lane.0.map(f64::to_bits)).collect()
 }
 
@@ -55,7 +56,7 @@ proptest! {
         #[cfg(target_arch = "x86_64")]
         if is_x86_feature_detected!("avx2") && is_x86_feature_detected!("fma") {
             #[target_feature(enable = "avx2,fma")]
-            fn avx2(input: &[Lanes; 3]) -> [Lanes; 18] {
+            fn avx2(input: &[Lanes; 3]) -> [Lanes; 19] {
                 exercise::<Avx2>(input)
             }
             // SAFETY: the machine has AVX2 and FMA.
