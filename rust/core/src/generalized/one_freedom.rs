@@ -13,25 +13,13 @@ use std::sync::Arc;
 
 use crate::numerics::angles;
 
-/// The longest first steps to find a turning point, in units of the place.
-const LONGEST_STEP: f64 = 1e-2;
-/// First steps, as a part of the length on which the slope is a straight line, and how straight that is.
-const OF_STRAIGHT: f64 = 0.25;
-const STRAIGHT: f64 = 0.1;
-/// Doublings from one rounding of the place until that length is found.
-const MOST_DOUBLINGS: u32 = 2200;
-/// Half a swing is more than this part of the place: else places have too few digits to tell how the force changes on it.
-const RESOLVED: f64 = 1e-9;
+/// The first steps to find a turning point, in units of the place.
+const SMALLEST_STEP: f64 = 1e-2;
 /// Steps that are alike, and all of them: the others grow, to 10^20.
 const STEPS_ALIKE: u32 = 3000;
 const MOST_STEPS: u32 = 8000;
-/// Nodes that are begun with, and the most of equal steps.
-const NODES: (usize, usize) = (16, 1 << 14);
-/// Where those do not do, next to kinks: the most parts, and the narrowest.
-const MOST_PARTS: usize = 1000;
-const NARROWEST: f64 = 1e-16;
-/// Halves that agree with the whole to this are exact: what is left of the error of a rule of order 16 is 2^−16 of that.
-const HALVES: f64 = 1e-12;
+/// Nodes that are begun with, and the most there are.
+const NODES: (usize, usize) = (16, 1 << 20);
 /// Squared cosines below this are near a turning point.
 const NEAR_AN_END: f64 = 0.25;
 /// Where potentials differ by less than this part of them, they are not subtracted.
@@ -99,29 +87,6 @@ impl OneFreedom {
         found
     }
 
-    /// −∂L/∂q at rest, integrated between two places, if it is smooth enough to be known to all digits.
-    fn climb(&mut self, from: f64, to: f64) -> Option<f64> {
-        let (nodes, weights) = gauss::quadrature();
-        let (mut panels, mut last) = (1, f64::NAN);
-        while panels <= PANELS {
-            let width = (to - from) / f64::from(panels);
-            let (mut sum, mut size) = (0.0, 0.0);
-            for panel in 0..panels {
-                for (x, w) in nodes.iter().zip(weights) {
-                    let slope = w * self.values(from + (f64::from(panel) + x) * width, 0.0)[2];
-                    sum += slope;
-                    size += slope.abs();
-                }
-            }
-            if (sum * width - last).abs() <= EXACT * size * width.abs() {
-                return Some(sum * width);
-            }
-            last = sum * width;
-            panels *= 2;
-        }
-        None
-    }
-
     /// What is left of the energy for motion.
     fn left(&mut self, q: f64) -> f64 {
         let at_rest = self.values(q, 0.0)[0];
@@ -130,33 +95,31 @@ impl OneFreedom {
             return self.kinetic + fallen;
         }
         // The difference of a short way would have few digits: the integral of the slope has all.
-        self.climb(self.start, q).map_or(self.kinetic + fallen, |climb| self.kinetic - climb)
-    }
-
-    /// The length of a first step on one side: a part of that on which the slope is nearly a straight line, or of the way to
-    /// where nothing is left.
-    fn first_step(&mut self, direction: f64) -> f64 {
-        let place = self.start.abs();
-        let longest = LONGEST_STEP * if place > 1.0 { place } else { 1.0 };
-        let here = self.values(self.start, 0.0)[2];
-        let mut step = (4.0 * f64::EPSILON * place).max(f64::MIN_POSITIVE);
-        for _ in 0..MOST_DOUBLINGS {
-            let middle = self.values(self.start + 0.5 * direction * step, 0.0)[2];
-            let end = self.values(self.start + direction * step, 0.0)[2];
-            let most = here.abs().max(middle.abs()).max(end.abs());
-            let straight = (middle - 0.5 * (here + end)).abs() <= STRAIGHT * most;
-            if step >= longest || !straight || self.left(self.start + direction * step) < 0.0 {
-                break;
+        let (nodes, weights) = gauss::quadrature();
+        let (mut panels, mut last) = (1, f64::NAN);
+        while panels <= PANELS {
+            let width = (q - self.start) / f64::from(panels);
+            let (mut sum, mut size) = (0.0, 0.0);
+            for panel in 0..panels {
+                for (x, w) in nodes.iter().zip(weights) {
+                    let slope = w * self.values(self.start + (f64::from(panel) + x) * width, 0.0)[2];
+                    sum += slope;
+                    size += slope.abs();
+                }
             }
-            step *= 2.0;
+            if (sum * width - last).abs() <= EXACT * size * width.abs() {
+                return self.kinetic - sum * width;
+            }
+            last = sum * width;
+            panels *= 2;
         }
-        longest.min(OF_STRAIGHT * step)
+        self.kinetic + fallen
     }
 
     /// The first turning point on one side, `None` if there is none within reach.
-    fn turning(&mut self, direction: f64) -> Option<f64> {
+    fn turning(&mut self, direction: f64, scale: f64) -> Option<f64> {
         // At rest at the start it is one side's turning point itself.
-        let (mut inside, mut step) = (self.start, self.first_step(direction));
+        let (mut inside, mut step) = (self.start, SMALLEST_STEP * scale);
         for taken in 0..MOST_STEPS {
             let mut outside = inside + direction * step;
             let slope = |of: &mut Self, q: f64| direction * of.values(q, 0.0)[2];
@@ -195,23 +158,21 @@ impl OneFreedom {
     /// # Errors
     /// A motion that does not turn back, or stands still.
     pub fn oscillation(&mut self) -> Result<Oscillation> {
-        let still = || {
-            let message = "the motion stands still: an equilibrium; see linearize()";
-            Err(Error::invalid("position", message))
-        };
-        if self.kinetic == 0.0 && self.values(self.start, 0.0)[2] == 0.0 {
-            return still();
-        }
-        let (Some(low), Some(high)) = (self.turning(-1.0), self.turning(1.0)) else {
+        let scale = if self.start.abs() > 1.0 { self.start.abs() } else { 1.0 };
+        let (Some(low), Some(high)) = (self.turning(-1.0, scale), self.turning(1.0, scale)) else {
             return Err(Error::invalid(
                 "position",
                 "the motion does not turn back; the period of a rotation is turn_period(2π)",
             ));
         };
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        if half <= RESOLVED * middle.abs() {
-            return still();
+        if half.abs() <= 1e-9 * scale {
+            return Err(Error::invalid(
+                "position",
+                "the motion stands still: an equilibrium; see linearize()",
+            ));
         }
+        let (nodes, weights) = gauss::quadrature();
         let mut of = |phi: f64| {
             let (sine, cosine) = angles::sin_cos(phi);
             let square = cosine * cosine;
@@ -223,17 +184,15 @@ impl OneFreedom {
                 // Next to an end the difference would have lost its digits: it is the slope's integral from there.
                 let far = half * square / (1.0 + sine.abs());
                 let to_the_end = if sine > 0.0 { far } else { -far };
-                match self.climb(place, place + to_the_end) {
-                    Some(climb) => climb,
-                    None => self.left(place),
-                }
+                let slopes =
+                    nodes.iter().zip(weights).map(|(x, w)| w * self.values(place + x * to_the_end, 0.0)[2]);
+                to_the_end * slopes.sum::<f64>()
             };
             // (E − U)/cos² has no zero at the ends.
             let speed = (2.0 * left / (mass * square)).sqrt();
             [half / speed, half * square * speed * mass]
         };
-        // A place has its own digits, and a part of the swing fewer.
-        let [period, action] = integrals(&mut of, AGREEMENT * (1.0 + middle.abs() / half))?;
+        let [period, action] = trapezoid(&mut of)?;
         Ok(Oscillation { turning: (low, high), period: 2.0 * period, action: action / PI })
     }
 
@@ -249,93 +208,41 @@ impl OneFreedom {
             let speed = (2.0 * self.left(place) / mass).sqrt();
             [turn.abs() / (PI * speed), turn.abs() / PI * speed * mass]
         };
-        let [period, action] = integrals(&mut of, AGREEMENT * (1.0 + (start / turn).abs()))?;
+        let [period, action] = trapezoid(&mut of)?;
         Ok([period, action / (2.0 * PI)])
     }
 }
 
-/// ∫ of two integrands from −π/2 to π/2: through the middles of equal steps, halved until nothing changes; where that takes
-/// long, in parts that are halved where they need it.
-fn integrals(of: &mut impl FnMut(f64) -> [f64; 2], agreement: f64) -> Result<[f64; 2]> {
+/// ∫ of two integrands from −π/2 to π/2 through the middles of equal steps, halved (by three) until nothing changes.
+fn trapezoid(of: &mut impl FnMut(f64) -> [f64; 2]) -> Result<[f64; 2]> {
     let (mut nodes, mut last) = (NODES.0, [f64::NAN; 2]);
     while nodes <= NODES.1 {
         let h = PI / nodes as f64;
-        let mut sums = [Sum::default(); 2];
+        let (mut sums, mut rests) = ([0.0; 2], [0.0; 2]);
         for k in 0..nodes {
             let values = of(-FRAC_PI_2 + (k as f64 + 0.5) * h);
-            sums.iter_mut().zip(values).for_each(|(sum, value)| sum.add(value));
+            for index in 0..2 {
+                let change = values[index] + rests[index];
+                let sum = sums[index] + change;
+                rests[index] = change - (sum - sums[index]);
+                sums[index] = sum;
+            }
         }
-        let found = sums.map(|sum| sum.value * h);
+        let found = sums.map(|sum| sum * h);
         if found.iter().any(|x| !x.is_finite()) {
             break;
         }
-        let close = |index: usize| {
-            let few = 1.0 + (nodes as f64).sqrt() / 8.0;
-            (found[index] - last[index]).abs() <= agreement * found[index].abs() * few
-        };
-        if close(0) && close(1) {
+        if (0..2).all(|index| {
+            (found[index] - last[index]).abs()
+                <= AGREEMENT * found[index].abs() * (1.0 + (nodes as f64).sqrt() / 8.0)
+        }) {
             return Ok(found);
         }
         last = found;
         nodes *= 2;
     }
-    in_parts(of, agreement).ok_or_else(|| {
-        Error::invalid(
-            "position",
-            "the quadrature does not converge: the motion is next to a separatrix, or turns back",
-        )
-    })
-}
-
-/// A sum that keeps what is rounded off.
-#[derive(Clone, Copy, Default)]
-struct Sum {
-    value: f64,
-    rest: f64,
-}
-
-impl Sum {
-    fn add(&mut self, value: f64) {
-        let change = value + self.rest;
-        let sum = self.value + change;
-        self.rest = change - (sum - self.value);
-        self.value = sum;
-    }
-}
-
-/// The same integrals, each part halved until the halves agree with the whole.
-fn in_parts(of: &mut impl FnMut(f64) -> [f64; 2], agreement: f64) -> Option<[f64; 2]> {
-    let (nodes, weights) = gauss::quadrature();
-    let mut part = |from: f64, to: f64| -> [f64; 2] {
-        let mut sums = [0.0; 2];
-        for (x, w) in nodes.iter().zip(weights) {
-            let values = of((to - from).mul_add(*x, from));
-            sums.iter_mut().zip(values).for_each(|(sum, value)| *sum += w * value * (to - from));
-        }
-        sums
-    };
-    let whole = part(-FRAC_PI_2, FRAC_PI_2);
-    let mut pending = vec![(-FRAC_PI_2, FRAC_PI_2, whole)];
-    let (mut sums, mut sizes, mut parts) = ([Sum::default(); 2], whole.map(f64::abs), 0);
-    while let Some((from, to, whole)) = pending.pop() {
-        parts += 1;
-        let middle = 0.5 * (from + to);
-        let halves = [part(from, middle), part(middle, to)];
-        let found: [f64; 2] = core::array::from_fn(|index| halves[0][index] + halves[1][index]);
-        if parts > MOST_PARTS || found.iter().any(|x| !x.is_finite()) {
-            return None;
-        }
-        sizes.iter_mut().zip(found).for_each(|(size, found)| *size = size.max(found.abs()));
-        let close = |index: usize| {
-            let off = (found[index] - whole[index]).abs();
-            off <= HALVES * found[index].abs() || off <= 0.01 * agreement * sizes[index]
-        };
-        if close(0) && close(1) || to - from <= NARROWEST {
-            sums.iter_mut().zip(found).for_each(|(sum, value)| sum.add(value));
-        } else {
-            pending.push((middle, to, halves[1]));
-            pending.push((from, middle, halves[0]));
-        }
-    }
-    Some(sums.map(|sum| sum.value))
+    Err(Error::invalid(
+        "position",
+        "the quadrature does not converge: the motion is next to a separatrix, or turns back",
+    ))
 }

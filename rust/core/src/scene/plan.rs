@@ -183,7 +183,8 @@ impl Plan {
         let closed_forms = automatic && request.events.is_empty() && !turning.steps();
         let solutions =
             if closed_forms { Solutions::of(scene, ticker)? } else { Solutions::integration(scene.copies) };
-        let known = if automatic && !closed_forms && !turning.steps() {
+        // A contact ends a leg of a run, and the next begins anew.
+        let known = if automatic && !closed_forms && !turning.steps() && !touching {
             Some(Solutions::of(scene, ticker)?)
         } else {
             None
