@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 __all__ = ["EventTable", "Lines"]
 
 
+@known_keywords
 class Lines(Exported, Shown):
     """Base of tables of events: columns, a line for each event, and what was looked for."""
 
@@ -69,7 +70,6 @@ class Lines(Exported, Shown):
     def __iter__(self) -> Iterator[Any]:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")
 
-    @known_keywords
     def of(self, which: int) -> Self:
         """The lines of one event.
 

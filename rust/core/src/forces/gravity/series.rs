@@ -18,11 +18,13 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 
+mod beside;
 mod each;
 mod pair;
 pub mod passive;
 mod ring;
 mod rows;
+use beside::Beside;
 pub use each::EachPair;
 pub use ring::RingPairs;
 use rows::RowPairs;
@@ -43,10 +45,12 @@ pub fn attraction(
     }
     let system = context.first();
     let strength: Vec<f64> = (0..active).map(|slot| strength(&system, slot)).collect();
-    if active <= RING_MAX {
-        Box::new(RingPairs::new(shape, &strength, softening))
-    } else {
+    if active > RING_MAX {
         Box::new(RowPairs::new(shape, strength, softening))
+    } else if active < system.bodies.len() {
+        Box::new(Beside::new(shape, strength, softening))
+    } else {
+        Box::new(RingPairs::new(shape, &strength, softening))
     }
 }
 

@@ -17,9 +17,10 @@ pub struct EachPair<S> {
     pair: Option<Box<Between>>,
 }
 
-/// Bodies on a ring.
+/// Massive bodies on a ring, and massless ones after them.
 struct Ring<S> {
-    /// The pairs `i, i + distance`, distance by distance; of the longest one in an even number, each once.
+    /// The pairs `i, i + distance`, distance by distance; of the longest one in an even number, each once. Then those of each
+    /// massless body with every massive one.
     pairs: Vec<(usize, usize)>,
     strength: Vec<S>,
     softening2: f64,
@@ -27,14 +28,15 @@ struct Ring<S> {
 }
 
 impl<S: Element> EachPair<S> {
-    /// From the `G·m` of the bodies.
+    /// From the `G·m` of the massive bodies, which come first.
     pub fn new(shape: Shape, strength: Vec<S>, softening: f64) -> Self {
         let n = strength.len();
         let pairs = (1..=n / 2).flat_map(|distance| {
             let count = if 2 * distance == n { distance } else { n };
             (0..count).map(move |i| (i, (i + distance) % n))
         });
-        let pairs: Vec<_> = pairs.collect();
+        let massless = (n..shape.rows).flat_map(|i| (0..n).map(move |massive| (i, massive)));
+        let pairs: Vec<_> = pairs.chain(massless).collect();
         let kept = Kept::new(shape, pairs.len());
         let softening2 = softening * softening;
         let pair = (n == 2 && shape.rows == 2).then(|| Box::new(Between::new(softening2)));
@@ -92,6 +94,19 @@ impl<V: Real> Pairs<V> for Seen<'_, V> {
                     for c in 0..C {
                         sum[c] = self.strength[behind].multiply_subtract_from(pulls[own + behind][c], sum[c]);
                     }
+                }
+            }
+            for c in 0..C {
+                let a = &mut a[c * self.rows + i];
+                *a = if first { sum[c] } else { *a + sum[c] };
+            }
+        }
+        let on_massless = &pulls[n * (n - 1) / 2..];
+        for (i, pulls) in (n..self.rows).zip(on_massless.chunks_exact(n)) {
+            let mut sum = [V::zero(); C];
+            for (pull, &strength) in pulls.iter().zip(self.strength) {
+                for c in 0..C {
+                    sum[c] = strength.multiply_add(pull[c], sum[c]);
                 }
             }
             for c in 0..C {

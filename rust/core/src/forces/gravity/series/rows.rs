@@ -1,4 +1,4 @@
-//! More than eight bodies of one trajectory: each pulls whole rows of eight, in order of index.
+//! Many bodies of one trajectory: those that have a mass pull whole rows of eight, in order of index.
 
 use super::{Kept, Orders, Pairs, Whole};
 use crate::error::Result;
@@ -6,6 +6,7 @@ use crate::forces::series::Series;
 use crate::numerics::element::Shape;
 use crate::numerics::inverse_cube::InverseCube;
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 use crate::parallel::Ticker;
 use crate::tiered;
@@ -14,19 +15,33 @@ struct Bodies {
     strength: Vec<f64>,
     softening2: f64,
     rows: usize,
+    /// 1 in the lanes of the first row where something is to be pulled.
+    pulled: Lanes,
 }
 
-/// Every body with every row of bodies: what a body does to itself is zero.
+/// Every massive body with every row of bodies: what a body does to itself is zero.
 pub(super) struct RowPairs {
     bodies: Bodies,
     kept: Kept<Lanes>,
 }
 
 impl RowPairs {
-    /// From the `G·m` of the bodies.
+    /// From the `G·m` of the massive bodies, which come first.
     pub(super) fn new(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
+        Self::on(shape, strength, softening, Lanes::one())
+    }
+
+    /// As [`Self::new`], of at most a row of massive bodies, which somebody else pulls.
+    pub(super) fn beside(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
+        let massive = strength.len();
+        let pulled = Lanes(core::array::from_fn(|lane| if lane < massive { 0.0 } else { 1.0 }));
+        Self::on(shape, strength, softening, pulled)
+    }
+
+    fn on(shape: Shape, strength: Vec<f64>, softening: f64, pulled: Lanes) -> Self {
         let kept = Kept::new(shape, shape.rows * strength.len());
-        Self { bodies: Bodies { strength, softening2: softening * softening, rows: shape.rows }, kept }
+        let bodies = Bodies { strength, softening2: softening * softening, rows: shape.rows, pulled };
+        Self { bodies, kept }
     }
 }
 
@@ -57,6 +72,10 @@ impl<V: Vector8> Pairs<V> for Bodies {
                 for c in 0..C {
                     sum[c] = V::splat(strength).multiply_add(pull[c], sum[c]);
                 }
+            }
+            if row == 0 {
+                let pulled = V::zero().less(V::load(self.pulled));
+                sum = sum.map(|sum| V::select(pulled, sum, V::zero()));
             }
             for c in 0..C {
                 let a = &mut a[c * self.rows + row];
