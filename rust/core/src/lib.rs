@@ -24,4 +24,11 @@ pub mod units;
 pub mod words;
 
 pub use error::{Error, Result};
+
+#[cfg(test)]
+extern crate self as visviva_core;
+#[cfg(test)]
+#[path = "../tests/mod.rs"]
+mod laws;
+
 pub(crate) use numerics::simd::tiered;

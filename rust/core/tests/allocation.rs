@@ -1,13 +1,10 @@
 //! No step allocates: scratch is made once per run.
 //!
-//! A binary of its own, as its allocator counts. One test, since the count is the thread's.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
+//! The allocator counts, for each thread by itself: a test is one.
 
-mod support;
-
+use super::support::{Problem, five_lanes, fixed_stepper, henon_heiles, three_bodies};
 use core::cell::Cell;
 use std::alloc::{GlobalAlloc, Layout, System};
-use support::{Problem, five_lanes, fixed_stepper, henon_heiles, three_bodies};
 use visviva_core::forces::Dynamics;
 use visviva_core::forces::gravity::Tiles;
 use visviva_core::forces::gravity::closed::ClosedKernel;
@@ -78,7 +75,7 @@ fn adaptive<S: Controlled + ClosedKernel>(problem: Problem<S>) -> Vec<(&'static 
         }
         let mut between = state.clone();
         let (mut trial, mut clock, norm) =
-            support::adaptive(method, &dynamics, dynamics.shape, &state, 1e-9, 1e3);
+            super::support::adaptive(method, &dynamics, dynamics.shape, &state, 1e-9, 1e3);
         let all = S::Mask::splat(true);
         trial.start(all, &mut dynamics, &state, &mut clock, &norm, &mut ticker).unwrap();
         // What looks between steps is made at the first look, once.

@@ -1,5 +1,4 @@
 //! The gravity kernels against a plain sum in double-double, and against each other to the bit.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
 
 use visviva_core::forces::gravity::{FewBodies, RING_MAX, Ring, Tiles, TwoRows};
 use visviva_core::forces::{Force, Phase};

@@ -1,5 +1,4 @@
 //! The edges of Kepler's problem: radial and parabolic elements, refusals, infinite times, extreme units.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use core::f64::consts::PI;
 use nalgebra::Vector3;

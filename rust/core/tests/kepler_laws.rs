@@ -1,5 +1,4 @@
 //! Laws of Kepler's problem over random orbits, and the golden cases of tests/reference.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, missing_docs)]
 
 use nalgebra::Vector3;
 use proptest::prelude::*;

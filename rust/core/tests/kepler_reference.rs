@@ -1,5 +1,4 @@
 //! Kepler's problem against 150 digits (tests/reference/kepler.json, written by tools/kepler_reference.py).
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::print_stdout, missing_docs)]
 
 use nalgebra::Vector3;
 use serde_json::Value;

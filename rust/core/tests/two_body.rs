@@ -1,5 +1,4 @@
 //! Two bodies against a reference in double-double: mass ratios to 1e-15 and a center of mass far away.
-#![allow(clippy::unwrap_used, missing_docs)]
 
 use nalgebra::Vector3;
 use proptest::prelude::*;

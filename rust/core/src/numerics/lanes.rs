@@ -114,6 +114,27 @@ pub fn as_numbers_mut(lanes: &mut [Lanes]) -> &mut [f64] {
     unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len() * WIDTH) }
 }
 
+/// Eight lanes, each of an expression of its index. Written out: a loop over them in every operation of every kernel would be
+/// unrolled by the compiler, which takes it a good part of its time.
+macro_rules! each_lane {
+    (|$lane:ident| $value:expr) => {
+        [
+            each_lane!($lane = 0, $value),
+            each_lane!($lane = 1, $value),
+            each_lane!($lane = 2, $value),
+            each_lane!($lane = 3, $value),
+            each_lane!($lane = 4, $value),
+            each_lane!($lane = 5, $value),
+            each_lane!($lane = 6, $value),
+            each_lane!($lane = 7, $value),
+        ]
+    };
+    ($lane:ident = $index:literal, $value:expr) => {{
+        let $lane = $index;
+        $value
+    }};
+}
+
 impl Lanes {
     /// The sum of the lanes in the canonical order ((0+4)+(2+6))+((1+5)+(3+7)).
     #[inline(always)]
@@ -124,19 +145,17 @@ impl Lanes {
     /// Lane by lane.
     #[inline(always)]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self(core::array::from_fn(|lane| function(self.0[lane])))
+        Self(each_lane!(|lane| function(self.0[lane])))
     }
     #[inline(always)]
     fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
-        Self(core::array::from_fn(|lane| function(self.0[lane], other.0[lane])))
+        Self(each_lane!(|lane| function(self.0[lane], other.0[lane])))
     }
     #[inline(always)]
     fn compare(self, other: Self, function: impl Fn(f64, f64) -> bool) -> Bits {
-        let mut bits = 0;
-        for lane in 0..WIDTH {
-            bits |= u8::from(function(self.0[lane], other.0[lane])) << lane;
-        }
-        Bits(bits)
+        let [a, b, c, d, e, f, g, h] =
+            each_lane!(|lane| u8::from(function(self.0[lane], other.0[lane])) << lane);
+        Bits(((a | b) | (c | d)) | ((e | f) | (g | h)))
     }
 }
 
@@ -211,7 +230,7 @@ pub(super) fn scaled_by<S: Real>(value: S, coefficient: DoubleDouble) -> (S, S) 
 #[cfg_attr(all(target_arch = "x86_64", not(target_feature = "fma")), inline(never))]
 #[cfg_attr(not(all(target_arch = "x86_64", not(target_feature = "fma"))), inline(always))]
 fn fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
-    Lanes(core::array::from_fn(|lane| a.0[lane].mul_add(b.0[lane], c.0[lane])))
+    Lanes(each_lane!(|lane| a.0[lane].mul_add(b.0[lane], c.0[lane])))
 }
 
 impl Real for Lanes {
@@ -259,7 +278,7 @@ impl Real for Lanes {
     }
     #[inline(always)]
     fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
-        Self(core::array::from_fn(|lane| if mask.lane(lane) { if_true.0[lane] } else { if_false.0[lane] }))
+        Self(each_lane!(|lane| if mask.lane(lane) { if_true.0[lane] } else { if_false.0[lane] }))
     }
     #[inline(always)]
     fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
@@ -286,7 +305,7 @@ impl Vector8 for Lanes {
     }
     #[inline(always)]
     fn permute(self, index: &[i64; WIDTH]) -> Self {
-        Self(core::array::from_fn(|lane| self.0[(index[lane] & 7) as usize]))
+        Self(each_lane!(|lane| self.0[(index[lane] & 7) as usize]))
     }
     #[inline(always)]
     fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {

@@ -1,6 +1,6 @@
 //! Runs that choose their own steps: tolerance, continuous extension, and the span they keep to.
 
-use super::support::{Problem, adaptive, distance};
+use super::super::support::{Problem, adaptive, distance};
 use super::{Make, PROBLEMS, reference};
 use std::sync::{Arc, Mutex};
 use visviva_core::Result;

@@ -1,6 +1,6 @@
 //! Two or three bodies under Störmer's method: a kernel of their own, relative to the first body.
 
-use crate::support::{Problem, advance, distance, exactly, fixed_stepper};
+use super::super::support::{Problem, advance, distance, exactly, fixed_stepper};
 use visviva_core::forces::gravity::FewBodies;
 use visviva_core::forces::gravity::closed::ClosedKernel;
 use visviva_core::forces::{Dynamics, Force};

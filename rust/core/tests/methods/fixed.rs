@@ -1,6 +1,8 @@
 //! Runs with a fixed step: their nodes, their limit, their round-off.
 
-use super::support::{Keep, Problem, advance, distance, exactly, fixed_stepper, harmonic, three_bodies};
+use super::super::support::{
+    Keep, Problem, advance, distance, exactly, fixed_stepper, harmonic, three_bodies,
+};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::Method;
 use visviva_core::ode::fixed::{Ended, Place, place, run};

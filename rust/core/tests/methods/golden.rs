@@ -1,6 +1,6 @@
 //! Textbook cases of single methods.
 
-use super::support::{Problem, advance, harmonic};
+use super::super::support::{Problem, advance, harmonic};
 use visviva_core::ode::Scheme;
 use visviva_core::registry::METHODS;
 

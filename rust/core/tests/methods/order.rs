@@ -1,6 +1,6 @@
 //! The order of each method, measured on nonlinear problems in double-double.
 
-use super::support::{Keep, Problem, advance, distance, fixed_stepper};
+use super::super::support::{Keep, Problem, advance, distance, fixed_stepper};
 use super::{Make, PROBLEMS, reference};
 use visviva_core::Result;
 use visviva_core::forces::{Dynamics, Force, Phase};

@@ -1,6 +1,6 @@
 //! What a step keeps: the symplectic form, the way back, momentum and angular momentum.
 
-use super::support::{Problem, advance, bodies, distance, exactly, henon_heiles, momenta};
+use super::super::support::{Problem, advance, bodies, distance, exactly, henon_heiles, momenta};
 use super::{Make, PROBLEMS};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::{Method, Scheme};

@@ -1,6 +1,6 @@
 //! Taylor series: coefficients against known motions, the order of a step, and the continuous extension in both bases.
 
-use super::support::{Problem, adaptive, bodies, distance, three_bodies};
+use super::super::support::{Problem, adaptive, bodies, distance, three_bodies};
 use super::{PROBLEMS, reference};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::series::Jet;

@@ -1,10 +1,6 @@
 //! Every method of the registry, held to what it declares about itself.
 //!
 //! Register a method and it is tested here; nothing below knows any method by name but the golden cases.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, missing_docs)]
-
-#[path = "../support/mod.rs"]
-mod support;
 
 mod adaptive;
 mod closed;
@@ -14,7 +10,7 @@ mod order;
 mod structure;
 mod taylor;
 
-use support::{Problem, advance, henon_heiles, three_bodies};
+use super::support::{Problem, advance, henon_heiles, three_bodies};
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::ode::state::State;
 use visviva_core::registry::METHODS;
