@@ -285,6 +285,36 @@ def test_bodies_that_are_integrated_apart_are_brought_to_the_event() -> None:
     assert stop.t[-1] <= stop.final.t0 < stop.t[-1] + 0.1
 
 
+@pytest.mark.parametrize("massive", [1, 2, 3, 8, 9])
+def test_series_see_massless_bodies_move(massive: int) -> None:
+    """Bodies that are looked at together are on one step, where massless ones stood still in series, with status OK."""
+    rng = np.random.default_rng(massive)
+    angle = np.linspace(0.0, 2.0 * np.pi, massive, endpoint=False)
+    radius = np.concatenate([[0.0], np.linspace(8.0, 12.0, massive - 1), rng.uniform(1.0, 2.0, 9)])
+    angle = np.concatenate([angle, rng.uniform(0.0, 2.0 * np.pi, 9)])
+    mass = np.concatenate([[1.0], np.full(massive - 1, 1e-3), np.zeros(9)])
+    speed = 1.1 * np.divide(1.0, np.sqrt(radius), where=radius > 0, out=np.zeros(len(radius)))
+    position = radius[:, None] * np.stack([np.cos(angle), np.sin(angle), 0.1 * np.cos(angle)], axis=1)
+    velocity = speed[:, None] * np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle], axis=1)
+    scene = vv.Scene(vv.Particles(mass, position, velocity), vv.Gravity(G=1.0))
+    last = len(mass) - 1
+    asked = [
+        events.apsis(massive, 0),
+        events.plane([0, 0, 0], [0, 1.0, 0], body=last),
+        events.distance(massive, last, below=2.0, direction=0),
+        lambda t, x, v: x[massive + 1, 0] - x[last, 0],
+    ]
+    table = scene.run(t=20.0, method="taylor", rtol=1e-12, events=asked).events
+    other = scene.run(t=20.0, method="dop853", rtol=1e-12, events=asked).events
+    assert {0, 1, 3} <= set(table.which)
+    np.testing.assert_array_equal(table.which, other.which)
+    # The tolerance, magnified by some turns.
+    np.testing.assert_allclose(table.t, other.t, atol=1e-8)
+    copies = scene.ensemble(velocity=velocity * np.array([1.0, 1.01, 0.99])[:, None, None])
+    together = copies.run(t=20.0, method="taylor", rtol=1e-12, events=asked)
+    np.testing.assert_array_equal(together[0].events.t, table.t)
+
+
 @pytest.mark.parametrize("massive", [2, 20])
 def test_an_event_of_massive_bodies_stops_those_that_follow_them(massive: int) -> None:
     """Few massive bodies are one system in a lane; many are in all lanes, and are integrated again on other threads."""

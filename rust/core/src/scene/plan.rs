@@ -172,7 +172,7 @@ impl Plan {
             }
             Groups::Single => (Vec::new(), (0..scene.particles).collect()),
         };
-        series::check(method, &forces, &active, &passive, (&groups, touching))?;
+        series::check(method, &forces, &active, &passive, &groups)?;
         let chosen = if automatic && !turning.steps() {
             series::first_choice(&forces, &active, &passive, (&groups, touching))
         } else {

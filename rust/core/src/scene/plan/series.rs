@@ -27,7 +27,9 @@ pub(super) fn first_choice(
     let gravity = matches!(forces, [force] if force.as_newtonian().is_some());
     let serves = gravity
         && active.len() <= RING_MAX
-        && check(method, forces, active, passive, (groups, touching)).is_ok();
+        // Where bodies may touch, massless ones are on the steps of all: of many of them, series take longer.
+        && (passive.is_empty() || !touching)
+        && check(method, forces, active, passive, groups).is_ok();
     serves.then_some(method)
 }
 
@@ -40,7 +42,7 @@ pub(super) fn check(
     forces: &[Arc<dyn ForceTerm>],
     active: &[usize],
     passive: &[usize],
-    (groups, touching): (&Groups, bool),
+    groups: &Groups,
 ) -> Result<()> {
     if !matches!(method.scheme, Scheme::Taylor(_)) {
         return Ok(());
@@ -59,11 +61,6 @@ pub(super) fn check(
         return refused(format!(
             "keeps the series of every pair of at most {MOST_BODIES} massive bodies, got {bodies}"
         ));
-    }
-    if touching && !active.is_empty() && !passive.is_empty() {
-        return refused(
-            "takes no massless bodies where all are on one step, as they are where they may touch".to_owned(),
-        );
     }
     let follow =
         forces.iter().all(|force| force.coupling() != Coupling::AllPairs || force.as_newtonian().is_some());
