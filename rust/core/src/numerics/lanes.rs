@@ -1,12 +1,11 @@
 //! Eight `f64` side by side: the logical width of every kernel on every tier.
 //!
-//! [`Lanes`] is how lanes lie in memory and the portable arithmetic on them; `Avx2` and `Avx512`
+//! [`Lanes`] is how lanes lie in memory, with the portable arithmetic on them; `Avx2` and `Avx512`
 //! have the same layout and the same results, so a slice of one can be viewed as a slice of another.
 //! Those two stay within the crate: their instructions may run only where `tiered!` has seen that there are any.
 
 use super::double_double::{DoubleDouble, two_product};
 use super::real::{Mask, Real};
-use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub, SubAssign};
 
 /// The logical width of every kernel.
 pub const WIDTH: usize = 8;
@@ -114,27 +113,6 @@ pub fn as_numbers_mut(lanes: &mut [Lanes]) -> &mut [f64] {
     unsafe { core::slice::from_raw_parts_mut(lanes.as_mut_ptr().cast(), lanes.len() * WIDTH) }
 }
 
-/// Eight lanes, each of an expression of its index. Written out: a loop over them in every operation of every kernel would be
-/// unrolled by the compiler, which takes it a good part of its time.
-macro_rules! each_lane {
-    (|$lane:ident| $value:expr) => {
-        [
-            each_lane!($lane = 0, $value),
-            each_lane!($lane = 1, $value),
-            each_lane!($lane = 2, $value),
-            each_lane!($lane = 3, $value),
-            each_lane!($lane = 4, $value),
-            each_lane!($lane = 5, $value),
-            each_lane!($lane = 6, $value),
-            each_lane!($lane = 7, $value),
-        ]
-    };
-    ($lane:ident = $index:literal, $value:expr) => {{
-        let $lane = $index;
-        $value
-    }};
-}
-
 impl Lanes {
     /// The sum of the lanes in the canonical order ((0+4)+(2+6))+((1+5)+(3+7)).
     #[inline(always)]
@@ -145,17 +123,7 @@ impl Lanes {
     /// Lane by lane.
     #[inline(always)]
     pub fn map(self, function: impl Fn(f64) -> f64) -> Self {
-        Self(each_lane!(|lane| function(self.0[lane])))
-    }
-    #[inline(always)]
-    fn zip(self, other: Self, function: impl Fn(f64, f64) -> f64) -> Self {
-        Self(each_lane!(|lane| function(self.0[lane], other.0[lane])))
-    }
-    #[inline(always)]
-    fn compare(self, other: Self, function: impl Fn(f64, f64) -> bool) -> Bits {
-        let [a, b, c, d, e, f, g, h] =
-            each_lane!(|lane| u8::from(function(self.0[lane], other.0[lane])) << lane);
-        Bits(((a | b) | (c | d)) | ((e | f) | (g | h)))
+        Self(core::array::from_fn(|lane| function(self.0[lane])))
     }
 }
 
@@ -211,79 +179,11 @@ macro_rules! operators {
         }
     };
 }
-operators!(Lanes:
-    |a: Lanes, b: Lanes| a.zip(b, |x, y| x + y),
-    |a: Lanes, b: Lanes| a.zip(b, |x, y| x - y),
-    |a: Lanes, b: Lanes| a.zip(b, |x, y| x * y),
-    |a: Lanes, b: Lanes| a.zip(b, |x, y| x / y),
-    |a: Lanes| a.map(|x| -x));
-
 /// `coefficient * value` as (high, low), lane by lane, without rounding the coefficient.
 #[inline(always)]
 pub(super) fn scaled_by<S: Real>(value: S, coefficient: DoubleDouble) -> (S, S) {
     let (high, error) = two_product(S::splat(coefficient.high()), value);
     (high, error + S::splat(coefficient.low()) * value)
-}
-
-/// `a * b + c`, rounded once. Where the build has no instruction for it, every lane is a call into the C library, and a
-/// function of its own keeps eight of those out of every place in every kernel: half of all machine code.
-#[cfg_attr(all(target_arch = "x86_64", not(target_feature = "fma")), inline(never))]
-#[cfg_attr(not(all(target_arch = "x86_64", not(target_feature = "fma"))), inline(always))]
-fn fused(a: Lanes, b: Lanes, c: Lanes) -> Lanes {
-    Lanes(each_lane!(|lane| a.0[lane].mul_add(b.0[lane], c.0[lane])))
-}
-
-impl Real for Lanes {
-    type Mask = Bits;
-
-    #[inline(always)]
-    fn splat(value: f64) -> Self {
-        Self([value; WIDTH])
-    }
-    #[inline(always)]
-    fn from_double_double(value: DoubleDouble) -> Self {
-        Self::splat(value.to_f64())
-    }
-    #[inline(always)]
-    fn multiply_add(self, factor: Self, term: Self) -> Self {
-        fused(self, factor, term)
-    }
-    #[inline(always)]
-    fn multiply_subtract_from(self, factor: Self, term: Self) -> Self {
-        fused(-self, factor, term)
-    }
-    #[inline(always)]
-    fn sqrt(self) -> Self {
-        self.map(f64::sqrt)
-    }
-    #[inline(always)]
-    fn abs(self) -> Self {
-        self.map(f64::abs)
-    }
-    #[inline(always)]
-    fn max(self, other: Self) -> Self {
-        self.zip(other, |x, y| if x > y { x } else { y })
-    }
-    #[inline(always)]
-    fn min(self, other: Self) -> Self {
-        self.zip(other, |x, y| if x < y { x } else { y })
-    }
-    #[inline(always)]
-    fn less(self, other: Self) -> Bits {
-        self.compare(other, |x, y| x < y)
-    }
-    #[inline(always)]
-    fn less_equal(self, other: Self) -> Bits {
-        self.compare(other, |x, y| x <= y)
-    }
-    #[inline(always)]
-    fn select(mask: Bits, if_true: Self, if_false: Self) -> Self {
-        Self(each_lane!(|lane| if mask.lane(lane) { if_true.0[lane] } else { if_false.0[lane] }))
-    }
-    #[inline(always)]
-    fn scaled_by(self, coefficient: DoubleDouble) -> (Self, Self) {
-        scaled_by(self, coefficient)
-    }
 }
 
 /// What nobody outside the room can say of a type.
@@ -293,39 +193,11 @@ mod sealed {
 
 impl sealed::Sealed for Lanes {}
 
-impl Vector8 for Lanes {
-    const REGISTERS: usize = 4;
-    #[inline(always)]
-    fn load(lanes: Lanes) -> Self {
-        lanes
-    }
-    #[inline(always)]
-    fn store(self) -> Lanes {
-        self
-    }
-    #[inline(always)]
-    fn permute(self, index: &[i64; WIDTH]) -> Self {
-        Self(each_lane!(|lane| self.0[(index[lane] & 7) as usize]))
-    }
-    #[inline(always)]
-    fn interleave(x: Self, y: Self, z: Self) -> [Self; 3] {
-        let points: [[f64; 3]; WIDTH] = core::array::from_fn(|lane| [x.0[lane], y.0[lane], z.0[lane]]);
-        let numbers = points.as_flattened();
-        core::array::from_fn(|third| Self(core::array::from_fn(|lane| numbers[WIDTH * third + lane])))
-    }
-    #[inline(always)]
-    unsafe fn write_where(self, mask: Bits, to: *mut f64) {
-        for lane in (0..WIDTH).filter(|&lane| mask.lane(lane)) {
-            // SAFETY: the caller's promise.
-            unsafe { to.wrapping_add(lane).write(self.0[lane]) };
-        }
-    }
-}
-
 #[cfg(target_arch = "x86_64")]
 mod avx2;
 #[cfg(target_arch = "x86_64")]
 mod avx512;
+mod portable;
 #[cfg(target_arch = "x86_64")]
 pub(crate) use avx2::Avx2;
 #[cfg(target_arch = "x86_64")]
