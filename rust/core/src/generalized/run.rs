@@ -195,7 +195,10 @@ pub fn solve(
         return Ok(Solution { reached: end, t: table.t, y: table.y, ..Solution::at(t0) });
     }
     let watch = Watch::new(&request.events, parameters);
-    let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
+    let mut projector = model.projection.as_ref().map(|projection| {
+        let projector = projection.at_work(parameters);
+        if request.dt.is_some() { projector } else { projector.for_tolerance(request.rtol) }
+    });
     let mut recorder = Counted { table, watch, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
