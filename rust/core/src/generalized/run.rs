@@ -12,6 +12,7 @@ use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
 use super::sizes::sizes;
+use super::sticking::Sticking;
 use crate::error::{Error, Result};
 use crate::expressions::{Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -199,7 +200,9 @@ pub fn solve(
         let projector = projection.at_work(parameters);
         if request.dt.is_some() { projector } else { projector.for_tolerance(request.rtol) }
     });
-    let mut recorder = Counted { table, watch, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
+    let sticking = Sticking::new(model, parameters, t0);
+    let most = request.max_steps;
+    let mut recorder = Counted { table, watch, sticking, steps: 0, last: 0.0, reached: t0, most };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
     let outcome = match request.integrator {
@@ -255,6 +258,7 @@ pub fn solve(
 struct Counted<'a> {
     table: Table<'a>,
     watch: Watch<'a>,
+    sticking: Sticking,
     steps: u64,
     /// The longest step.
     last: f64,
@@ -280,6 +284,9 @@ impl Recorder for Counted<'_> {
         let stop = self.watch.look(&mut Stepped(step))?;
         self.reached = stop.unwrap_or(step.to);
         self.table.keep(step, stop)?;
+        if stop.is_none() && !self.sticking.is_empty() {
+            self.sticking.look(step.to, step.end())?;
+        }
         Ok(stop)
     }
 }

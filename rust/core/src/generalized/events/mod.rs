@@ -8,6 +8,7 @@
 
 mod search;
 
+use super::sticking::along;
 use crate::error::Result;
 use crate::expressions::{Code, Machine};
 use core::fmt;
@@ -94,12 +95,8 @@ impl Working {
             Self::Called(call) => return Ok((call(t, y)?, None)),
             Self::Expression(machine) => machine,
         };
-        machine.state().copy_from_slice(y);
-        machine.run(t);
-        let terms = (machine.code().outputs() - 2) / 2;
-        let of_rates = (0..terms).map(|i| machine.output(2 + i) * machine.output(2 + terms + i));
-        let rate = of_rates.fold(machine.output(1), |sum, term| sum + term);
-        Ok((machine.output(0), Some(rate)))
+        let (value, rate) = along(machine, t, y);
+        Ok((value, Some(rate)))
     }
 }
 
