@@ -78,7 +78,7 @@ fn by_cofactors(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Option<V
 /// The determinant without a row and a column, with its sign; of two or three rows.
 fn cofactor(graph: &mut Graph, matrix: &[Vec<Id>], (row, column): (usize, usize)) -> Id {
     let n = matrix.len();
-    let sign = if (row + column) % 2 == 0 { 1.0 } else { -1.0 };
+    let sign = if (row + column) & 1 == 0 { 1.0 } else { -1.0 };
     let rows: Vec<usize> = (0..n).filter(|&i| i != row).collect();
     let columns: Vec<usize> = (0..n).filter(|&j| j != column).collect();
     if let ([a, b], [c, d]) = (&rows[..], &columns[..]) {
