@@ -375,3 +375,29 @@ def test_scenes_refuse_what_is_of_generalized_coordinates() -> None:
         with pytest.raises(vv.InvalidInput) as refused:
             call()
         assert refused.value.argument == argument
+
+
+@pytest.mark.parametrize("method", ["gauss16", "gauss4", "dop853", "taylor"])
+@pytest.mark.parametrize("offset", [0.0, 1e6])
+def test_no_motion_passes_the_energy_that_it_conserves(method: str, offset: float) -> None:
+    """What passes E = E(0) is rounding, and errors of the method."""
+    pendulum = vv.Lagrangian(
+        lambda q, v, t: v @ v / 2 + np.cos(q[0]) - offset, ["theta"], position=[1.3], velocity=[0.2]
+    )
+    out = pendulum.run(20.0, method=method, events=[events.energy(pendulum.energy), "theta"])
+    assert len(out.events.of(0).t) == 0
+    assert len(out.events.of(1).t) > 3
+    copies = pendulum.ensemble(position=[[1.3], [0.4]]).run(
+        20.0, method=method, events=[events.energy(pendulum.energy)]
+    )
+    assert len(copies.events.t) == 0
+
+
+def test_an_energy_that_is_lost_passes_that_of_a_while_later() -> None:
+    """With drag the same event is there: conservation is what takes it away, and no nearness of values."""
+    slowed = vv.Lagrangian(
+        lambda q, v, t: v @ v / 2, ["x"], position=[0.0], velocity=[1.0], dissipation=lambda q, v, t: v @ v / 2
+    )
+    out = slowed.run(1.0, events=[events.energy(0.5 * (1 - 1e-12))])
+    # E = exp(−2 t)/2: at t = 5e-13.
+    np.testing.assert_allclose(out.events.t, [5e-13], rtol=1e-3)

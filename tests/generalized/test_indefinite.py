@@ -122,3 +122,30 @@ def test_hamiltonians_of_indefinite_forms() -> None:
     degenerate = vv.Lagrangian(lambda q, v, t: (v[0] + v[1]) ** 2 / 2 - q[0] ** 2, ["x", "y"], position=[1.0, 2.0])
     with pytest.raises(vv.InvalidInput, match="degenerate"):
         degenerate.hamiltonian()
+
+
+@pytest.mark.parametrize("place", [0.0, 1e-12, 0.7, -2.0])
+def test_hamiltonians_keep_their_digits_where_an_entry_of_the_mass_matrix_vanishes(place: float) -> None:
+    """M = [[x, 1], [1, 1]] is regular at x = 0 (det = x − 1), where its first pivot is not: H there is p M⁻¹ p / 2."""
+    lagrangian = vv.Lagrangian(
+        lambda q, v, t: q[0] * v[0] ** 2 / 2 + v[0] * v[1] + v[1] ** 2 / 2 - q[1],
+        ["x", "y"],
+        position=[place, 0.5],
+        velocity=[0.3, -0.4],
+    )
+    mass = np.array([[place, 1.0], [1.0, 1.0]])
+    momentum = mass @ [0.3, -0.4]
+    # Some roundings, divided by a determinant of 1.
+    energy = momentum @ np.linalg.solve(mass, momentum) / 2 + 0.5
+    assert lagrangian.hamiltonian().energy == pytest.approx(energy, abs=1e-14)
+
+
+def test_three_coordinates_whose_first_entry_vanishes() -> None:
+    def function(q: Any, v: Any, t: Any) -> Any:
+        mass = np.array([[q[0], 1.0, 0.0], [1.0, 2.0, 0.5], [0.0, 0.5, q[1]]], dtype=object)
+        return v @ mass @ v / 2
+
+    velocity = np.array([0.3, -0.4, 0.2])
+    lagrangian = vv.Lagrangian(function, ["x", "y", "z"], position=[0.0, 0.3, 0.0], velocity=velocity)
+    mass = np.array([[0.0, 1.0, 0.0], [1.0, 2.0, 0.5], [0.0, 0.5, 0.3]])
+    assert lagrangian.hamiltonian().energy == pytest.approx(velocity @ mass @ velocity / 2, abs=1e-14)

@@ -24,6 +24,9 @@ __all__ = ["Equilibrium", "Linearization", "PoincareSection"]
 
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
 _ON_THE_AXIS = 1e-7
+#: How far places and parameters are moved to see what rounding makes of a matrix, and how often.
+_LAST_DIGITS = 2.0**-51
+_NUDGES = 3
 #: Forces below this part of what they are made of are round-off, or that of the place.
 _BALANCED = 1e-8
 #: Places that differ by less than this part of their sizes are one.
@@ -76,6 +79,8 @@ class Linearization(Record):
         Rows with ξᵀ M ξ = 1, in the order of the squared frequencies; None with damping or gyroscopic terms.
     squares : ndarray, shape (n,), or None
         Squared frequencies, those of unstable modes negative.
+    rounding : ndarray, shape (n, n)
+        By how much K may be off: what it changes by where place and parameters change in their last digits.
 
     Examples
     --------
@@ -92,6 +97,7 @@ class Linearization(Record):
     eigenvalues: NDArray[np.complex128]
     modes: NDArray[np.float64] | None
     squares: NDArray[np.float64] | None
+    rounding: NDArray[np.float64]
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
@@ -106,9 +112,9 @@ class Linearization(Record):
     @property
     def stable(self) -> bool:
         """Whether no small motion grows, as the linear equations tell; one that neither grows nor returns counts."""
-        if self.squares is not None:
-            return bool(np.all(self.squares >= -(_ON_THE_AXIS**2) * np.abs(self.squares).max()))
-        return bool(np.all(self.eigenvalues.real <= _ON_THE_AXIS * np.abs(self.eigenvalues).max()))
+        from visviva.generalized._stability import is_stable
+
+        return is_stable(self.mass, self.damping, self.stiffness, self.rounding)
 
     def at(self, t: ArrayLike, displacement: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Small motions at any time, exactly.
@@ -246,7 +252,22 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
         np.array([complex(*value) for value in found["eigenvalues"]]),
         None if symmetric is None else symmetric[1],
         None if symmetric is None else symmetric[0],
+        _rounding(system, place, found["stiffness"]),
     )
+
+
+def _rounding(system: Lagrangian, place: NDArray[np.float64], stiffness: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Give what the last digits of the place and of parameters make of K."""
+    off = _LAST_DIGITS * np.abs(stiffness)
+    count = len(place) + len(system._values)
+    for turn in range(_NUDGES):
+        # Signs that differ from turn to turn, so that no two changes take each other away each time.
+        signs = np.where((np.arange(count) * (2 * turn + 1) // 2 + turn) % 2, 1.0, -1.0)
+        nudged, values = place * (1.0 + _LAST_DIGITS * signs[: len(place)]), system._values
+        values = values * (1.0 + _LAST_DIGITS * signs[len(place) :])
+        other = system._model.linearized(system.t0, nudged, values)["stiffness"]
+        off = np.fmax(off, np.abs(other - stiffness))
+    return off
 
 
 def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -6,7 +6,7 @@ A node is ``(operation, arguments, value)``, its arguments the numbers of nodes 
 from __future__ import annotations
 
 from inspect import signature
-from math import isfinite
+from math import isfinite, log, pi
 from typing import TYPE_CHECKING, Any, NoReturn, SupportsFloat, SupportsIndex, TypeAlias
 
 import numpy as np
@@ -17,7 +17,9 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "check_call", "recorded"]
+    from numpy.typing import NDArray
+
+__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "called", "check_call", "recorded", "row"]
 
 Node: TypeAlias = tuple[str, list[int], float]
 
@@ -25,6 +27,14 @@ FUNCTIONS = (
     "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
     "asin", "acos", "atan", "asinh", "acosh", "atanh",
 )  # fmt: skip
+#: What leaps, and what to write instead.
+_LEAPS = {
+    "floor_divide": "x // y leaps",
+    "remainder": "x % y leaps; where it is to wrap an angle, leave it: sines and cosines do so themselves",
+    "divmod": "divmod leaps",
+    "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width)",
+    "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2",
+}
 _NUMPY = {
     "arcsin": "asin",
     "arccos": "acos",
@@ -33,6 +43,18 @@ _NUMPY = {
     "arccosh": "acosh",
     "arctanh": "atanh",
 }
+#: What is made of these, by the name that NumPy calls.
+_MADE_OF = {
+    "cbrt": "_cbrt",
+    "exp2": "_exp2",
+    "log2": "_log2",
+    "log10": "_log10",
+    "deg2rad": "_radians",
+    "radians": "_radians",
+    "rad2deg": "_degrees",
+    "degrees": "_degrees",
+}
+_KNOWN = ", ".join((*FUNCTIONS, "cbrt", "exp2", "log2", "log10", "deg2rad", "rad2deg", "hypot", "arctan2"))
 
 
 class Nodes:
@@ -94,28 +116,38 @@ class Expression:
         return Expression(self._nodes, self._nodes.add(operation, tuple(places)))
 
     def __add__(self, other: object) -> Expression:
+        if _is_array(other):
+            return NotImplemented  # the array does it number by number
         return self._with("sum", other)
 
     __radd__ = __add__
 
     def __sub__(self, other: object) -> Expression:
+        if _is_array(other):
+            return NotImplemented  # the array does it number by number
         return self._with("sum", other._with("product", -1.0) if isinstance(other, Expression) else -_number(other))
 
     def __rsub__(self, other: object) -> Expression:
         return self._with("product", -1.0)._with("sum", other)
 
     def __mul__(self, other: object) -> Expression:
+        if _is_array(other):
+            return NotImplemented  # the array does it number by number
         return self._with("product", other)
 
     __rmul__ = __mul__
 
     def __truediv__(self, other: object) -> Expression:
+        if _is_array(other):
+            return NotImplemented  # the array does it number by number
         return self._with("quotient", other)
 
     def __rtruediv__(self, other: object) -> Expression:
         return self._with("quotient", other, swapped=True)
 
     def __pow__(self, other: object) -> Expression:
+        if _is_array(other):
+            return NotImplemented  # the array does it number by number
         return self._with("power", other)
 
     def __rpow__(self, other: object) -> Expression:
@@ -129,6 +161,63 @@ class Expression:
 
     def __abs__(self) -> Expression:
         return self._with("product", self)._with("sqrt")
+
+    def _leaps(self, name: str) -> NoReturn:
+        raise InvalidInput("L", f"{name} of coordinates has no derivatives where it leaps: {_LEAPS[name]}")
+
+    def __floordiv__(self, other: object) -> NoReturn:
+        self._leaps("floor_divide")
+
+    def __mod__(self, other: object) -> NoReturn:
+        self._leaps("remainder")
+
+    def __divmod__(self, other: object) -> NoReturn:
+        self._leaps("divmod")
+
+    __rfloordiv__, __rmod__, __rdivmod__ = __floordiv__, __mod__, __divmod__
+
+    # What NumPy's functions of these names call, as np.cbrt.
+
+    def _cbrt(self) -> Expression:
+        return self * abs(self) ** (-2.0 / 3.0)
+
+    def _exp2(self) -> Expression:
+        return (self * log(2.0))._with("exp")
+
+    def _log2(self) -> Expression:
+        return self._with("log") / log(2.0)
+
+    def _log10(self) -> Expression:
+        return self._with("log") / log(10.0)
+
+    def _radians(self) -> Expression:
+        return self * (pi / 180.0)
+
+    def _degrees(self) -> Expression:
+        return self * (180.0 / pi)
+
+    def hypot(self, other: object) -> Expression:
+        """Give the length of the vector (self, other): what ``np.hypot`` calls.
+
+        Parameters
+        ----------
+        other : Expression or float
+            The other component.
+
+        Returns
+        -------
+        Expression
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> cone = vv.Lagrangian(
+        ...     lambda q, v, t: v @ v / 2 - np.hypot(q[0], q[1]), ["x", "y"], position=[3.0, 4.0])
+        >>> cone.energy
+        5.0
+        """
+        squares = self._with("product", self)._with("sum", self._with("product", 0.0)._with("sum", other) ** 2)
+        return squares._with("sqrt")
 
     def __bool__(self) -> NoReturn:
         raise InvalidInput("L", "an expression has no truth value: the function must not branch on coordinates")
@@ -166,8 +255,10 @@ class Expression:
         return self._with("atan2", other)
 
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
-        # NumPy asks the first argument for arctan2, which may be a number.
-        if ufunc is np.arctan2:
+        if ufunc.__name__ in _LEAPS:
+            self._leaps(ufunc.__name__)
+        # NumPy asks the first argument for these, which may be a number.
+        if ufunc in (np.arctan2, np.hypot):
             inputs = tuple(self._with("product", 0.0)._with("sum", x) if np.isscalar(x) else x for x in inputs)
         boxed = (np.asarray(x, dtype=object) if isinstance(x, Expression) else x for x in inputs)
         return getattr(ufunc, method)(*boxed, **options)
@@ -177,15 +268,30 @@ class Expression:
         function = _NUMPY.get(name, name)
         if function in FUNCTIONS:
             return lambda: self._with(function)
+        if name in _MADE_OF:
+            made: Callable[[], Expression] = object.__getattribute__(self, _MADE_OF[name])
+            return made
         if name.startswith("_"):
             raise AttributeError(name)
-        raise InvalidInput(
-            "L", f"function {name} is not known to the compiled core; known: {', '.join(FUNCTIONS)}, arctan2"
-        )
+        raise InvalidInput("L", f"function {name} is not known to the compiled core; known: {_KNOWN}")
+
+
+def called(argument: str, function: Callable[..., Any], numbers: Iterable[Any], values: dict[str, Any]) -> Any:
+    """Call a function with expressions: what NumPy cannot do with them is refused by name."""
+    try:
+        return function(*numbers, **values)
+    except TypeError as error:
+        if isinstance(error, InvalidInput) or not any(word in str(error) for word in ("ufunc", "Expression")):
+            raise
+        name = str(error).partition("ufunc '")[2].partition("'")[0]
+        cure = f"; {_LEAPS[name]}" if name in _LEAPS else ""
+        raise InvalidInput(argument, f"{error}{cure}. Functions that the core knows: {_KNOWN}") from error
 
 
 def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     """Give the node of what a function has returned."""
+    if isinstance(value, np.ndarray) and value.shape == () and value.dtype == object:
+        value = value[()]
     if isinstance(value, Expression):
         return value._place
     try:
@@ -193,6 +299,14 @@ def recorded(nodes: Nodes, value: Any, argument: str) -> int:
     except (TypeError, ValueError):
         raise InvalidInput(argument, f"expected one number of the function, got {type(value).__name__}") from None
     return nodes.constant(_finite(argument, number))
+
+
+def row(expressions: Iterable[Expression]) -> NDArray[np.object_]:
+    """Give expressions as an array, which has arithmetic of its own: ``v @ v``, ``q - q0``."""
+    listed = list(expressions)
+    numbers = np.empty(len(listed), dtype=object)
+    numbers[:] = listed
+    return numbers
 
 
 def check_call(argument: str, function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str]) -> None:
@@ -205,6 +319,10 @@ def check_call(argument: str, function: Callable[..., Any], places: Iterable[str
         raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
     except ValueError:  # one that does not tell what it takes
         pass
+
+
+def _is_array(other: object) -> bool:
+    return isinstance(other, np.ndarray) and other.ndim > 0
 
 
 def _number(other: object) -> float:

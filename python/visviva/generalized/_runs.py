@@ -173,7 +173,8 @@ class Runs(States):
         InvalidInput
             For what cannot be run, before anything runs.
         ConvergenceError
-            At a singularity; ``.trajectory`` holds what was computed.
+            At a singularity; where constraints come to depend on each other (the change point of a mechanism); where
+            dry friction, as of ``abs(v[0])``, holds a velocity at zero. ``.trajectory`` holds what was computed.
         Interrupted
             By Ctrl-C; ``.trajectory`` holds what was computed.
 

@@ -8,7 +8,7 @@ from typing import Any
 
 from visviva._arrays import number
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import Expression, Nodes, check_call, recorded
+from visviva.generalized._nodes import Expression, Nodes, called, check_call, recorded, row
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 __all__ = ["Source", "calls", "described"]
@@ -188,10 +188,10 @@ def calls(
     def walk(argument: str, function: Any) -> int:
         if not callable(function):
             return nodes.constant(number(argument, function))
-        first = [expression("variable", float(i)) for i in range(n)]
-        second = [expression("variable", float(n + i)) for i in range(n)]
+        first = row(expression("variable", float(i)) for i in range(n))
+        second = row(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
         check_call(argument, function, ("position", second_name, "t"), parameters)
-        return recorded(nodes, function(first, second, expression("time"), **values), argument)
+        return recorded(nodes, called(argument, function, (first, second, expression("time")), values), argument)
 
     return walk

@@ -12,6 +12,7 @@ use super::gauss::GaussEight;
 use super::model::Model;
 use super::motion::Motion;
 use super::run::{Integrator, Request, Solution, norm, too_many_steps};
+use super::sticking::Sticking;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
 use crate::numerics::real::{Mask, Real};
@@ -57,6 +58,7 @@ struct Slot {
     from: f64,
     /// Evaluations before it began.
     before: u64,
+    sticking: Sticking,
 }
 
 /// What is at work.
@@ -206,7 +208,9 @@ impl<'a> Abreast<'a> {
             fresh = fresh.or(Bits(1 << lane));
             let solution = Solution::at(t0);
             let (from, before) = (t0, self.system.evaluations());
-            self.slots[lane] = Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before });
+            let sticking = Sticking::new(self.model, parameters, t0);
+            self.slots[lane] =
+                Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before, sticking });
         }
         if fresh.any() {
             self.system.set_parameters(&self.parameters);
@@ -234,6 +238,16 @@ impl<'a> Abreast<'a> {
         let kept = self.judge(&outcome, running, ticker);
         self.record(&outcome, kept, ticker)?;
         self.trial.keep(kept, &mut self.state);
+        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
+            let state = &self.state;
+            let Some(slot) = self.slots[lane].as_mut().filter(|slot| !slot.sticking.is_empty()) else {
+                continue;
+            };
+            let y: Vec<f64> = state.all().0.iter().map(|y| y.0[lane]).collect();
+            if let Err(Error::Convergence { message, .. }) = slot.sticking.look(slot.solution.reached, &y) {
+                self.end(lane, Ending::StepTooSmall, Some(message), ticker);
+            }
+        }
         for lane in 0..WIDTH {
             if outcome.finished.and(kept).lane(lane) {
                 self.end(lane, Ending::Finished, None, ticker);

@@ -1,13 +1,95 @@
 //! Symmetric linear systems solved as expressions, for the few unknowns that a change of variables has: L D Lᵀ without a search
 //! for pivots where none of them vanishes as an expression, as those of a positive definite matrix do not. Where one does the
 //! matrix is indefinite, as kinetic energies in null coordinates are (v_x v_y), and rows are exchanged for pivots that do not.
+//! Up to three unknowns whose pivots may vanish somewhere have cofactors, which are divided by the determinant alone.
 //! Runs solve theirs with numbers.
 
-use crate::expressions::{Graph, Id};
+use crate::expressions::function::Function;
+use crate::expressions::graph::{Dependence, number};
+use crate::expressions::{Graph, Id, Node};
+
+/// Unknowns of which cofactors are no longer than an elimination.
+const LARGEST_BY_COFACTORS: usize = 3;
 
 /// x of `matrix · x = right`, the matrix symmetric; `None` if it is singular whatever the numbers are.
 pub(super) fn solved(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Option<Vec<Id>> {
+    if (2..=LARGEST_BY_COFACTORS).contains(&right.len()) && !keeps_pivots(graph, matrix) {
+        return by_cofactors(graph, matrix, right);
+    }
     without_exchange(graph, matrix, right).or_else(|| with_exchange(graph, matrix, right))
+}
+
+/// Whether no pivot but the last one vanishes at some states only, as far as the diagonal tells: that of a positive definite matrix
+/// has no zeros, and one with nothing beside it vanishes with the determinant alone.
+fn keeps_pivots(graph: &Graph, matrix: &[Vec<Id>]) -> bool {
+    let n = matrix.len();
+    let alone = |j: usize| (0..n).all(|i| i == j || graph.is_zero(matrix[i][j]));
+    let coupled: Vec<usize> = (0..n).filter(|&j| !alone(j)).collect();
+    coupled.iter().rev().skip(1).all(|&j| is_positive(graph, matrix[j][j]))
+}
+
+/// Whether an expression has no zeros, told by what it is made of: parameters, and sums of them and squares.
+fn is_positive(graph: &Graph, id: Id) -> bool {
+    if graph.dependence(id) <= Dependence::Parameters {
+        return !graph.is_zero(id);
+    }
+    match graph.node(id) {
+        Node::Sum(constant, terms) => {
+            let constant = number(*constant);
+            let signs = terms.iter().all(|&(factor, term)| number(factor) > 0.0 && is_no_less(graph, term));
+            let some = constant > 0.0 || terms.iter().any(|&(_, term)| is_positive(graph, term));
+            constant >= 0.0 && signs && some
+        }
+        Node::Product(a, b) | Node::Quotient(a, b) => is_positive(graph, *a) && is_positive(graph, *b),
+        Node::Call(Function::Exp | Function::Cosh, _) => true,
+        _ => false,
+    }
+}
+
+/// Whether it is nowhere negative: as [`is_positive`], or with zeros.
+fn is_no_less(graph: &Graph, id: Id) -> bool {
+    match graph.node(id) {
+        Node::Product(a, b) => a == b || (is_no_less(graph, *a) && is_no_less(graph, *b)),
+        _ => is_positive(graph, id),
+    }
+}
+
+/// By G. Cramer's rule, of few unknowns: nothing but the determinant is divided by, so nothing is lost where an entry vanishes.
+fn by_cofactors(graph: &mut Graph, matrix: &[Vec<Id>], right: &[Id]) -> Option<Vec<Id>> {
+    let n = right.len();
+    let cofactors: Vec<Vec<Id>> =
+        (0..n).map(|i| (0..n).map(|j| cofactor(graph, matrix, (i, j))).collect()).collect();
+    let terms: Vec<(f64, Id)> =
+        (0..n).map(|j| (1.0, graph.multiply(matrix[0][j], cofactors[0][j]))).collect();
+    let determinant = graph.sum(0.0, &terms);
+    if graph.is_zero(determinant) {
+        return None;
+    }
+    let mut x = Vec::with_capacity(n);
+    for i in 0..n {
+        let terms: Vec<(f64, Id)> =
+            (0..n).map(|j| (1.0, graph.multiply(cofactors[j][i], right[j]))).collect();
+        let sum = graph.sum(0.0, &terms);
+        x.push(graph.divide(sum, determinant));
+    }
+    Some(x)
+}
+
+/// The determinant without a row and a column, with its sign; of two or three rows.
+fn cofactor(graph: &mut Graph, matrix: &[Vec<Id>], (row, column): (usize, usize)) -> Id {
+    let n = matrix.len();
+    let sign = if (row + column) & 1 == 0 { 1.0 } else { -1.0 };
+    let rows: Vec<usize> = (0..n).filter(|&i| i != row).collect();
+    let columns: Vec<usize> = (0..n).filter(|&j| j != column).collect();
+    if let ([a, b], [c, d]) = (&rows[..], &columns[..]) {
+        let (plus, minus) =
+            (graph.multiply(matrix[*a][*c], matrix[*b][*d]), graph.multiply(matrix[*a][*d], matrix[*b][*c]));
+        return graph.sum(0.0, &[(sign, plus), (-sign, minus)]);
+    }
+    match (rows.first(), columns.first()) {
+        (Some(&i), Some(&j)) => graph.scale(sign, matrix[i][j]),
+        _ => graph.constant(sign),
+    }
 }
 
 /// By L D Lᵀ; `None` if a pivot is zero.

@@ -1,7 +1,7 @@
 //! A mechanical system in generalized coordinates: where it comes from and what was made of it.
 
 use super::projection::Projection;
-use super::{hamiltonian, lagrangian};
+use super::{hamiltonian, lagrangian, sticking};
 use crate::error::{Error, Result};
 use crate::expressions::assembler::compile;
 use crate::expressions::program::{LinearSystem, Output};
@@ -73,6 +73,8 @@ pub struct Model {
     pub columns: Arc<Code>,
     /// What keeps states on the constraints.
     pub projection: Option<Projection>,
+    /// Velocities that dry friction may hold, with their rates, as code.
+    pub switches: Vec<Arc<Code>>,
 }
 
 impl Model {
@@ -108,8 +110,10 @@ impl Model {
             code,
             columns,
             projection: None,
+            switches: vec![],
         };
         model.projection = Projection::new(&mut model)?;
+        model.switches = sticking::switches(&mut model)?;
         Ok(model)
     }
 

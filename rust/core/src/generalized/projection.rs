@@ -23,6 +23,16 @@ use std::sync::Arc;
 const AFTER_A_STEP: u32 = 4;
 /// Newton's steps at the start, from anywhere.
 const AT_THE_START: u32 = 60;
+/// The part of the largest speed so far that velocities may be put right by after a step of a tolerance, at least, and of a step
+/// whose length is given: more than a step errs.
+const LEAST_SHARE: f64 = 1e-6;
+const SHARE_OF_GIVEN_STEPS: f64 = 0.3;
+/// Errors of a step of a tolerance are below so many of it, also of methods that let it go 30 times astray.
+const TOLERANCES: f64 = 1000.0;
+/// What ends a run where constraints lose their hold.
+const SINGULAR: &str = "the constraints depend on each other here (a singular configuration, as the change point of a \
+    mechanism): they no longer tell which way the motion goes on. End the run before it, or take coordinates in which the \
+    motion there is regular";
 
 /// The codes of corrections and residuals.
 #[derive(Clone, Debug)]
@@ -36,6 +46,8 @@ pub struct Projection {
     velocities: Arc<Code>,
     /// What velocities are multiplied with in the rates, constraint after constraint.
     rows: Arc<Code>,
+    /// The mass matrix, row by row.
+    mass: Arc<Code>,
 }
 
 impl Projection {
@@ -74,7 +86,10 @@ impl Projection {
         let velocities = code(graph, &rows, &rates)?;
         let entries: Vec<Output> = rows.iter().flatten().copied().map(Output::Node).collect();
         let rows = Arc::new(compile(graph, inputs, &[], &entries)?);
-        Ok(Some(Self { coordinates: n, holonomic: holonomic.len(), constraints, places, velocities, rows }))
+        let entries: Vec<Output> = model.mass.iter().flatten().copied().map(Output::Node).collect();
+        let mass = Arc::new(compile(graph, inputs, &[], &entries)?);
+        let holonomic = holonomic.len();
+        Ok(Some(Self { coordinates: n, holonomic, constraints, places, velocities, rows, mass }))
     }
 
     /// Ready to work, with these parameters.
@@ -84,6 +99,10 @@ impl Projection {
             places: Machine::new(self.places.clone(), parameters),
             velocities: Machine::new(self.velocities.clone(), parameters),
             rows: Machine::new(self.rows.clone(), parameters),
+            mass: Machine::new(self.mass.clone(), parameters),
+            share: SHARE_OF_GIVEN_STEPS,
+            largest: 0.0,
+            now: 0.0,
         }
     }
 }
@@ -95,9 +114,44 @@ pub struct Projector {
     places: Machine<f64>,
     velocities: Machine<f64>,
     rows: Machine<f64>,
+    mass: Machine<f64>,
+    /// The part of the speed that a step may be put right by.
+    share: f64,
+    /// The largest square of the speed so far, measured by the masses, and that of the state that was projected last.
+    largest: f64,
+    now: f64,
 }
 
 impl Projector {
+    /// Of a run whose steps are chosen for a tolerance.
+    pub fn for_tolerance(mut self, rtol: f64) -> Self {
+        let own = TOLERANCES * rtol;
+        let most = if own < SHARE_OF_GIVEN_STEPS { own } else { SHARE_OF_GIVEN_STEPS };
+        self.share = if most > LEAST_SHARE { most } else { LEAST_SHARE };
+        self
+    }
+
+    /// Whether these changes of the velocities are more than a step errs by, in the metric of the masses: where constraints are
+    /// about to lose their rank, the nearest velocities on them are any, and energy is lost.
+    fn loses_hold(&mut self, t: f64, y: &[f64], changes: &[f64]) -> bool {
+        let n = self.of.coordinates;
+        self.mass.state().copy_from_slice(y);
+        self.mass.run(t);
+        let square = |x: &[f64]| {
+            let row = |i: usize| (0..n).map(|j| self.mass.output(i * n + j) * x[j]).sum::<f64>();
+            (0..n).map(|i| x[i] * row(i)).sum::<f64>().abs()
+        };
+        let (now, changed) = (square(&y[n..]), square(changes));
+        self.now = now;
+        let most = if now > self.largest { now } else { self.largest };
+        changed > self.share * self.share * most
+    }
+
+    /// The state that was projected last is one of the run: readings between nodes are not.
+    fn remember(&mut self) {
+        self.largest = if self.now > self.largest { self.now } else { self.largest };
+    }
+
     /// Which constraint follows from others at a state, and whether it agrees with them; `None` where all are independent.
     pub fn dependence(&mut self, t: f64, y: &[f64]) -> Option<Dependence> {
         let mut rows = vec![0.0; self.of.coordinates * self.of.constraints];
@@ -120,10 +174,11 @@ impl Projector {
     /// Puts a state on the constraints.
     ///
     /// # Errors
-    /// [`Error::Convergence`] where the constraints depend on each other or cannot be met.
+    /// [`Error::Convergence`] where the constraints depend on each other, are about to, or cannot be met.
     pub fn project(&mut self, t: f64, y: &mut [f64], rest: &mut [f64], start: bool) -> Result<()> {
         let n = self.of.coordinates;
         let most = if start { AT_THE_START } else { AFTER_A_STEP };
+        let before = y[n..].to_vec();
         for (machine, from, repeated) in
             [(&mut self.places, 0, most), (&mut self.velocities, n, if start { 3 } else { 1 })]
         {
@@ -150,6 +205,12 @@ impl Projector {
                     break;
                 }
                 last = largest;
+            }
+        }
+        if !start {
+            let changes: Vec<f64> = y[n..].iter().zip(before).map(|(y, before)| y - before).collect();
+            if self.loses_hold(t, y, &changes) {
+                return Err(Error::Convergence { message: SINGULAR.to_owned(), time: t });
             }
         }
         Ok(())
@@ -197,6 +258,7 @@ impl<T: Trial<f64>> Trial<f64> for Projected<T> {
             self.next.copy_from(self.inner.next());
             let (y, rest) = self.next.all_mut();
             self.projector.project(self.t0 + clock.elapsed, y, rest, false)?;
+            self.projector.remember();
         }
         Ok(outcome)
     }

@@ -12,6 +12,7 @@ use super::model::Model;
 use super::motion::Motion;
 use super::projection::{Projected, Projector};
 use super::sizes::sizes;
+use super::sticking::Sticking;
 use crate::error::{Error, Result};
 use crate::expressions::{Machine, Series};
 use crate::numerics::lanes::{Lanes, WIDTH};
@@ -195,8 +196,13 @@ pub fn solve(
         return Ok(Solution { reached: end, t: table.t, y: table.y, ..Solution::at(t0) });
     }
     let watch = Watch::new(&request.events, parameters);
-    let mut projector = model.projection.as_ref().map(|projection| projection.at_work(parameters));
-    let mut recorder = Counted { table, watch, steps: 0, last: 0.0, reached: t0, most: request.max_steps };
+    let mut projector = model.projection.as_ref().map(|projection| {
+        let projector = projection.at_work(parameters);
+        if request.dt.is_some() { projector } else { projector.for_tolerance(request.rtol) }
+    });
+    let sticking = Sticking::new(model, parameters, t0);
+    let most = request.max_steps;
+    let mut recorder = Counted { table, watch, sticking, steps: 0, last: 0.0, reached: t0, most };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
     let outcome = match request.integrator {
@@ -252,6 +258,7 @@ pub fn solve(
 struct Counted<'a> {
     table: Table<'a>,
     watch: Watch<'a>,
+    sticking: Sticking,
     steps: u64,
     /// The longest step.
     last: f64,
@@ -277,6 +284,9 @@ impl Recorder for Counted<'_> {
         let stop = self.watch.look(&mut Stepped(step))?;
         self.reached = stop.unwrap_or(step.to);
         self.table.keep(step, stop)?;
+        if stop.is_none() && !self.sticking.is_empty() {
+            self.sticking.look(step.to, step.end())?;
+        }
         Ok(stop)
     }
 }

@@ -1,8 +1,8 @@
 //! What is found on the graph of a model without running it.
 
-use super::model::{Kind, Model};
+use super::model::{Kind, Model, Source};
 use crate::expressions::function::Function;
-use crate::expressions::graph::{Dependence, Graph, number};
+use crate::expressions::graph::{Dependence, number};
 use crate::expressions::{Id, Node};
 
 /// What is known of a mass matrix.
@@ -74,14 +74,20 @@ impl Structure {
             conserves_energy,
             mass: Self::mass_matrix(model),
             separable: matches!(model.form, crate::ode::system::Form::SecondOrder(_)) && !needs.velocity,
-            kinks: all.iter().any(|&root| Self::has_kinks(graph, root)),
+            kinks: !Self::turning(source).is_empty(),
             operations: model.code.operations(),
         }
     }
 
-    fn has_kinks(graph: &Graph, root: Id) -> bool {
-        graph.any(&[root], |node| {
-            let &Node::Call(Function::Sqrt, mut under) = node else { return false };
+    /// What absolute values are taken of: x of |x| = √(x²), where it changes with the state.
+    pub(super) fn turning(source: &Source) -> Vec<Id> {
+        let graph = &source.graph;
+        let mut all: Vec<Id> = source.forces.clone();
+        all.extend(source.dissipation);
+        all.extend(source.holonomic.iter().chain(&source.nonholonomic));
+        all.push(source.function);
+        let turning = |id: Id| {
+            let &Node::Call(Function::Sqrt, mut under) = graph.node(id) else { return None };
             // A square that has a factor.
             while let Node::Sum(constant, terms) = graph.node(under)
                 && number(*constant) == 0.0
@@ -89,8 +95,12 @@ impl Structure {
             {
                 under = only;
             }
-            matches!(*graph.node(under), Node::Product(a, b) if a == b && graph.dependence(a) > Dependence::Parameters)
-        })
+            match *graph.node(under) {
+                Node::Product(a, b) if a == b && graph.dependence(a) > Dependence::Parameters => Some(a),
+                _ => None,
+            }
+        };
+        graph.reachable(&all).into_iter().filter_map(turning).collect()
     }
 
     fn mass_matrix(model: &Model) -> MassMatrix {

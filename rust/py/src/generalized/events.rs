@@ -30,8 +30,14 @@ impl Sought {
     /// As the core takes it.
     pub(super) fn event(&self, py: Python<'_>, of: &GeneralizedModel, raised: &Raised) -> Result<Event> {
         let (direction, last) = (self.direction, self.last);
+        let conserved = self.energy.filter(|_| of.structure.conserves_energy);
         if let Some(function) = &self.function {
-            return Ok(Event { function: called(function.clone_ref(py), raised.clone()), direction, last });
+            return Ok(Event {
+                function: called(function.clone_ref(py), raised.clone()),
+                direction,
+                last,
+                conserved,
+            });
         }
         let mut model = of.copy();
         let ids = added(&mut model.source.graph, &self.nodes)?;
@@ -43,7 +49,7 @@ impl Sought {
             }
         };
         let code = Arc::new(model.along(expression)?);
-        Ok(Event { function: Function::Expression(code), direction, last })
+        Ok(Event { function: Function::Expression(code), direction, last, conserved })
     }
 }
 

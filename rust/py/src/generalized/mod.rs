@@ -16,13 +16,14 @@ use numpy::{PyArrayDyn, PyReadonlyArrayDyn};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use runs::Asked;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use visviva_core::expressions::graph::{Graph, Id};
 use visviva_core::expressions::program::Output;
 use visviva_core::generalized::discrete::path::segments;
 use visviva_core::generalized::discrete::{self, Equations};
 use visviva_core::generalized::evaluate;
 use visviva_core::generalized::legendre;
+use visviva_core::generalized::linear::Linear;
 use visviva_core::generalized::linear_motion::LinearMotion;
 use visviva_core::generalized::one_freedom::OneFreedom;
 use visviva_core::generalized::structure::{MassMatrix, Structure};
@@ -40,6 +41,8 @@ pub(crate) struct GeneralizedModel {
     structure: Structure,
     /// The equations, if they are linear.
     linear: Option<Arc<LinearMotion>>,
+    /// What small motions are told by, once somebody has asked.
+    small: OnceLock<Linear>,
 }
 
 /// What a system is made of.
@@ -79,7 +82,7 @@ impl Described {
 impl GeneralizedModel {
     fn of(model: Model) -> Result<Self> {
         let linear = LinearMotion::of(&model)?.map(Arc::new);
-        Ok(Self { structure: Structure::of(&model), linear, model: Arc::new(model) })
+        Ok(Self { structure: Structure::of(&model), linear, model: Arc::new(model), small: OnceLock::new() })
     }
 
     /// One that further expressions may join.
@@ -248,7 +251,7 @@ impl GeneralizedModel {
         starts: Array<'_>,
         parameters: Array<'_>,
     ) -> PyResult<Vec<Option<Vec<f64>>>> {
-        small_motions::equilibria(py, &self.model, t, &starts, &parameters)
+        small_motions::equilibria(py, (&self.model, &self.small), t, &starts, &parameters)
     }
 
     /// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
@@ -259,7 +262,7 @@ impl GeneralizedModel {
         position: Array<'py>,
         parameters: Array<'py>,
     ) -> PyResult<Bound<'py, PyDict>> {
-        small_motions::linearized(py, &self.model, t, &position, &parameters)
+        small_motions::linearized(py, (&self.model, &self.small), t, &position, &parameters)
     }
 
     /// Of one coordinate: turning points, period and action of the oscillation; with a turn, (period, action) of a rotation.

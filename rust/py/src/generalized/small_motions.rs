@@ -5,24 +5,33 @@ use crate::arrays::{copied, moved};
 use crate::gate::compute;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::OnceLock;
 use visviva_core::Result;
 use visviva_core::generalized::Model;
 use visviva_core::generalized::linear::{Linear, modes};
 
+/// Forces and matrices as code: compiled once for a model.
+fn of<'a>(model: &Model, small: &'a OnceLock<Linear>) -> Result<&'a Linear> {
+    if let Some(linear) = small.get() {
+        return Ok(linear);
+    }
+    let linear = Linear::new(&mut model.clone())?;
+    Ok(small.get_or_init(|| linear))
+}
+
 /// The equilibria that Newton's method reaches from starts (S, n), `None` where it reaches none.
 pub(super) fn equilibria(
     py: Python<'_>,
-    model: &Model,
+    (model, small): (&Model, &OnceLock<Linear>),
     t: f64,
     starts: &Array<'_>,
     parameters: &Array<'_>,
 ) -> PyResult<Vec<Option<Vec<f64>>>> {
-    let mut model = model.clone();
     let n = model.source.coordinates;
     let (starts, _) = copied("position", starts, [None, Some(n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
     compute(py, 0, None, |ticker| {
-        let linear = Linear::new(&mut model)?;
+        let linear = of(model, small)?;
         let find = |start: &[f64]| {
             ticker.tick()?;
             Ok(linear.equilibrium(t, start, &parameters))
@@ -35,17 +44,16 @@ pub(super) fn equilibria(
 /// M, C, K and F of small motions about a place at rest; eigenvalues, squared frequencies and modes.
 pub(super) fn linearized<'py>(
     py: Python<'py>,
-    model: &Model,
+    (model, small): (&Model, &OnceLock<Linear>),
     t: f64,
     position: &Array<'py>,
     parameters: &Array<'py>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let mut model = model.clone();
     let n = model.source.coordinates;
     let (position, _) = copied("position", position, [Some(n)])?;
     let (parameters, _) = copied("parameters", parameters, [Some(model.source.parameters)])?;
     let (at, found) = compute(py, 0, None, |_| {
-        let at = Linear::new(&mut model)?.matrices(t, &position, &parameters);
+        let at = of(model, small)?.matrices(t, &position, &parameters);
         let found = modes(&at, n)?;
         Ok((at, found))
     })?

@@ -8,10 +8,11 @@
 
 mod search;
 
+use super::sticking::along;
 use crate::error::Result;
 use crate::expressions::{Code, Machine};
 use core::fmt;
-use search::{Point, Search};
+use search::{Point, Search, rounding};
 use std::sync::Arc;
 
 /// A function of time and state that somebody else evaluates.
@@ -44,6 +45,8 @@ pub struct Event {
     pub direction: f64,
     /// The run ends with the zero of this number.
     pub last: Option<u64>,
+    /// Of what the motion conserves, the value that it is to pass.
+    pub conserved: Option<f64>,
 }
 
 /// A zero.
@@ -92,12 +95,8 @@ impl Working {
             Self::Called(call) => return Ok((call(t, y)?, None)),
             Self::Expression(machine) => machine,
         };
-        machine.state().copy_from_slice(y);
-        machine.run(t);
-        let terms = (machine.code().outputs() - 2) / 2;
-        let of_rates = (0..terms).map(|i| machine.output(2 + i) * machine.output(2 + terms + i));
-        let rate = of_rates.fold(machine.output(1), |sum, term| sum + term);
-        Ok((machine.output(0), Some(rate)))
+        let (value, rate) = along(machine, t, y);
+        Ok((value, Some(rate)))
     }
 }
 
@@ -108,6 +107,8 @@ pub(super) struct Watch<'a> {
     /// Value and rate of each at the last node.
     ends: Vec<(f64, Option<f64>)>,
     counts: Vec<u64>,
+    /// Events that no motion from this start has: what it conserves is the value that was to be passed.
+    never: Vec<bool>,
     begun: bool,
     /// The state inside a step at which every event is looked at first.
     inside: Vec<f64>,
@@ -119,6 +120,9 @@ pub(super) struct Watch<'a> {
 /// ended a run does not meet it again.
 const AT_THE_START: f64 = 16.0 * f64::EPSILON;
 
+/// A conserved value is that of the start if they are no more units in the last place apart.
+const UNITS_OF_VALUES: f64 = 16.0;
+
 impl<'a> Watch<'a> {
     /// For events of a system with these parameters.
     pub(super) fn new(events: &'a [Event], parameters: &[f64]) -> Self {
@@ -127,6 +131,7 @@ impl<'a> Watch<'a> {
             working: events.iter().map(|event| Working::of(&event.function, parameters)).collect(),
             ends: vec![(f64::NAN, None); events.len()],
             counts: vec![0; events.len()],
+            never: vec![false; events.len()],
             begun: false,
             inside: vec![],
             found: vec![],
@@ -138,8 +143,12 @@ impl<'a> Watch<'a> {
     /// # Errors
     /// Those of the functions.
     pub(super) fn start(&mut self, t: f64, y: &[f64]) -> Result<()> {
-        for (working, end) in self.working.iter_mut().zip(&mut self.ends) {
+        for (which, (working, end)) in self.working.iter_mut().zip(&mut self.ends).enumerate() {
             *end = working.at(t, y)?;
+            if let Some(value) = self.events[which].conserved {
+                let nothing = rounding(working, t, y)? + UNITS_OF_VALUES * f64::EPSILON * value.abs();
+                self.never[which] = end.0.abs() <= nothing;
+            }
         }
         Ok(())
     }
@@ -156,7 +165,7 @@ impl<'a> Watch<'a> {
         self.inside.clear();
         self.inside.extend_from_slice(step.at(search::INSIDE)?);
         let mut zeros: Vec<(f64, usize)> = vec![];
-        for (which, event) in self.events.iter().enumerate() {
+        for (which, event) in self.events.iter().enumerate().filter(|&(which, _)| !self.never[which]) {
             let start = Point::at(0.0, self.ends[which], from, to);
             let after = self.working[which].at(to, step.end())?;
             self.ends[which] = after;

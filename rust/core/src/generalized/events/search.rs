@@ -69,6 +69,20 @@ pub(super) struct Search<'s> {
     zeros: Vec<Zero>,
 }
 
+/// What is nothing beside the numbers that a function is made of there.
+pub(super) fn rounding(function: &mut Working, t: f64, y: &[f64]) -> Result<f64> {
+    let mut y = y.to_vec();
+    let value = function.at(t, &y)?.0;
+    let mut sum = (function.at(t + NUDGE * t, &y)?.0 - value).abs();
+    for index in 0..y.len() {
+        let own = y[index];
+        y[index] += NUDGE * own;
+        sum += (function.at(t, &y)?.0 - value).abs();
+        y[index] = own;
+    }
+    Ok(UNITS_OF_ROUNDING * f64::EPSILON * sum / NUDGE)
+}
+
 /// Whether a function leaves the sign that it has. A zero at the end counts, one at the start was told of before.
 fn crosses(start: f64, end: f64) -> bool {
     (start < 0.0 && end >= 0.0) || (start > 0.0 && end <= 0.0)
@@ -155,16 +169,8 @@ impl<'s> Search<'s> {
             Some(rounding) => rounding,
             None => {
                 let (from, to) = self.step.span();
-                let (t, mut y) = (from + theta * (to - from), self.step.at(theta)?.to_vec());
-                let value = self.function.at(t, &y)?.0;
-                let mut sum = (self.function.at(t + NUDGE * t, &y)?.0 - value).abs();
-                for index in 0..y.len() {
-                    let own = y[index];
-                    y[index] += NUDGE * own;
-                    sum += (self.function.at(t, &y)?.0 - value).abs();
-                    y[index] = own;
-                }
-                UNITS_OF_ROUNDING * f64::EPSILON * sum / NUDGE
+                let y = self.step.at(theta)?.to_vec();
+                rounding(self.function, from + theta * (to - from), &y)?
             }
         };
         self.rounding = Some(rounding);

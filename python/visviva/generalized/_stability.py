@@ -1,0 +1,85 @@
+"""Whether small motions M ξ̈ + C ξ̇ + K ξ = 0 stay small, told also where they are fast and slow at once.
+
+The one idea: with M positive definite and C that takes energy or none, motions stay small where K has no negative
+eigenvalue (W. Thomson & P. G. Tait), and how many it has is known to the digits of each of its entries: rows and
+columns are divided by the roots of the diagonal first (J. J. Sylvester's law of inertia), so no stiff spring hides a
+soft one. What is not coupled is judged alone.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+__all__ = ["is_stable"]
+
+_EPSILON = float(np.finfo(float).eps)
+#: Eigenvalues whose real part is below this times the largest are on the imaginary axis: of a double zero half the
+#: digits are known.
+_ON_THE_AXIS = 1e-7
+#: Roundings of an entry beside what it was told to be uncertain by, and of eigenvalues.
+_ROUNDINGS = 8.0
+#: Entries of a symmetric matrix differ by no more than this part of what they are divided by.
+_SYMMETRIC = 1e-12
+
+
+def is_stable(
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+) -> bool:
+    """Whether no small motion grows; one that neither grows nor returns counts. The rounding is that of K."""
+    known = np.where(np.abs(stiffness) > rounding, stiffness, 0.0)
+    return all(
+        _block(*(matrix[np.ix_(block, block)] for matrix in (mass, damping, known, rounding)))
+        for block in _blocks(np.abs(mass) + np.abs(damping) + np.abs(known))
+    )
+
+
+def _blocks(coupled: NDArray[np.float64]) -> list[NDArray[np.intp]]:
+    """Give the coordinates that know each other, in groups."""
+    reached = (coupled + coupled.T != 0.0) | np.eye(len(coupled), dtype=bool)
+    for _ in range(len(coupled).bit_length()):
+        reached = reached @ reached
+    return [np.flatnonzero(row) for row in np.unique(reached, axis=0)]
+
+
+def _block(
+    mass: NDArray[np.float64],
+    damping: NDArray[np.float64],
+    stiffness: NDArray[np.float64],
+    rounding: NDArray[np.float64],
+) -> bool:
+    lowest = [_lowest(mass, np.zeros_like(mass)), _lowest(damping, np.zeros_like(mass)), _lowest(stiffness, rounding)]
+    of_mass, of_damping, of_stiffness = lowest
+    if of_mass is not None and of_damping is not None and of_stiffness is not None and of_mass > 0.0 <= of_damping:
+        return of_stiffness >= 0.0
+    n = len(mass)
+    first_order = np.zeros((2 * n, 2 * n))
+    first_order[:n, n:] = np.eye(n)
+    first_order[n:] = -np.linalg.solve(mass, np.hstack([stiffness, damping]))
+    eigenvalues = np.linalg.eigvals(first_order)
+    return bool(np.all(eigenvalues.real <= _ON_THE_AXIS * np.abs(eigenvalues).max()))
+
+
+def _lowest(matrix: NDArray[np.float64], rounding: NDArray[np.float64]) -> float | None:
+    """Give an eigenvalue of the sign of the lowest one, 0 where that is round-off; nothing if it is not symmetric."""
+    sizes = np.sqrt(np.abs(np.diag(matrix)))
+    rows = np.abs(matrix).max(axis=1)
+    # Nothing on the diagonal: as large as makes what is beside it 1.
+    known = np.where(sizes > 0.0, sizes, 1.0)
+    beside = (np.abs(matrix) / known).max(axis=1)
+    sizes = np.where(sizes > 0.0, sizes, np.where(rows > 0.0, beside, 1.0))
+    scaled = matrix / sizes / sizes[:, None]
+    if np.abs(scaled - scaled.T).max() > _SYMMETRIC * max(1.0, np.abs(scaled).max()):
+        return None
+    values = np.linalg.eigvalsh((scaled + scaled.T) / 2.0)
+    off = np.abs(rounding / sizes / sizes[:, None]).sum(axis=1).max()
+    off += _ROUNDINGS * len(matrix) * _EPSILON * np.abs(values).max()
+    lowest = float(values[0])
+    return lowest if abs(lowest) > off else 0.0

@@ -1,0 +1,54 @@
+"""Dry friction: a body comes to rest, and the run says so instead of crawling on."""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+FRICTION = 0.1
+
+
+def sliding(place: float, speed: float = 1e-3) -> vv.Lagrangian:
+    return vv.Lagrangian(
+        lambda q, v, t: (v @ v - q @ q) / 2,
+        ["x"],
+        position=[place],
+        velocity=[speed],
+        dissipation=lambda q, v, t: FRICTION * abs(v[0]),
+    )
+
+
+@pytest.mark.parametrize("rtol", [1e-6, 1e-9, 1e-12])
+def test_a_body_on_a_spring_sticks_where_friction_holds_it(rtol: float) -> None:
+    """Half swings about ±0.1 lose 0.2 each: from 1.05 the fifth ends at −0.05, within reach of friction, at t = 5π."""
+    with pytest.raises(vv.ConvergenceError, match="a velocity sticks at zero") as stuck:
+        sliding(1.05).run(np.linspace(0.0, 30.0, 301), rtol=rtol)
+    # The first speed of 1e-3 shifts the phase by 1e-3 and the amplitude by 1e-6.
+    assert stuck.value.time == pytest.approx(5 * np.pi, abs=2e-3)
+    out = stuck.value.trajectory
+    assert isinstance(out, vv.generalized.GeneralizedTrajectory)
+    assert out["x"][-1] == pytest.approx(-0.05, abs=1e-3)
+    assert out.steps < 20_000
+
+
+def test_turns_on_the_way_are_no_sticking() -> None:
+    """Before it sticks, the velocity passes zero four times, each time beyond the reach of friction."""
+    out = sliding(1.05).run(np.pi * np.arange(5.0))
+    np.testing.assert_allclose(out["x"], [1.05, -0.85, 0.65, -0.45, 0.25], atol=2e-3)
+
+
+def test_copies_that_stick_end_alone() -> None:
+    copies = sliding(1.0).ensemble(position=[[1.05], [50.0]], velocity=[[1e-3], [1e-3]])
+    out = copies.run(np.array([0.0, 30.0]))
+    assert out.status.tolist() == [vv.Status.STEP_FAILURE, vv.Status.OK]
+    assert out.steps[0] < 20_000
+    # Next to the same one alone.
+    np.testing.assert_array_equal(out.position[1], sliding(50.0).run(np.array([0.0, 30.0])).position)
+
+
+def test_a_valley_of_two_slopes_is_no_friction() -> None:
+    """In V = |x| it is the place that passes zero: with any small swing the motion goes on, with period 4 √(2 A)."""
+    for amplitude in (1.0, 1e-6):
+        valley = vv.Lagrangian(lambda q, v, t: v @ v / 2 - abs(q[0]), ["x"], position=[amplitude])
+        period = 4 * (2 * amplitude) ** 0.5
+        assert valley.run(3 * period)["x"][-1] == pytest.approx(amplitude, rel=1e-8)
