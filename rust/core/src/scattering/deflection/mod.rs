@@ -148,6 +148,11 @@ impl Deflector {
     pub fn critical_energies(&self) -> Vec<f64> {
         self.profile.as_ref().map(Profile::critical_energies).unwrap_or_default()
     }
+    /// C/E of V = −C/r²: the square of the impact parameter below which all are captured, and just above which ψ grows as
+    /// a power, so that the turns that lead to an angle have a sum of their own.
+    pub(in crate::scattering) fn winds(&self, energy: f64) -> Option<f64> {
+        self.closed.and_then(|closed| closed.winds(energy))
+    }
     /// A length of which the impact parameters of an energy are multiples or parts: the potential's own or, if it has none
     /// (k/rⁿ), the one that it has at that energy.
     pub fn length(&self, energy: f64) -> f64 {
