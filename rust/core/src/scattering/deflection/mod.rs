@@ -32,7 +32,9 @@ use std::sync::Arc;
 /// The tolerance if none is asked for: of an angle, relative to what was added up to it.
 pub const TOLERANCE: f64 = 1e-12;
 /// What can be asked for.
-pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-13..=1e-3;
+pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-16..=1e-3;
+/// What sums in float64 come to: whoever asks for less is given this, and told so by [`Deflection::error`].
+const FINEST: f64 = 1e-14;
 /// Pairs of a chunk.
 const CHUNK: usize = 512;
 /// What became of a projectile.
@@ -126,7 +128,7 @@ impl Deflector {
                 "expected one that goes to 0 as r goes to infinity; nothing scatters off one that does not",
             ));
         }
-        Ok(Self { profile, closed, tolerance })
+        Ok(Self { profile, closed, tolerance: tolerance.max(FINEST) })
     }
     /// Where the deflection function is not smooth at an energy, ascending.
     pub fn edges(&self, energy: f64) -> Vec<Edge> {
