@@ -195,6 +195,26 @@ def test_bins_that_the_disc_does_not_cover_have_no_cross_section() -> None:
     assert set(tally.reachable.tolist()) == {0.0, 1.0}
 
 
+@pytest.mark.parametrize("masses", [(1.0, 4.0), (1.0, 1.0), (4.0, 1.0)])
+@pytest.mark.parametrize("radius", [1e-15, 1.0, 2.3])
+def test_a_disc_as_wide_as_a_hard_sphere_knows_all_of_it(radius: float, masses: tuple[float, float]) -> None:
+    """b_max = R: all that is scattered comes, and nothing else: R²/4 in every bin, the forward one too."""
+    asked = {"beam_energy": 1.0, "masses": masses, "n_events": 400_000, "seed": 5, "bins": 6}
+    tally = vv.scattering.monte_carlo(
+        p.HardSphere(radius), b_max=radius, tally=["cm_angle", "lab_angle", "energy", "impact_parameter"], **asked
+    )
+    value, error = tally["cm_angle"].cross_section()
+    assert (np.abs(value - 0.25 * radius**2) < 4.5 * error).all()
+    assert (tally["cm_angle"].reachable == 1.0).all()
+    for name in ("lab_angle", "energy", "impact_parameter"):
+        one = tally[name]
+        measure = vv._core.solid_angles(one.edges) if name == "lab_angle" else np.diff(one.edges)
+        assert (one.cross_section().value * measure).sum() == pytest.approx(np.pi * radius**2, rel=1e-12)
+    # A wider one counts what flies by as well: that is no cross section.
+    wide = vv.scattering.monte_carlo(p.HardSphere(radius), b_max=2.0 * radius, tally="cm_angle", **asked)
+    assert np.isnan(wide["cm_angle"].cross_section().value).tolist() == [True, *[False] * 5]
+
+
 def test_tables_are_known_by_their_hash() -> None:
     assert run(p.Coulomb(1.0)).beam.tables == ()
     tables = run(beam_energy=LINES).beam.tables

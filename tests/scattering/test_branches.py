@@ -49,6 +49,34 @@ def test_orbits_of_lennard_jones(energy: float, radius: float, b: float) -> None
     assert s.orbiting(LENNARD_JONES, energy=0.80001) == ()
 
 
+def test_the_last_orbit_of_lennard_jones() -> None:
+    """E = 0.8 ε, the energy from which on nothing orbits: V + rV′/2 but touches it, at r⁶ = 5.
+
+    There h − b² = A (r − r₀)³ + b₀² − b²: ψ goes as |b/b₀ − 1|^(−1/6), inside √3 times as steep as outside, the ratio
+    of ∫ dx/√(x³ + 1) from −1 and ∫ dx/√(x³ − 1) from 1.
+    """
+    [orbit] = s.orbiting(LENNARD_JONES, energy=0.8)
+    r0 = 5.0 ** (1.0 / 6.0)
+    b0 = r0 * np.sqrt(1.8)
+    # Of an extremum half the digits of r are known, and all of b.
+    assert orbit.radius == pytest.approx(r0, abs=1e-7)
+    assert orbit.impact_parameter == pytest.approx(b0, rel=4e-16)
+    assert not orbit.captures
+    steps = [
+        np.diff(s.deflection_angle(LENNARD_JONES, energy=0.8, impact_parameter=b0 * (1.0 + side * offsets)))[0]
+        for side in (-1.0, 1.0)
+        for offsets in [np.array([1e-9, 1e-11])]
+    ]
+    # What is left out falls as |b/b₀ − 1|^(1/3): 1e-3 of the whole.
+    assert steps[0] / steps[1] == pytest.approx(np.sqrt(3.0), rel=4e-3)
+    glories = s.glories(LENNARD_JONES, energy=0.8)
+    assert len(glories) > 50
+    found = s.deflect(LENNARD_JONES, energy=0.8, impact_parameter=[mark.impact_parameter for mark in glories])
+    # b is rounded.
+    off = np.abs(found.angle - np.array([mark.angle for mark in glories]))
+    assert (off < 1e-11 + 4.0 * np.finfo(float).eps * found.conditioning + 2.0 * found.error).all()
+
+
 def test_capture() -> None:
     """Langevin 2π√(C/E); 5.93723807167933 (C/E)^(1/3) for n = 6; πC/E for n = 2; nothing where a core repels."""
     energy = np.array([0.5, 2.0])

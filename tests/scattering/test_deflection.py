@@ -343,3 +343,25 @@ def test_bad_input_is_refused_by_name(given: dict[str, object], argument: str, m
     assert refused.value.argument == argument
     with pytest.raises(vv.InvalidInput, match="pass it to deflect"):
         _ = s.deflect(LENNARD_JONES, energy=1.0, impact_parameter=1.0).time_delay
+
+
+@pytest.mark.parametrize(
+    "case",
+    [("ScreenedCoulomb", 1.0, 1.0, "zbl"), ("LennardJones", 1.0, 1.0), ("Yukawa", -1.0, 1.0), ("PowerLaw", -1.0, 1.5)],
+    ids=str,
+)
+@pytest.mark.parametrize("tolerance", [1e-13, 1e-15])
+def test_what_is_asked_for_or_what_was_reached(case: tuple[object, ...], tolerance: float) -> None:
+    """The error that is told is true within a factor of two down to the last digits; below those one gets what is."""
+    random = np.random.default_rng(11)
+    energy, b = 10.0 ** random.uniform(-3.0, 3.0, 3), 10.0 ** random.uniform(-1.5, 0.7, 3)
+    found = s.deflect(getattr(V, str(case[0]))(*case[1:]), energy=energy, impact_parameter=b, tolerance=tolerance)
+    formula = oracle.potential(*case)  # type: ignore[arg-type]
+    for i in np.nonzero(found.status != s.DeflectionStatus.CAPTURED)[0]:
+        off = abs(float(oracle.angle(formula, energy[i], b[i], found.closest_approach[i]) - mp.mpf(found.angle[i])))
+        # It is an estimate, and E and b are rounded again in units of the potential.
+        rounding = 2.0 * np.finfo(float).eps * found.conditioning[i]
+        assert off <= 2.0 * found.error[i] + rounding, (energy[i], b[i])
+        # The tolerance is of what is added up, a few times ψ where the attraction is strong, and more of small angles.
+        size = max(abs(found.angle[i]), min(1.0, 1e3 * abs(found.angle[i])))
+        assert found.error[i] <= max(3e-14, 4.0 * tolerance) * size, (energy[i], b[i])

@@ -54,6 +54,13 @@ def test_relativistic_ions_are_refused():
         foil.stopping_power("proton", [1e6, 1e10])
 
 
+def test_mega_electron_volts_are_told_from_electron_volts():
+    """5.5 of an alpha's MeV as it is written down: at 5.5 eV nothing of the model holds."""
+    with pytest.raises(vv.InvalidInput, match=r"at least 30\.0 eV.*got 5\.5 eV.*1 MeV is 1e6") as caught:
+        S.Foil("gold", 0.4).run("alpha", beam_energy=5.5, n_events=1, seed=1)
+    assert caught.value.argument == "beam_energy"
+
+
 def test_potentials_without_a_way_on_are_refused():
     foil = S.Foil("carbon", 0.1, potential=vv.potentials.PowerLaw(-100.0, 4.0))
     with pytest.raises(vv.InvalidInput, match="captures") as caught:

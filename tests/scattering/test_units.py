@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import mpmath as mp
 import numpy as np
 import pytest
 
@@ -37,13 +38,39 @@ def test_power_laws_scale_with_their_length(n: int, sign: int, length: float) ->
     angles = [0.1, 1.0]
     of_one = s.cross_section(V.PowerLaw(float(sign), float(n)), energy=1.0, angle=angles)
     found = s.cross_section(V.PowerLaw(sign * length**n, float(n)), energy=1.0, angle=angles)
-    # kⁿ as it is rounded; of −C/r² infinitely many branches wind ever nearer to the edge, and float64 tells the last of
-    # them no longer apart: their sum is lost, 1e-10 of all.
-    assert found / length**2 == pytest.approx(of_one, rel=1e-9 if (n, sign) == (2, -1) else 1e-12)
+    # kⁿ as it is rounded.
+    assert found / length**2 == pytest.approx(of_one, rel=1e-12)
     if sign > 0 and n != 2:
         transport = s.transport_cross_section(V.PowerLaw(length**n, float(n)), energy=1.0, order=1)
         of_one = s.transport_cross_section(V.PowerLaw(1.0, float(n)), energy=1.0, order=1)
         assert transport / length**2 == pytest.approx(of_one, rel=1e-9)
+
+
+@pytest.mark.parametrize("theta", [1e-3, 0.1, 1.0, 3.0])
+def test_all_turns_around_an_inverse_square_count(theta: float) -> None:
+    """−C/r²: infinitely many branches ever nearer to the edge, of which float64 tells the last no longer apart.
+
+    The sum of b/(sin θ |dψ/db|), b² = (C/E) q²/(q² − 1), q = 1 + |ψ|/π, to 25 digits by summing every turn.
+    """
+    C, E = 3.0, 0.7
+    found = s.cross_section(V.PowerLaw(-C, 2.0), energy=E, angle=theta)
+    with mp.workdps(25):
+
+        def part(psi: mp.mpf) -> mp.mpf:
+            q = 1 + psi / mp.pi
+            return mp.mpf(C) / mp.mpf(E) * q / (mp.pi * (q * q - 1) ** 2)
+
+        turns = mp.nsum(lambda n: part(2 * mp.pi * n + theta) + part(2 * mp.pi * (n + 1) - theta), [0, mp.inf])
+        expected = float(turns / mp.sin(theta))
+    assert found == pytest.approx(expected, rel=2e-15)
+    b = s.impact_parameter(V.PowerLaw(-C, 2.0), energy=E, angle=theta)
+    assert (np.diff(b) > 0.0).all()
+    assert b[0] == pytest.approx(np.sqrt(C / E), rel=1e-10)
+    folded = np.abs(
+        (s.deflection_angle(V.PowerLaw(-C, 2.0), energy=E, impact_parameter=b[-100:]) + np.pi) % (2 * np.pi)
+    )
+    # ψ = 300 of a b that is rounded: ψ³/π² times 2⁻⁵³.
+    np.testing.assert_allclose(np.abs(folded - np.pi), theta, atol=2e-9)
 
 
 def test_a_hard_sphere_of_any_size() -> None:

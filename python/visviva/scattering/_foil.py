@@ -175,7 +175,8 @@ class Foil:
         ion : Ion or str
             What flies: see `Ion`.
         beam_energy : float
-            In eV; at most a tenth of the ion's rest energy.
+            In eV (1 MeV is 1e6): from 30 on, below which an ion meets several atoms at once, to a tenth of its rest
+            energy.
         n_events : int
             How many ions, at least 1 and at most 2³⁹.
         seed : int

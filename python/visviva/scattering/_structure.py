@@ -181,7 +181,8 @@ def orbiting(potential: Potential, *, energy: float) -> tuple[Orbit, ...]:
     Returns
     -------
     tuple of Orbit
-        Empty where nothing orbits.
+        Empty where nothing orbits. At the very energy from which on nothing does there is one still, of a barrier that
+        has no top but is level: toward it ψ grows as a power of the distance, not as its logarithm.
 
     Raises
     ------

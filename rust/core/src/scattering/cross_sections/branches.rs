@@ -1,7 +1,8 @@
 //! Which impact parameters lead to an angle, and the differential cross section that they make together.
 
-use super::{MOST_STEPS, Sample, Structure, range};
+use super::{MOST_STEPS, Sample, Structure, range, winding};
 use crate::Result;
+use crate::numerics::angles::sin;
 use crate::parallel::Ticker;
 use crate::scattering::kinematics::Collision;
 use core::f64::consts::PI;
@@ -27,9 +28,13 @@ impl Branch {
         }
         let sine =
             if self.angle.abs() > 1.0 && self.angle.abs() < PI + 1.0 { self.complement } else { self.angle };
-        let sine = crate::numerics::angles::sin(sine).abs();
-        (self.impact_parameter / sine) / self.derivative.abs()
+        (self.impact_parameter / sin(sine).abs()) / self.derivative.abs()
     }
+}
+
+/// sin θ of an angle in [0, π], with what is missing to π.
+fn sine(angle: f64) -> f64 {
+    sin(if angle > 1.0 { PI - angle } else { angle }).abs()
 }
 
 impl Structure<'_> {
@@ -39,6 +44,12 @@ impl Structure<'_> {
     /// # Errors
     /// As [`Deflector::deflect`](super::Deflector::deflect).
     pub fn branches(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<Vec<Branch>> {
+        if let Some(square) = self.deflector.winds(self.energy) {
+            // 2n and both 2n ± θ/π.
+            let part = angle / PI;
+            let parts = (0_u32..).flat_map(|n| [2.0 * f64::from(n) + part, 2.0 * f64::from(n + 1) - part]);
+            return Ok(winding(square, parts));
+        }
         let mut found: Vec<Sample> = Vec::new();
         for stretch in &self.stretches {
             let (low, high) = range(stretch);
@@ -70,6 +81,11 @@ impl Structure<'_> {
     /// # Errors
     /// As [`branches`](Self::branches).
     pub fn cross_section(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        if let Some(square) = self.deflector.winds(self.energy) {
+            // b db = −¼ C/E (1/x² − 1/(x + 2)²) dx, x = |ψ|/π: of x = 2n + θ/π, and of 2n + 2 − θ/π, but the first terms cancel.
+            let around = 2.0 * PI - angle;
+            return Ok(0.25 * PI * square * (1.0 / (angle * angle) + 1.0 / (around * around)) / sine(angle));
+        }
         Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).sum())
     }
     /// dσ/dΩ of the projectile in the laboratory, all branches of either kind together; 0 where none leads.

@@ -113,6 +113,14 @@ impl<'a> Structure<'a> {
     /// As [`Deflector::deflect`].
     pub fn glories(&self, ticker: &mut Ticker<'_>) -> Result<Vec<Glory>> {
         let mut found = Vec::new();
+        if let Some(square) = self.deflector.winds(self.energy) {
+            let glory = |found: Branch| Glory {
+                impact_parameter: found.impact_parameter,
+                angle: found.angle,
+                derivative: found.derivative,
+            };
+            return Ok(winding(square, (1_u32..).map(f64::from)).into_iter().map(glory).collect());
+        }
         for stretch in &self.stretches {
             let (low, high) = range(stretch);
             for k in (low / PI).ceil() as i64..=(high / PI).floor() as i64 {
@@ -190,6 +198,39 @@ impl<'a> Structure<'a> {
         }
         self.sample(0.5 * (low.b + high.b), ticker)
     }
+}
+
+/// Of V = −C/r² with that C/E what leads to ψ = −πx, of increasing x, as far as float64 tells impact parameters apart; from the
+/// smallest on. b² = C/E q²/(q² − 1), q = 1 + x.
+fn winding(square: f64, parts: impl Iterator<Item = f64>) -> Vec<Branch> {
+    let mut found: Vec<Branch> = Vec::new();
+    let (mut last, mut alike) = (f64::NAN, 0);
+    for x in parts.filter(|x| *x > 0.0) {
+        let (q, less) = (1.0 + x, x * (2.0 + x));
+        let b = square.sqrt() * (q / less.sqrt());
+        // Twice where both sides lead there.
+        if x == last {
+            continue;
+        }
+        last = x;
+        if found.last().is_some_and(|outer| b >= outer.impact_parameter) {
+            // Both sides of one turn may be alike before one turn and the next are.
+            alike += 1;
+            if alike == 3 {
+                break;
+            }
+            continue;
+        }
+        alike = 0;
+        found.push(Branch {
+            impact_parameter: b,
+            angle: -PI * x,
+            complement: PI * (1.0 - x),
+            derivative: PI * b * (less / square) * (less / q),
+        });
+    }
+    found.reverse();
+    found
 }
 
 fn sampled(b: f64, found: Option<&Deflection>) -> Sample {

@@ -71,6 +71,14 @@ impl Closed {
             _ => f64::INFINITY,
         }
     }
+    /// C/E where it attracts as 1/r², so that without an end ever more turns lead to an angle: b² = C/E (1 + x)²/(x(2 + x)),
+    /// x = |ψ|/π.
+    pub(super) fn winds(self, energy: f64) -> Option<f64> {
+        match self {
+            Self::InverseSquare(c) if c < 0.0 => Some(-c / energy),
+            _ => None,
+        }
+    }
     /// Whether nothing but the angle is known.
     pub(super) fn angle_only(self) -> bool {
         matches!(self, Self::InverseFourth(_))

@@ -32,7 +32,9 @@ use std::sync::Arc;
 /// The tolerance if none is asked for: of an angle, relative to what was added up to it.
 pub const TOLERANCE: f64 = 1e-12;
 /// What can be asked for.
-pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-13..=1e-3;
+pub const TOLERANCES: core::ops::RangeInclusive<f64> = 1e-16..=1e-3;
+/// What sums in float64 come to: whoever asks for less is given this, and told so by [`Deflection::error`].
+const FINEST: f64 = 1e-14;
 /// Pairs of a chunk.
 const CHUNK: usize = 512;
 /// What became of a projectile.
@@ -126,7 +128,7 @@ impl Deflector {
                 "expected one that goes to 0 as r goes to infinity; nothing scatters off one that does not",
             ));
         }
-        Ok(Self { profile, closed, tolerance })
+        Ok(Self { profile, closed, tolerance: tolerance.max(FINEST) })
     }
     /// Where the deflection function is not smooth at an energy, ascending.
     pub fn edges(&self, energy: f64) -> Vec<Edge> {
@@ -147,6 +149,11 @@ impl Deflector {
     /// The energies at which orbits begin or end to be: the extrema of V + r V′/2.
     pub fn critical_energies(&self) -> Vec<f64> {
         self.profile.as_ref().map(Profile::critical_energies).unwrap_or_default()
+    }
+    /// C/E of V = −C/r²: the square of the impact parameter below which all are captured, and just above which ψ grows as
+    /// a power, so that the turns that lead to an angle have a sum of their own.
+    pub(in crate::scattering) fn winds(&self, energy: f64) -> Option<f64> {
+        self.closed.and_then(|closed| closed.winds(energy))
     }
     /// A length of which the impact parameters of an energy are multiples or parts: the potential's own or, if it has none
     /// (k/rⁿ), the one that it has at that energy.

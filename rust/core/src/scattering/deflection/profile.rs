@@ -12,6 +12,10 @@ use crate::words::number;
 use crate::{Error, Result};
 use std::sync::Arc;
 
+/// How far below an energy U is taken to touch it, as a part of what it is the sum of. By so little it makes no difference
+/// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
+const TOUCHES: f64 = 16.0 * f64::EPSILON;
+
 /// What is left of a force at the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Center {
@@ -96,7 +100,12 @@ impl Profile {
         }
         // Where everything repels, U passes E only behind V = E.
         if force.iter().skip(inside[0]).any(|f| *f < 0.0) {
-            made.one_turning_point_from = made.extrema.iter().fold(0.0, |most, [_, u]| u.max(most));
+            let last = made.extrema.len().saturating_sub(1);
+            let touched = made.extrema.iter().enumerate().map(|(at, [r, u])| {
+                // Not of the ends of the grid, which are no extrema.
+                if at > 0 && at < last { u + made.slack(*r) } else { *u }
+            });
+            made.one_turning_point_from = touched.fold(0.0, f64::max);
         }
         made
     }
@@ -240,14 +249,26 @@ impl Profile {
     fn circular_energy(&self, r: f64) -> f64 {
         (-0.5 * r).mul_add(self.force(r), self.value(r))
     }
-    /// The distances where h of this energy is stationary, from the outermost inward.
+    /// How far U may be off as it is rounded.
+    fn slack(&self, r: f64) -> f64 {
+        TOUCHES * (self.value(r).abs() + (0.5 * r * self.force(r)).abs())
+    }
+    /// The distances where h of this energy is stationary, from the outermost inward. Where U but touches the energy from
+    /// below, h is level and goes on as it did: that distance counts twice.
     pub(super) fn critical_radii(&self, energy: f64) -> Vec<f64> {
-        let crossing = |pair: &[[f64; 2]]| {
+        let mut found = Vec::new();
+        for (at, pair) in self.extrema.windows(2).enumerate().rev() {
             let ([low, below], [high, above]) = (pair[0], pair[1]);
-            ((below < energy) != (above < energy))
-                .then(|| bisected(low, high, |r| (self.circular_energy(r) < energy) == (below < energy)))
-        };
-        self.extrema.windows(2).rev().filter_map(crossing).collect()
+            if (below < energy) != (above < energy) {
+                found.push(bisected(low, high, |r| (self.circular_energy(r) < energy) == (below < energy)));
+            }
+            // Of three neighbours the middle is a top or a bottom.
+            let top = at > 0 && above < below && below < energy;
+            if top && energy - below <= self.slack(low) {
+                found.extend([low, low]);
+            }
+        }
+        found
     }
     /// The energy from which on h rises wherever it is positive, so that there is one turning point.
     pub(super) fn one_turning_point_from(&self) -> f64 {

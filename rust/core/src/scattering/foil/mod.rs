@@ -46,6 +46,9 @@ use std::sync::Arc;
 const EVENTS_PER_CHUNK: u64 = 2048;
 const CHUNKS_PER_THREAD: u64 = 32;
 
+/// The least energy of a beam in eV. Slower ions meet several atoms at once: W. Eckstein, *Computer Simulation of Ion-Solid
+/// Interactions* (1991), puts the end of collisions of two at some ten eV.
+const SLOWEST: f64 = 30.0;
 /// The largest energy, as a part of the ion's rest energy.
 const FASTEST: f64 = 0.1;
 
@@ -148,6 +151,15 @@ impl Run {
         positive("atomic_number", self.ion.atomic_number)?;
         positive("mass", self.ion.mass)?;
         positive("beam_energy", self.energy)?;
+        if self.energy < SLOWEST {
+            let message = format!(
+                "expected at least {} eV, below which ions meet several atoms at once, which collisions of two do not \
+                 describe; got {} eV. Energies are in eV: 1 MeV is 1e6",
+                number(SLOWEST),
+                number(self.energy)
+            );
+            return Err(Error::invalid("beam_energy", message));
+        }
         positive("lowest_energy", self.lowest)?;
         if !(self.lowest < self.energy && self.energy / self.lowest <= 1e9) {
             let message = format!(

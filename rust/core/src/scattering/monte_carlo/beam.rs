@@ -61,6 +61,8 @@ pub struct Beam {
     channels: Arc<Channels>,
     /// What is left by each channel that has events.
     exits: Arc<[Exit]>,
+    /// Whether the disc is just what turns anything: it ends where V does.
+    whole: bool,
 }
 
 impl Beam {
@@ -105,7 +107,9 @@ impl Beam {
             }
             Target::Tables(Arc::new(tables), beyond)
         };
-        Ok(Self { target, profile, ..Self::bare(collision, energy, b_max) })
+        // Where V ends as it is rounded is where the disc does.
+        let whole = (deflector.range() - b_max).abs() <= 2.0 * f64::EPSILON * b_max;
+        Ok(Self { target, profile, whole, ..Self::bare(collision, energy, b_max) })
     }
     /// On V = k/r.
     ///
@@ -147,6 +151,7 @@ impl Beam {
             strata: None,
             channels: Arc::new(Channels::elastic()),
             exits: Arc::new([Exit::Elastic(collision)]),
+            whole: false,
         }
     }
     /// Of the projectile, in the laboratory.

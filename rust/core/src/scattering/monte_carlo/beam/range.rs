@@ -109,9 +109,11 @@ impl Beam {
         }
         if low < high { (low, high) } else { (0.0, 0.0) }
     }
-    /// Whether a bin holds what is not deflected at all, in some channel.
+    /// Whether a bin holds what is not deflected at all, in some channel. A disc that ends where V does has none of those,
+    /// and leaves none out that is deflected.
     pub(in crate::scattering) fn ends_forward(&self, quantity: Quantity, from: f64, to: f64) -> bool {
         quantity != Quantity::ImpactParameter
+            && !self.whole
             && self.exits.iter().any(|exit| {
                 let ends = self.profile.energies(self.energy).map(|energy| exit.forward(quantity, energy));
                 from <= ends[0].max(ends[1]) && to >= ends[0].min(ends[1])
