@@ -330,7 +330,7 @@ def test_tables_and_functions_are_as_what_they_are_of() -> None:
         ({"impact_parameter": -1.0}, "impact_parameter", "not negative"),
         ({"impact_parameter": [np.nan]}, "impact_parameter", "finite"),
         ({"impact_parameter": [1.0, 2.0], "energy": [1.0, 2.0, 3.0]}, "impact_parameter", "shape"),
-        ({"tolerance": 1e-20}, "tolerance", "1e-13"),
+        ({"tolerance": 1e-20}, "tolerance", "1e-16"),
         ({"potential": 3.0}, "potential", "visviva.potentials"),
         ({"threads": 0}, "threads", "1"),
         ({"reduced_mass": -1.0}, "reduced_mass", "positive"),
