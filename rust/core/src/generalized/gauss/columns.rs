@@ -5,11 +5,11 @@
 //! the code four at a time, which share what is interpreted.
 
 use super::Table;
-use super::step::{Changes, LEAST_SCALE, MOST_ITERATIONS};
+use super::step::{Changes, FADING, LEAST_SCALE, MOST_ITERATIONS};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
-use crate::numerics::real::{Mask, Real};
+use crate::numerics::real::Mask;
 use crate::ode::state::State;
 use crate::ode::system::Form;
 use crate::tiered;
@@ -35,10 +35,8 @@ pub(super) struct Columns {
     places: Vec<Row>,
     /// What a number is measured by, inverted.
     pub(super) scales: Vec<Lanes>,
-    /// How large numbers were and how far they went, lately: in the steps that were kept.
+    /// How large numbers were and how far they went, lately.
     pub(super) sizes: Vec<Lanes>,
-    /// The same with the steps that are tried, which may not be kept.
-    pub(super) tried: Vec<Lanes>,
 }
 
 impl Columns {
@@ -50,15 +48,7 @@ impl Columns {
             numbers: rows.clone(),
             places: rows,
             scales: row.clone(),
-            sizes: row.clone(),
-            tried: row,
-        }
-    }
-
-    /// The steps that were tried are kept in these lanes.
-    pub(super) fn keep(&mut self, kept: Bits) {
-        for (size, &tried) in self.sizes.iter_mut().zip(&self.tried) {
-            *size = Lanes::select(kept, tried, *size);
+            sizes: row,
         }
     }
 }
@@ -80,8 +70,6 @@ pub(super) struct Work<'a> {
     /// Their beginnings, as the system counts time, and their lengths.
     pub(super) t: Lanes,
     pub(super) h: Lanes,
-    /// What is left of the sizes of the steps before them.
-    pub(super) fading: Lanes,
     /// The lanes that take one.
     pub(super) running: Bits,
 }
@@ -118,27 +106,21 @@ fn larger<V: Vector8>(x: V, most: V) -> V {
 
 /// Sets what changes are measured by, in the lanes that run.
 #[inline(always)]
-fn set_scales<V: Vector8>(
-    columns: &mut Columns,
-    count: usize,
-    y: &[Lanes],
-    (h, fading): (V, V),
-    running: Bits,
-) {
+fn set_scales<V: Vector8>(columns: &mut Columns, count: usize, y: &[Lanes], h: V, running: Bits) {
     let mut most = V::zero();
-    let sizes = columns.tried.iter_mut().zip(&columns.sizes);
-    for (((size, kept), rates), y) in sizes.zip(&columns.rates).zip(y) {
+    for ((size, rates), y) in columns.sizes.iter_mut().zip(&columns.rates).zip(y) {
         let mut largest = V::zero();
         for &rate in &rates[..count] {
             largest = larger(V::load(rate).abs(), largest);
         }
         let now = V::load(*y).abs() + (h * largest).abs();
-        let after = now.max(fading * V::load(*kept));
-        *size = V::select(running, after, V::load(*size)).store();
+        let before = V::load(*size);
+        let after = now.max(V::splat(FADING) * before);
+        *size = V::select(running, after, before).store();
         most = after.max(most);
     }
     let least = V::splat(LEAST_SCALE) * most;
-    for (scale, &size) in columns.scales.iter_mut().zip(&columns.tried) {
+    for (scale, &size) in columns.scales.iter_mut().zip(&columns.sizes) {
         let size = V::load(size).max(least);
         *scale = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
     }
@@ -147,7 +129,7 @@ fn set_scales<V: Vector8>(
 /// Iterates the stages from `columns.rates` on until nothing changes in any lane.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
-    let Work { table, form, machine, state, columns, t, h, fading, running } = work;
+    let Work { table, form, machine, state, columns, t, h, running } = work;
     let (code, registers) = machine.parts();
     let (variables, outputs, count) = (code.variables(), code.output_registers(), table.columns());
     let evaluated = form.evaluated();
@@ -223,7 +205,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         }
         if iteration == 0 {
             let y = if second_order { &y[evaluated..] } else { y };
-            set_scales(columns, count, y, (h, V::load(*fading)), *running);
+            set_scales(columns, count, y, h, *running);
         }
     }
     settled

@@ -6,7 +6,6 @@
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
 use super::columns::{advance, astray, iterate, led, led_to};
 use super::pace::{Pace, Steps, first_step};
-use super::step::faded;
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
 use crate::error::Result;
@@ -148,7 +147,7 @@ impl Trial<Lanes> for GaussEight {
         _: &Norm<Lanes>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        for size in &mut self.columns.sizes {
+        for size in self.columns.sizes.iter_mut().chain(&mut self.shadow.sizes) {
             *size = Lanes::select(fresh, Lanes::zero(), *size);
         }
         if matches!(self.steps, Steps::Chosen { .. }) {
@@ -184,10 +183,8 @@ impl Trial<Lanes> for GaussEight {
         let planned = clock.h;
         self.guess(h, running);
         let t = Lanes::splat(self.t0) + clock.elapsed;
-        let first = self.lanes(|_, pace| pace.kept == 0);
-        let fading = Lanes::select(first, Lanes::one(), faded(self.length, h));
         let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.columns);
-        let mut work = Work { table, form, machine, state, columns, t, h, fading, running };
+        let mut work = Work { table, form, machine, state, columns, t, h, running };
         let iterated = iterate(&mut work);
         advance(&work, &mut self.next);
         self.count(&iterated, running);
@@ -236,11 +233,9 @@ impl Trial<Lanes> for GaussEight {
         let asked = Lanes::zero().less(theta);
         let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
         led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.rates);
-        self.shadow.sizes.copy_from_slice(&self.columns.tried);
         let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta);
-        let fading = Lanes::one();
-        let mut work = Work { table, form, machine, state, columns, t, h, fading, running: asked };
+        let mut work = Work { table, form, machine, state, columns, t, h, running: asked };
         let iterated = iterate(&mut work);
         advance(&work, into);
         self.count(&iterated, asked);
@@ -252,7 +247,6 @@ impl Trial<Lanes> for GaussEight {
 
     fn keep(&mut self, accepted: Bits, state: &mut State<Lanes>) {
         state.take_over(&self.next, accepted);
-        self.columns.keep(accepted);
         for (before, rate) in self.before.iter_mut().flatten().zip(self.columns.rates.iter().flatten()) {
             *before = Lanes::select(accepted, *rate, *before);
         }

@@ -9,7 +9,6 @@ use super::Table;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
-use crate::numerics::real::Real;
 use crate::ode::state::State;
 use crate::ode::system::Form;
 use crate::tiered;
@@ -21,7 +20,7 @@ const ROUND_OFF: f64 = 1e-13;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
 /// What is left of a size a step later: a motion that stops at its turning points is no slow one.
-const FADING: f64 = 0.95;
+pub(super) const FADING: f64 = 0.95;
 /// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
 const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
@@ -38,10 +37,8 @@ pub(super) struct Stages {
     numbers: Vec<Lanes>,
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
-    /// How large numbers were and how far they went, lately: in the steps that were kept.
-    pub(super) sizes: Vec<f64>,
-    /// The same with the step that is tried, which may not be kept.
-    pub(super) tried: Vec<f64>,
+    /// How large numbers were and how far they went, lately.
+    sizes: Vec<f64>,
 }
 
 impl Stages {
@@ -53,22 +50,8 @@ impl Stages {
             numbers: row,
             scales: vec![0.0; evaluated],
             sizes: vec![0.0; evaluated],
-            tried: vec![0.0; evaluated],
         }
     }
-
-    /// The step that was tried is kept.
-    pub(super) fn keep(&mut self) {
-        self.sizes.copy_from_slice(&self.tried);
-    }
-}
-
-/// What is left of the sizes in a step after one of that length. Steps grow where the motion slows down, as behind a pole of the
-/// coordinates, passed closely: what is measured by the rates there has no digits left a few steps later.
-pub(super) fn faded<S: Real>(length: S, h: S) -> S {
-    let shrunk = (length / h).abs();
-    let square = shrunk * shrunk;
-    S::splat(FADING) * S::select(shrunk.less(S::one()), square * square, S::one())
 }
 
 /// What came of an iteration.
@@ -122,8 +105,6 @@ pub(super) struct Work<'a> {
     /// Its beginning, as the system counts time, and its length.
     pub(super) t: f64,
     pub(super) h: f64,
-    /// What is left of the sizes of the steps before it.
-    pub(super) fading: f64,
 }
 
 /// Σ over the stages of `weights[stage] · values[stage]`, for each stage of a row.
@@ -153,16 +134,15 @@ pub(super) fn largest(lanes: Lanes) -> f64 {
 
 /// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
-fn set_scales(stages: &mut Stages, y: &[f64], (h, fading): (f64, f64)) {
+fn set_scales(stages: &mut Stages, y: &[f64], h: f64) {
     let mut most = 0.0;
-    let sizes = stages.tried.iter_mut().zip(&stages.sizes);
-    for (((size, kept), rates), y) in sizes.zip(&stages.rates).zip(y) {
+    for ((size, rates), y) in stages.sizes.iter_mut().zip(&stages.rates).zip(y) {
         let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
-        let before = fading * *kept;
+        let before = FADING * *size;
         *size = if now > before { now } else { before };
         most = if *size > most { *size } else { most };
     }
-    for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
+    for (scale, &size) in stages.scales.iter_mut().zip(&stages.sizes) {
         let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
         *scale = if size > 0.0 { 1.0 / size } else { 0.0 };
     }
@@ -171,7 +151,7 @@ fn set_scales(stages: &mut Stages, y: &[f64], (h, fading): (f64, f64)) {
 /// Iterates the stages from `stages.rates` on until nothing changes.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
-    let Work { table, form, machine, state, stages, t, h, fading } = work;
+    let Work { table, form, machine, state, stages, t, h } = work;
     let (code, registers) = machine.parts();
     let outputs = code.output_registers();
     let evaluated = form.evaluated();
@@ -209,7 +189,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             stages.rates[i] = registers[usize::from(outputs[i])];
         }
         if iteration == 0 {
-            set_scales(stages, if second_order { &y[evaluated..] } else { y }, (work.h, *fading));
+            set_scales(stages, if second_order { &y[evaluated..] } else { y }, work.h);
         }
     }
     Iterated { converged: false, evaluations: MOST_ITERATIONS }

@@ -5,7 +5,7 @@
 //! ([`eight`](super::eight)) have, too.
 
 use super::pace::{Pace, Steps, first_step};
-use super::step::{Iterated, Stages, Work, advance, faded, iterate, largest, led};
+use super::step::{Iterated, Stages, Work, advance, iterate, largest, led};
 use super::{Method, Table};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
@@ -95,9 +95,7 @@ impl GaussStep {
 
     fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> Iterated {
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.stages);
-        // Before the first step there are no sizes.
-        let fading = if self.pace.kept == 0 { 1.0 } else { faded(self.length, h) };
-        let mut work = Work { table, form, machine, state, stages, t, h, fading };
+        let mut work = Work { table, form, machine, state, stages, t, h };
         let iterated = iterate(&mut work);
         if iterated.converged {
             advance(&work, &mut self.next);
@@ -200,11 +198,9 @@ impl Trial<f64> for GaussStep {
     ) -> Result<()> {
         let rows = self.table.at(&self.table.c.map(|c| c * theta));
         led(&rows, &self.stages.rates, &mut self.shadow.rates);
-        // Measured by what the step itself is: no reading knows of another.
-        self.shadow.sizes.copy_from_slice(&self.stages.tried);
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
-        let mut work = Work { table, form, machine, state, stages, t, h, fading: 1.0 };
+        let mut work = Work { table, form, machine, state, stages, t, h };
         let iterated = iterate(&mut work);
         advance(&work, into);
         self.evaluations += u64::from(iterated.evaluations);
@@ -218,7 +214,6 @@ impl Trial<f64> for GaussStep {
         if accepted {
             state.copy_from(&self.next);
             core::mem::swap(&mut self.before, &mut self.stages.rates);
-            self.stages.keep();
             self.length = self.length_tried;
             self.pace.kept += 1;
         }
