@@ -208,6 +208,11 @@ class Expression:
         -------
         Expression
 
+        Raises
+        ------
+        InvalidInput
+            If `other` is no finite number and no expression.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
