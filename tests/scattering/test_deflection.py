@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+
 import mpmath as mp
 import numpy as np
 import pytest
@@ -365,3 +367,28 @@ def test_what_is_asked_for_or_what_was_reached(case: tuple[object, ...], toleran
         # The tolerance is of what is added up, a few times ψ where the attraction is strong, and more of small angles.
         size = max(abs(found.angle[i]), min(1.0, 1e3 * abs(found.angle[i])))
         assert found.error[i] <= max(3e-14, 4.0 * tolerance) * size, (energy[i], b[i])
+
+
+def test_just_inside_a_soft_sphere() -> None:
+    """V = ε(1 − r/R)²: ψ → (ε/E)(4√2/3) d^(3/2) and dψ/db → −(ε/E) 2√2 d^(1/2)/R, d = 1 − b/R, relative to O(d).
+
+    d is rounded by 2⁻⁵³/d. However small it is, the quadrature takes about as long: it is not halved for rounding.
+    """
+    exponents = np.arange(4, 14)
+    b = 1.0 - 10.0**-exponents
+    d = 1.0 - b
+    found = s.deflect(V.SoftSphere(3.0, 1.0, 2), energy=2.0, impact_parameter=b)
+    allowed = 5.0 * d + 8.0 * np.finfo(float).eps / d
+    assert (np.abs(found.angle / (1.5 * 4.0 * np.sqrt(2.0) / 3.0 * d**1.5) - 1.0) < allowed).all()
+    assert (np.abs(found.derivative / (-1.5 * 2.0 * np.sqrt(2.0) * np.sqrt(d)) - 1.0) < allowed).all()
+
+    def seconds(off: float) -> float:
+        b = np.full(64, 1.0 - off) + 1e-3 * off * np.arange(64)
+        times = []
+        for _ in range(3):
+            start = time.perf_counter()
+            s.deflect(V.SoftSphere(3.0, 1.0, 2), energy=2.0, impact_parameter=b, threads=1)
+            times.append(time.perf_counter() - start)
+        return min(times)
+
+    assert seconds(1e-6) < 8.0 * seconds(1e-2)

@@ -255,7 +255,8 @@ impl Quadrature<'_> {
         let single = || {
             let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
-            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, near }
+            let curvature = pack.curvature.0[lane];
+            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
         };
         let (integral, mut error) = if sums.met.lane(lane) {
             let integral = &sums.integral;
