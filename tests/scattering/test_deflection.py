@@ -392,3 +392,27 @@ def test_just_inside_a_soft_sphere() -> None:
         return min(times)
 
     assert seconds(1e-6) < 8.0 * seconds(1e-2)
+
+
+@pytest.mark.parametrize("n", [0.5, 1.2, 1.5, 1.8, 1.9])
+@pytest.mark.parametrize("energy", [1e-4, 1.0, 1e4])
+def test_around_a_center_that_attracts(n: float, energy: float) -> None:
+    """−C/rⁿ, n < 2, b → 0: ψ → −πn/(2 − n), and r₀ → (b²E/C)^(1/(2−n)), however small b is.
+
+    In units of the distance where |V| = E both are off by no more than a multiple of b.
+    """
+    scale = (1.0 / energy) ** (1.0 / n)
+    b = 10.0 ** np.array(
+        [-300.0, -100.0, -50.0, -30.0, -25.0, -22.0, -18.5, -18.0, -17.0, -15.0, -12.0, -9.0, -6.0, -4.0]
+    )
+    found = s.deflect(V.PowerLaw(-1.0, n), energy=energy, impact_parameter=b * scale)
+    assert (found.status == s.DeflectionStatus.SCATTERED).all()
+    limit = -np.pi * n / (2.0 - n)
+    slope = 4.0 * max(1.0, np.abs(limit)) ** 2
+    assert (np.abs(found.angle - limit) <= slope * b + 2.0 * found.error).all()
+    assert (found.error <= slope * b + 1e-9).all()
+    nearest = (2.0 / (2.0 - n)) * np.log10(b)
+    known = nearest > -290.0  # else it is below what float64 has
+    r0 = found.closest_approach[known] / scale
+    assert (np.abs(np.log10(r0) - nearest[known]) <= 1e-9 + b[known]).all()
+    assert (found.closest_approach[~known] < 1e-280 * scale).all()
