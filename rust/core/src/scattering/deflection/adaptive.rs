@@ -33,6 +33,8 @@ const MEAN: [[f64; 2]; 4] = [
 const LEFT_OUT: f64 = 1e-3;
 /// Of a sum of so many terms.
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
+/// What halving cannot mend, in units of what the rounding of distances does.
+const NOISE: f64 = 4.0 * f64::EPSILON;
 /// Where it is at most.
 const FARTHEST: f64 = 750.0;
 
@@ -46,8 +48,27 @@ pub(super) struct Pair {
     pub(super) force: f64,
     /// b/r₀.
     pub(super) root: f64,
+    /// r₀² V″(r₀)/E.
+    pub(super) curvature: f64,
     /// Up to this w the mean of the force tells what V loses.
     pub(super) near: f64,
+}
+
+impl Pair {
+    /// What the rounding of distances leaves of each integral, however fine the intervals: each r is off by half a unit, so
+    /// that V/E is by that times rF/E, and rF/E by that times r²V″/E. Where V ends softly both are large against V.
+    fn noise(&self, integrand: Integrand) -> [f64; INTEGRALS] {
+        if integrand == Integrand::Turning {
+            return [0.0; INTEGRALS];
+        }
+        // Of 1/√G, G as large as (b/r₀)² where that is large.
+        let most = self.root.max(1.0);
+        // A difference at w is divided by w² from where it is no mean any more: ∫ dw/w².
+        let share = NOISE / (most * most * most * self.near);
+        let (pull, bend) = (self.force.abs(), self.curvature.abs());
+        let of_value = share * pull;
+        [of_value, share * (pull * pull + self.root * self.root * (bend + pull)), of_value]
+    }
 }
 
 /// How far out the mean of four forces has all digits: to where the force has changed little, and V has no edge.
@@ -103,6 +124,7 @@ pub(super) fn integrate(
     marks.retain(|w| *w <= farthest);
     marks.sort_by(f64::total_cmp);
     marks.dedup();
+    let noise = pair.noise(integrand);
     let mut intervals = Vec::new();
     for pair_of_marks in marks.windows(2) {
         let parts = ((pair_of_marks[1] - pair_of_marks[0]) / LONGEST).ceil().max(1.0);
@@ -115,7 +137,10 @@ pub(super) fn integrate(
     }
     loop {
         let (sum, error, size) = totals(&intervals);
-        let share = |i: usize| if size[i] > 0.0 { error[i] / size[i] } else { 0.0 };
+        let share = |i: usize| {
+            let settled = error[i] <= noise[i] || size[i] <= 0.0;
+            if settled { 0.0 } else { error[i] / size[i] }
+        };
         // The angle first: what is far out in the others is rounded, and would take all intervals.
         let open = |i: &usize| share(*i) > tolerance * LOOSER[*i];
         let Some(worst) = (0..wanted).find(open).filter(|_| intervals.len() < MOST) else {
@@ -186,7 +211,7 @@ fn integrands(
         let (v, u) = (value[row].0[lane] / pair.energy, node.ratio);
         let pull = distance[row].0[lane] * force[row].0[lane] / pair.energy;
         let squared = u * u;
-        let excess = mean[k].map_or((x * squared - v) * node.weight, |mean| {
+        let excess = mean[k].map_or((x * squared - v) * node.weight, |[mean, _]| {
             // (V₀ − V)/tanh² w is the mean force times r₀ cosh² w/(1 + cosh w).
             mean * (node.cosh * node.cosh / (1.0 + node.cosh)) - x
         });
@@ -206,7 +231,11 @@ fn integrands(
             c3.mul_add(squared, c2).mul_add(squared, c1) * squared - p
         };
         let below = if comparison.strong { -off } else { p };
-        let slope = -(y * below) - square * (bend(pair, places[k], pull, node) / (g * root));
+        let bent = mean[k].map_or_else(
+            || bend(pair, places[k], pull, node),
+            |[_, turn]| turn * (node.cosh * node.cosh / (1.0 + node.cosh)) + y,
+        );
+        let slope = -(y * below) - square * (bent / (g * root));
         [off * u, slope * u, (p - 0.5 * x * squared / (compared * compared)) * node.cosh]
     })
 }
@@ -216,14 +245,14 @@ fn bend(pair: &Pair, w: f64, pull: f64, node: Node) -> f64 {
     if w > 0.0 { (pull - pair.force * node.ratio * node.ratio) * node.weight } else { 0.0 }
 }
 
-/// r₀/E times the mean force between r₀ and each near place; nothing for others.
-fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<f64>; POINTS] {
+/// r₀/E times the means of F and of d(rF)/dr between r₀ and each near place; nothing for others.
+fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Option<[f64; 2]>; POINTS] {
     let mut means = [None; POINTS];
     if places[0] >= pair.near {
         return means;
     }
     let mut rows = [Lanes([pair.turning; WIDTH]); POINTS * 4 / WIDTH];
-    let mut force = rows;
+    let (mut value, mut force, mut curvature) = (rows, rows, rows);
     for (k, w) in places.iter().enumerate() {
         let half = sinh(0.5 * w);
         let way = 2.0 * half * half;
@@ -232,11 +261,17 @@ fn mean_forces(profile: &Profile, pair: &Pair, places: &[f64; POINTS]) -> [Optio
             rows[at / WIDTH].0[at % WIDTH] = (pair.turning * place).mul_add(way, pair.turning);
         }
     }
-    profile.forces(&rows, &mut force);
+    profile.rows(&rows, &mut value, &mut force, &mut curvature);
     for (k, w) in places.iter().enumerate() {
-        let one = |i: usize| MEAN[i][1] * force[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
+        let of = |all: &[Lanes], i: usize| all[(4 * k + i) / WIDTH].0[(4 * k + i) % WIDTH];
+        let one = |i: usize| MEAN[i][1] * of(&force, i);
+        let turn = |i: usize| MEAN[i][1] * (of(&force, i) - of(&rows, i) * of(&curvature, i));
         if *w < pair.near {
-            means[k] = Some(pair.turning / pair.energy * ((one(0) + one(3)) + (one(1) + one(2))));
+            let scale = pair.turning / pair.energy;
+            means[k] = Some([
+                scale * ((one(0) + one(3)) + (one(1) + one(2))),
+                scale * ((turn(0) + turn(3)) + (turn(1) + turn(2))),
+            ]);
         }
     }
     means

@@ -1,6 +1,7 @@
 //! V on a grid of distances, sixteen to an octave, so that the place of a distance is read off its bits: where a turning
 //! point is bracketed, and from where on a potential is too faint to count.
 
+use crate::numerics::elementary::{Exponential, ln};
 use crate::numerics::lanes::WIDTH;
 
 /// Octaves of the grid on either side of the unit of length.
@@ -71,6 +72,14 @@ impl Grid {
     /// The largest |V| (0) or |r dV/dr| (1) at this distance and beyond, or a little more.
     pub(super) fn beyond(&self, r: f64, which: usize) -> f64 {
         self.beyond[if r < radius(0) { 0 } else { place(r) }][which]
+    }
+    /// The distance within which |V| comes to an energy, V going as 1/rⁿ with that n inward of the grid.
+    pub(super) fn reach(&self, energy: f64, power: f64) -> f64 {
+        let short_of = self.beyond.partition_point(|[value, _]| *value >= energy);
+        if short_of > 0 {
+            return radius((short_of - 1).min(POINTS - 1));
+        }
+        radius(0) * Exponential::exp(ln(self.beyond[0][0] / energy) / power)
     }
     /// The places of the grid at which h first comes to b², of pairs whose h rises wherever it is positive; zero for those
     /// that turn beyond the grid.

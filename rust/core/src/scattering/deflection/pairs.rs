@@ -25,6 +25,11 @@ const NEAR_BARRIER: f64 = 0.003;
 const CANCELLED: f64 = 0.05;
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
 const TINY: f64 = 1.0 / (1 << 26) as f64;
+/// The logarithm of 1e-70, the least turning point beside a center that attracts, as a part of where |V| is the energy: nearer
+/// to it r² V″ and (b/r₀)³ leave the range of numbers, and what remains is a wrong number.
+const NEAREST: f64 = -161.18;
+/// And where b is a smaller part of that it is as good as 0.
+const NOTHING: f64 = 1.0 / (1_u64 << 60) as f64;
 /// What nodes leave out, as a part of the tolerance.
 const LEFT_OUT: f64 = 0.05;
 
@@ -69,8 +74,9 @@ impl Quadrature<'_> {
             self.integrate(&turned, &turning, &mut found, ticker)?;
         }
         for (place, found) in found.iter_mut().enumerate() {
-            if b[place] == 0.0 && found.status != Status::Captured {
-                self.head_on(profile.take_energy(energy[place]), found);
+            let (e, b) = (profile.take_energy(energy[place]), profile.take_length(b[place]));
+            if b <= self.as_head_on(e).0 && found.status != Status::Captured {
+                self.head_on(e, b, found);
             }
             found.closest_approach = profile.give_length(found.closest_approach);
             if self.all {
@@ -113,7 +119,8 @@ impl Quadrature<'_> {
                 let (place, e, b) = (from + at, energies[at], impacts[at]);
                 profile.check_end(e, self.tolerance)?;
                 let next = turning.places.len();
-                if cells[at] > 0 && b > 0.0 && e >= simple_from {
+                let (head_on, tiny) = self.as_head_on(e);
+                if cells[at] > 0 && b > head_on && e >= simple_from {
                     let cell = profile.grid().cell(cells[at]);
                     profile.check_start(e, b, cell)?;
                     turned.put(next, e, b, cell, profile.grid().around(cells[at]));
@@ -124,9 +131,13 @@ impl Quadrature<'_> {
                 }
                 let mut b = b;
                 let mut way = critical.way(profile, e, b);
+                if b > 0.0 && b <= head_on {
+                    let straight = critical.way(profile, e, 0.0);
+                    way = if matches!(straight, Way::Bounces(_)) { straight } else { way };
+                }
                 found[place].turning_points = critical.turning_points(profile, e, b);
                 if matches!(way, Way::Through | Way::Bounces(_)) {
-                    b = TINY;
+                    b = tiny;
                     way = critical.way(profile, e, b);
                 }
                 if let Way::Turns { bracket, barriers } = way {
@@ -255,7 +266,8 @@ impl Quadrature<'_> {
         let single = || {
             let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
-            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, near }
+            let curvature = pack.curvature.0[lane];
+            Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
         };
         let (integral, mut error) = if sums.met.lane(lane) {
             let integral = &sums.integral;
@@ -297,8 +309,23 @@ impl Quadrature<'_> {
         (whole.integral, whole.error)
     }
 
-    /// b = 0, found at a tiny one where the center is open: through it, or round a point that attracts.
-    fn head_on(&self, energy: f64, found: &mut Deflection) {
+    /// The impact parameter up to which a pair is taken for one that comes head-on, and the one at which that is found.
+    #[inline(always)]
+    fn as_head_on(&self, energy: f64) -> (f64, f64) {
+        match self.profile.center() {
+            Center::Attractive(power) if power < 2.0 => self.around(energy, power),
+            _ => (0.0, TINY),
+        }
+    }
+    /// The same at a center that attracts as 1/rⁿ, where r₀ goes as b^(2/(2−n)) and the rest as the first power of b.
+    fn around(&self, energy: f64, power: f64) -> (f64, f64) {
+        let least = Exponential::exp(0.5 * (2.0 - power) * NEAREST);
+        let reach = self.profile.grid().reach(energy, power);
+        (reach * least.max(NOTHING), (reach.min(1.0) * TINY).max(reach * least))
+    }
+
+    /// Up to that impact parameter, found at a tiny one where the center is open: through it, or round a point that attracts.
+    fn head_on(&self, energy: f64, b: f64, found: &mut Deflection) {
         let mut critical = Critical::default();
         match critical.way(self.profile, energy, 0.0) {
             Way::Through => {
@@ -306,9 +333,17 @@ impl Quadrature<'_> {
                 (found.angle, found.complement, found.closest_approach) = (0.0, PI, 0.0);
             }
             Way::Bounces(power) => {
-                found.angle = -PI * power / (2.0 - power);
-                (found.complement, found.closest_approach) = (PI - found.angle.abs(), 0.0);
+                // Between the limit of b = 0 and what was found a straight line.
+                let limit = -PI * power / (2.0 - power);
+                let share = b / self.as_head_on(energy).1;
+                let off = (found.angle - limit) * share;
+                found.angle = limit + off;
+                found.complement = PI - found.angle.abs();
+                found.error = found.error.max(off.abs());
+                found.closest_approach *=
+                    if b > 0.0 { Exponential::exp(ln(share) * 2.0 / (2.0 - power)) } else { 0.0 };
             }
+            _ if b > 0.0 => {}
             _ => (found.angle, found.complement) = (PI, 0.0),
         }
         if !self.all {

@@ -158,6 +158,8 @@ fn improve<V: Vector8>(turned: &mut Turned, from: usize, to: usize) {
         let pull = at * V::load(turned.force[row]);
         let (rest, slope, share) = rest(energy, b, at, V::load(turned.value[row]), pull);
         let bend = -(at * at * V::load(turned.curvature[row]) / energy) - V::splat(6.0) * share;
+        // Beyond the range of numbers it would end the steps: without it they are Newton's.
+        let bend = V::select(bend.abs().less_equal(V::splat(f64::MAX)), bend, zero);
         let going = turned.going[row];
         let beyond = zero.less_equal(rest);
         let low = V::select(going.and(beyond.not()), at, V::load(turned.low[row]));
