@@ -6,9 +6,9 @@ else, so that every text is escaped: names of bodies come from whoever wrote the
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import Field, dataclass, fields
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
@@ -73,9 +73,11 @@ class Record(Shown):
 
     __slots__ = ()
 
+    # What says that it is one.
+    __dataclass_fields__: ClassVar[dict[str, Field[Any]]]
+
     def _told(self) -> list[tuple[str, str]]:
-        every = fields(self)  # type: ignore[arg-type]
-        shown = (field.name for field in every if field.repr and not field.name.startswith("_"))
+        shown = (field.name for field in fields(self) if field.repr and not field.name.startswith("_"))
         return [(name, briefly(getattr(self, name))) for name in shown]
 
     def __repr__(self) -> str:

@@ -285,16 +285,17 @@ def test_bodies_that_are_integrated_apart_are_brought_to_the_event() -> None:
     assert stop.t[-1] <= stop.final.t0 < stop.t[-1] + 0.1
 
 
-@pytest.mark.parametrize("massive", [1, 2, 3, 8, 9])
-def test_series_see_massless_bodies_move(massive: int) -> None:
+@pytest.mark.parametrize(("massive", "massless"), [(1, 9), (2, 9), (3, 9), (8, 9), (9, 9), (3, 300), (9, 300)])
+@pytest.mark.parametrize("height", [0.0, 0.1])
+def test_series_see_massless_bodies_move(massive: int, massless: int, height: float) -> None:
     """Bodies that are looked at together are on one step, where massless ones stood still in series, with status OK."""
     rng = np.random.default_rng(massive)
     angle = np.linspace(0.0, 2.0 * np.pi, massive, endpoint=False)
-    radius = np.concatenate([[0.0], np.linspace(8.0, 12.0, massive - 1), rng.uniform(1.0, 2.0, 9)])
-    angle = np.concatenate([angle, rng.uniform(0.0, 2.0 * np.pi, 9)])
-    mass = np.concatenate([[1.0], np.full(massive - 1, 1e-3), np.zeros(9)])
+    radius = np.concatenate([[0.0], np.linspace(8.0, 12.0, massive - 1), rng.uniform(1.0, 2.0, massless)])
+    angle = np.concatenate([angle, rng.uniform(0.0, 2.0 * np.pi, massless)])
+    mass = np.concatenate([[1.0], np.full(massive - 1, 1e-3), np.zeros(massless)])
     speed = 1.1 * np.divide(1.0, np.sqrt(radius), where=radius > 0, out=np.zeros(len(radius)))
-    position = radius[:, None] * np.stack([np.cos(angle), np.sin(angle), 0.1 * np.cos(angle)], axis=1)
+    position = radius[:, None] * np.stack([np.cos(angle), np.sin(angle), height * np.cos(angle)], axis=1)
     velocity = speed[:, None] * np.stack([-np.sin(angle), np.cos(angle), 0.0 * angle], axis=1)
     scene = vv.Scene(vv.Particles(mass, position, velocity), vv.Gravity(G=1.0))
     last = len(mass) - 1
@@ -311,8 +312,9 @@ def test_series_see_massless_bodies_move(massive: int) -> None:
     # The tolerance, magnified by some turns.
     np.testing.assert_allclose(table.t, other.t, atol=1e-8)
     copies = scene.ensemble(velocity=velocity * np.array([1.0, 1.01, 0.99])[:, None, None])
-    together = copies.run(t=20.0, method="taylor", rtol=1e-12, events=asked)
-    np.testing.assert_array_equal(together[0].events.t, table.t)
+    for threads in (1, 3):
+        together = copies.run(t=20.0, method="taylor", rtol=1e-12, events=asked, threads=threads)
+        np.testing.assert_array_equal(together[0].events.t, table.t)
 
 
 @pytest.mark.parametrize("massive", [2, 20])

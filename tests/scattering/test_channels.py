@@ -220,62 +220,6 @@ def test_at_the_threshold_both_go_ahead_together() -> None:
     assert events["recoil_energy"] == pytest.approx(np.full(1000, 1.25 * 4.0 / 25.0), rel=1e-15)
 
 
-@pytest.mark.parametrize(
-    ("changes", "lowest"),
-    [
-        ({"beam_energy": 1.2}, "1.2"),
-        ({"beam_energy": s.Spectrum([3.0, 1.0, 2.0], [1.0, 1e-3, 1.0])}, "1.0"),
-        ({"beam_energy": 1.3, "energy_spread": Spread.uniform(0.1)}, "1.2"),
-        ({"beam_energy": 1.3, "energy_spread": 0.01}, "1.24"),
-    ],
-)
-def test_a_closed_channel_is_refused_with_its_threshold(changes: dict[str, object], lowest: str) -> None:
-    channels = [Channel(0.5, 0.1), Channel(-1.0, 0.0)]
-    with pytest.raises(vv.errors.InvalidInput, match=r"threshold, 1\.25, that q_value = -1\.0 of channel 1") as refused:
-        run(channels=channels, **changes)
-    assert refused.value.argument == "channels"
-    assert f"got {lowest}" in str(refused.value)
-
-
-@pytest.mark.parametrize(
-    ("channels", "argument"),
-    [
-        ([Channel(1.0, 0.6), Channel(2.0, 0.5)], "channels"),
-        ([Channel(1.0, 0.01)] * 65, "channels"),
-        ("elastic", "channels"),
-        (3, "channels"),
-        (Channel(1.0, 0.5, (0.1, 0.2)), "products"),
-    ],
-)
-def test_bad_channels_are_refused_by_name(channels: object, argument: str) -> None:
-    with pytest.raises(vv.errors.InvalidInput) as refused:
-        run(channels=channels)
-    assert refused.value.argument == argument
-
-
-@pytest.mark.parametrize(
-    ("values", "argument"),
-    [
-        ((np.nan, 0.5), "q_value"),
-        ((1.0, -0.1), "probability"),
-        ((1.0, 1.5), "probability"),
-        ((1.0, ([0.0, 1.0], [0.5])), "probability"),
-        ((1.0, ([0.0, 1.0], [0.5, 1.5])), "probability"),
-        ((1.0, ([1.0, 0.0], [0.5, 0.5])), "probability"),
-        ((1.0, ([-1.0, 0.0], [0.5, 0.5])), "probability"),
-        ((1.0, ([0.0], [0.5])), "probability"),
-        ((1.0, (0.5,)), "probability"),
-        ((1.0, 0.5, (1.0,)), "products"),
-        ((1.0, 0.5, (1.0, 0.0)), "products"),
-        ((1.0, 0.5, (1.0, np.inf)), "products"),
-    ],
-)
-def test_what_is_no_channel_is_refused(values: tuple[object, ...], argument: str) -> None:
-    with pytest.raises(vv.errors.InvalidInput) as refused:
-        Channel(*values)
-    assert refused.value.argument == argument
-
-
 VARYING = (Channel(-1.5, ([0.0, 0.5, 1.5], [0.8, 0.6, 0.0])), Channel(0.75, 0.2, (2.0, 3.0)))
 
 

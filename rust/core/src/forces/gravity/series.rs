@@ -18,16 +18,16 @@ use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::ode::series::Jet;
 
-mod beside;
 mod each;
 mod pair;
 pub mod passive;
 mod ring;
 mod rows;
-use beside::Beside;
+mod with_massless;
 pub use each::EachPair;
 pub use ring::RingPairs;
 use rows::RowPairs;
+use with_massless::WithMassless;
 
 /// Room for so many orders.
 const ORDERS: usize = 24;
@@ -48,7 +48,7 @@ pub fn attraction(
     if active > RING_MAX {
         Box::new(RowPairs::new(shape, strength, softening))
     } else if active < system.bodies.len() {
-        Box::new(Beside::new(shape, strength, softening))
+        Box::new(WithMassless::new(shape, strength, softening))
     } else {
         Box::new(RingPairs::new(shape, &strength, softening))
     }

@@ -10,12 +10,12 @@ use crate::ode::series::Jet;
 use crate::parallel::Ticker;
 
 /// The massive bodies pull each other with the bits that they have alone, and then whoever stands beside them.
-pub(super) struct Beside {
+pub(super) struct WithMassless {
     massive: RingPairs,
     massless: RowPairs,
 }
 
-impl Beside {
+impl WithMassless {
     /// From the `G·m` of the massive bodies, which come first; at most [`RING_MAX`](super::RING_MAX) of them.
     pub(super) fn new(shape: Shape, strength: Vec<f64>, softening: f64) -> Self {
         let massive = RingPairs::new(shape, &strength, softening);
@@ -23,7 +23,7 @@ impl Beside {
     }
 }
 
-impl Series<Lanes> for Beside {
+impl Series<Lanes> for WithMassless {
     fn coefficient(
         &mut self,
         n: usize,
