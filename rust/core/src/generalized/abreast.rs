@@ -373,6 +373,8 @@ impl<'a> Abreast<'a> {
                     slot.solution.evaluations = now - slot.before;
                 }
                 if lost.is_some() {
+                    // As in a run alone: nothing is known beyond.
+                    slot.solution.reached = outputs[slot.next_output];
                     self.end(lane, Ending::StepTooSmall, lost, ticker);
                 } else {
                     slot.write(outputs[slot.next_output], &self.between, lane);

@@ -262,7 +262,7 @@ struct Counted<'a> {
     steps: u64,
     /// The longest step.
     last: f64,
-    /// Where the last one ended.
+    /// Where the last one ended, or could not be read.
     reached: f64,
     /// The most steps.
     most: u64,
@@ -283,7 +283,10 @@ impl Recorder for Counted<'_> {
         self.last = if length > self.last { length } else { self.last };
         let stop = self.watch.look(&mut Stepped(step))?;
         self.reached = stop.unwrap_or(step.to);
-        self.table.keep(step, stop)?;
+        self.table.keep(step, stop).inspect_err(|_| {
+            // Where a state inside the step is not found, nothing is known beyond.
+            self.reached = self.table.next_output().unwrap_or(self.reached);
+        })?;
         if stop.is_none() && !self.sticking.is_empty() {
             self.sticking.look(step.to, step.end())?;
         }

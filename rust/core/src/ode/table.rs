@@ -96,6 +96,11 @@ impl Recorder for Table<'_> {
 }
 
 impl Table<'_> {
+    /// The output that is to be written next, if outputs were asked for.
+    pub fn next_output(&self) -> Option<f64> {
+        self.outputs?.get(self.next_output).copied()
+    }
+
     /// Writes what a step adds, up to its end or to where the run ends in it.
     ///
     /// # Errors

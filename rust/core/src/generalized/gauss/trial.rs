@@ -18,7 +18,7 @@ use crate::ode::trial::{Cost, Trial};
 use crate::parallel::Ticker;
 
 /// What ends a run whose state between nodes is not found.
-pub(super) const NO_SHADOW: &str = "the stages of a shadow step do not converge";
+pub(super) const NO_SHADOW: &str = "the stages of the state between two steps do not converge";
 
 /// What ends a run with equal steps.
 pub(super) fn no_convergence(h: f64) -> String {
