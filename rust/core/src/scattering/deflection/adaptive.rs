@@ -35,6 +35,11 @@ const LEFT_OUT: f64 = 1e-3;
 const ROUNDING: f64 = 4.0 * f64::EPSILON;
 /// What halving cannot mend, in units of what the rounding of distances does.
 const NOISE: f64 = 4.0 * f64::EPSILON;
+/// Where V ends softly beside the turning point, what it lost there falls as 1/w² from a peak that no point of a long interval
+/// meets: intervals beyond are no longer than this many times their beginning.
+const GRADED: f64 = 8.0;
+/// So near is beside it.
+const BESIDE: f64 = 1e-2;
 /// Where it is at most.
 const FARTHEST: f64 = 750.0;
 
@@ -121,6 +126,9 @@ pub(super) fn integrate(
     let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
     let mut marks = vec![0.0, farthest];
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
+    if pair.near < BESIDE {
+        marks.extend(core::iter::successors(Some(pair.near), |w| Some(GRADED * w)).take_while(|w| *w < 1.0));
+    }
     marks.retain(|w| *w <= farthest);
     marks.sort_by(f64::total_cmp);
     marks.dedup();
