@@ -29,9 +29,9 @@ FUNCTIONS = (
 )  # fmt: skip
 #: What leaps, and what to write instead.
 _LEAPS = {
-    "floor_divide": "x // y leaps",
+    "floor_divide": "x // y leaps; write x / y, or end the run by an event where parts differ, and go on from there",
     "remainder": "x % y leaps; where it is to wrap an angle, leave it: sines and cosines do so themselves",
-    "divmod": "divmod leaps",
+    "divmod": "divmod leaps; end the run by an event where parts differ, and go on from there",
     "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width)",
     "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2",
 }

@@ -5,11 +5,12 @@
 //! the code four at a time, which share what is interpreted.
 
 use super::Table;
-use super::step::{Changes, FADING, LEAST_SCALE, MOST_ITERATIONS};
+use super::pace::FADING;
+use super::step::{Changes, LEAST_SCALE, MOST_ITERATIONS};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
-use crate::numerics::real::Mask;
+use crate::numerics::real::{Mask, Real};
 use crate::ode::state::State;
 use crate::ode::system::Form;
 use crate::tiered;
@@ -37,6 +38,8 @@ pub(super) struct Columns {
     pub(super) scales: Vec<Lanes>,
     /// How large numbers were and how far they went, lately.
     pub(super) sizes: Vec<Lanes>,
+    /// The same with the steps that are tried.
+    pub(super) tried: Vec<Lanes>,
 }
 
 impl Columns {
@@ -48,7 +51,16 @@ impl Columns {
             numbers: rows.clone(),
             places: rows,
             scales: row.clone(),
-            sizes: row,
+            sizes: row.clone(),
+            tried: row,
+        }
+    }
+
+    /// Remembers how large numbers were in the steps that were tried, as for one trajectory.
+    pub(super) fn remember(&mut self, tried: Bits, kept: Bits) {
+        for (size, &most) in self.sizes.iter_mut().zip(&self.tried) {
+            let beside = Lanes::select(kept, most, most.max(Lanes::splat(FADING) * *size));
+            *size = Lanes::select(tried, beside, *size);
         }
     }
 }
@@ -70,6 +82,8 @@ pub(super) struct Work<'a> {
     /// Their beginnings, as the system counts time, and their lengths.
     pub(super) t: Lanes,
     pub(super) h: Lanes,
+    /// What is left of the sizes of the steps before them.
+    pub(super) fading: Lanes,
     /// The lanes that take one.
     pub(super) running: Bits,
 }
@@ -106,21 +120,29 @@ fn larger<V: Vector8>(x: V, most: V) -> V {
 
 /// Sets what changes are measured by, in the lanes that run.
 #[inline(always)]
-fn set_scales<V: Vector8>(columns: &mut Columns, count: usize, y: &[Lanes], h: V, running: Bits) {
+fn set_scales<V: Vector8>(
+    columns: &mut Columns,
+    count: usize,
+    y: &[Lanes],
+    (h, fading): (V, V),
+    running: Bits,
+) {
     let mut most = V::zero();
-    for ((size, rates), y) in columns.sizes.iter_mut().zip(&columns.rates).zip(y) {
+    let sizes = columns.tried.iter_mut().zip(&columns.sizes);
+    for (((size, known), rates), y) in sizes.zip(&columns.rates).zip(y) {
         let mut largest = V::zero();
         for &rate in &rates[..count] {
             largest = larger(V::load(rate).abs(), largest);
         }
         let now = V::load(*y).abs() + (h * largest).abs();
-        let before = V::load(*size);
-        let after = now.max(V::splat(FADING) * before);
-        *size = V::select(running, after, before).store();
+        // What overflows in a step that is too long is no size.
+        let now = V::select(now.less(V::splat(f64::INFINITY)), now, V::zero());
+        let after = now.max(fading * V::load(*known));
+        *size = V::select(running, after, V::load(*size)).store();
         most = after.max(most);
     }
     let least = V::splat(LEAST_SCALE) * most;
-    for (scale, &size) in columns.scales.iter_mut().zip(&columns.sizes) {
+    for (scale, &size) in columns.scales.iter_mut().zip(&columns.tried) {
         let size = V::load(size).max(least);
         *scale = V::select(V::zero().less(size), V::one() / size, V::zero()).store();
     }
@@ -129,7 +151,7 @@ fn set_scales<V: Vector8>(columns: &mut Columns, count: usize, y: &[Lanes], h: V
 /// Iterates the stages from `columns.rates` on until nothing changes in any lane.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
-    let Work { table, form, machine, state, columns, t, h, running } = work;
+    let Work { table, form, machine, state, columns, t, h, fading, running } = work;
     let (code, registers) = machine.parts();
     let (variables, outputs, count) = (code.variables(), code.output_registers(), table.columns());
     let evaluated = form.evaluated();
@@ -205,7 +227,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Settled {
         }
         if iteration == 0 {
             let y = if second_order { &y[evaluated..] } else { y };
-            set_scales(columns, count, y, h, *running);
+            set_scales(columns, count, y, (h, V::load(*fading)), *running);
         }
     }
     settled

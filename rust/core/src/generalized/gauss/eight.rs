@@ -147,7 +147,7 @@ impl Trial<Lanes> for GaussEight {
         _: &Norm<Lanes>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        for size in self.columns.sizes.iter_mut().chain(&mut self.shadow.sizes) {
+        for size in &mut self.columns.sizes {
             *size = Lanes::select(fresh, Lanes::zero(), *size);
         }
         if matches!(self.steps, Steps::Chosen { .. }) {
@@ -183,8 +183,10 @@ impl Trial<Lanes> for GaussEight {
         let planned = clock.h;
         self.guess(h, running);
         let t = Lanes::splat(self.t0) + clock.elapsed;
+        let fading =
+            Lanes(core::array::from_fn(|lane| self.paces[lane].fading(self.length.0[lane], h.0[lane])));
         let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.columns);
-        let mut work = Work { table, form, machine, state, columns, t, h, running };
+        let mut work = Work { table, form, machine, state, columns, t, h, fading, running };
         let iterated = iterate(&mut work);
         advance(&work, &mut self.next);
         self.count(&iterated, running);
@@ -201,6 +203,7 @@ impl Trial<Lanes> for GaussEight {
                 }
             }
         }
+        self.columns.remember(running, errors.less_equal(Lanes::zero()));
         let outcome = Lanes::settle(clock, running, errors, &Rule::new(1, Lanes::splat(f64::INFINITY)));
         self.length_tried = h;
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
@@ -233,9 +236,11 @@ impl Trial<Lanes> for GaussEight {
         let asked = Lanes::zero().less(theta);
         let fractions = self.table.c.0.map(|c| Lanes::splat(c) * theta);
         led_to(self.table, &fractions, asked, &self.columns.rates, &mut self.shadow.rates);
+        self.shadow.sizes.copy_from_slice(&self.columns.tried);
         let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta);
-        let mut work = Work { table, form, machine, state, columns, t, h, running: asked };
+        let fading = Lanes::one();
+        let mut work = Work { table, form, machine, state, columns, t, h, fading, running: asked };
         let iterated = iterate(&mut work);
         advance(&work, into);
         self.count(&iterated, asked);

@@ -22,6 +22,9 @@ const STEPS_BEFORE_HOLDING: u64 = 10;
 /// The first step, as a fraction of the time in which numbers change by as much as they are.
 const FIRST: f64 = 0.05;
 
+/// What is left of a size a step later: a motion that stops at its turning points is no slow one.
+pub(super) const FADING: f64 = 0.95;
+
 /// How steps are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Steps {
@@ -56,6 +59,15 @@ impl Pace {
             Steps::Equal(_) => !self.converged,
             Steps::Chosen { delta, .. } => !self.converged || self.delta > BAND * delta,
         }
+    }
+
+    /// What is left of the sizes of numbers in a step of length `h` after a kept one of length `last`.
+    ///
+    /// Steps grow where the motion slows down, as behind a pole of the coordinates, passed closely, where velocities go as the
+    /// inverse square of the time since: what is measured by those there has no digits left a few steps later.
+    pub(super) fn fading(&self, last: f64, h: f64) -> f64 {
+        let grown = (last / h).abs();
+        if self.kept > 0 && grown < 1.0 { FADING * grown * grown * grown } else { FADING }
     }
 
     /// What the next step is multiplied with to bring δ to what it should be.

@@ -6,6 +6,7 @@
 //! E. Hairer, C. Lubich & G. Wanner, *Geometric Numerical Integration* (2006), VIII.6.
 
 use super::Table;
+use super::pace::FADING;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
@@ -19,8 +20,6 @@ pub(super) const MOST_ITERATIONS: u32 = 60;
 const ROUND_OFF: f64 = 1e-13;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
-/// What is left of a size a step later: a motion that stops at its turning points is no slow one.
-pub(super) const FADING: f64 = 0.95;
 /// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
 const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
@@ -38,7 +37,9 @@ pub(super) struct Stages {
     /// What one is measured by, inverted.
     pub(super) scales: Vec<f64>,
     /// How large numbers were and how far they went, lately.
-    sizes: Vec<f64>,
+    pub(super) sizes: Vec<f64>,
+    /// The same with the step that is tried.
+    pub(super) tried: Vec<f64>,
 }
 
 impl Stages {
@@ -50,6 +51,16 @@ impl Stages {
             numbers: row,
             scales: vec![0.0; evaluated],
             sizes: vec![0.0; evaluated],
+            tried: vec![0.0; evaluated],
+        }
+    }
+
+    /// Remembers how large numbers were in the step that was tried. One that was not kept leaves what it met beside what was
+    /// known: a motion from rest has no other size at first.
+    pub(super) fn remember(&mut self, kept: bool) {
+        for (size, &tried) in self.sizes.iter_mut().zip(&self.tried) {
+            let before = FADING * *size;
+            *size = if kept || tried > before { tried } else { before };
         }
     }
 }
@@ -105,6 +116,8 @@ pub(super) struct Work<'a> {
     /// Its beginning, as the system counts time, and its length.
     pub(super) t: f64,
     pub(super) h: f64,
+    /// What is left of the sizes of the step before it.
+    pub(super) fading: f64,
 }
 
 /// Σ over the stages of `weights[stage] · values[stage]`, for each stage of a row.
@@ -134,15 +147,17 @@ pub(super) fn largest(lanes: Lanes) -> f64 {
 
 /// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
-fn set_scales(stages: &mut Stages, y: &[f64], h: f64) {
+fn set_scales(stages: &mut Stages, y: &[f64], h: f64, fading: f64) {
     let mut most = 0.0;
-    for ((size, rates), y) in stages.sizes.iter_mut().zip(&stages.rates).zip(y) {
+    let sizes = stages.tried.iter_mut().zip(&stages.sizes);
+    for (((size, known), rates), y) in sizes.zip(&stages.rates).zip(y) {
         let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
-        let before = FADING * *size;
-        *size = if now > before { now } else { before };
+        let before = fading * *known;
+        // What overflows in a step that is too long is no size.
+        *size = if now > before && now < f64::INFINITY { now } else { before };
         most = if *size > most { *size } else { most };
     }
-    for (scale, &size) in stages.scales.iter_mut().zip(&stages.sizes) {
+    for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
         let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
         *scale = if size > 0.0 { 1.0 / size } else { 0.0 };
     }
@@ -151,7 +166,7 @@ fn set_scales(stages: &mut Stages, y: &[f64], h: f64) {
 /// Iterates the stages from `stages.rates` on until nothing changes.
 #[inline(always)]
 fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
-    let Work { table, form, machine, state, stages, t, h } = work;
+    let Work { table, form, machine, state, stages, t, h, fading } = work;
     let (code, registers) = machine.parts();
     let outputs = code.output_registers();
     let evaluated = form.evaluated();
@@ -189,7 +204,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
             stages.rates[i] = registers[usize::from(outputs[i])];
         }
         if iteration == 0 {
-            set_scales(stages, if second_order { &y[evaluated..] } else { y }, work.h);
+            set_scales(stages, if second_order { &y[evaluated..] } else { y }, work.h, *fading);
         }
     }
     Iterated { converged: false, evaluations: MOST_ITERATIONS }

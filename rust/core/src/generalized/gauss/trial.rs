@@ -95,7 +95,8 @@ impl GaussStep {
 
     fn iterated(&mut self, t: f64, h: f64, state: &State<f64>) -> Iterated {
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.stages);
-        let mut work = Work { table, form, machine, state, stages, t, h };
+        let fading = self.pace.fading(self.length, h);
+        let mut work = Work { table, form, machine, state, stages, t, h, fading };
         let iterated = iterate(&mut work);
         if iterated.converged {
             advance(&work, &mut self.next);
@@ -170,6 +171,7 @@ impl Trial<f64> for GaussStep {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }
         let (refused, rule) = (self.pace.refuses(self.steps), Rule::new(1, f64::INFINITY));
+        self.stages.remember(!refused);
         let outcome = f64::settle(clock, running, if refused { 4.0 } else { 0.0 }, &rule);
         self.length_tried = h;
         clock.h = if refused {
@@ -198,9 +200,11 @@ impl Trial<f64> for GaussStep {
     ) -> Result<()> {
         let rows = self.table.at(&self.table.c.map(|c| c * theta));
         led(&rows, &self.stages.rates, &mut self.shadow.rates);
+        // Measured by what the step itself is: no reading knows of another.
+        self.shadow.sizes.copy_from_slice(&self.stages.tried);
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
-        let mut work = Work { table, form, machine, state, stages, t, h };
+        let mut work = Work { table, form, machine, state, stages, t, h, fading: 1.0 };
         let iterated = iterate(&mut work);
         advance(&work, into);
         self.evaluations += u64::from(iterated.evaluations);

@@ -317,11 +317,12 @@ impl Quadrature<'_> {
             _ => (0.0, TINY),
         }
     }
-    /// The same at a center that attracts as 1/rⁿ, where r₀ goes as b^(2/(2−n)) and the rest as the first power of b.
+    /// The same at a center that attracts as 1/rⁿ, where r₀ goes as b^(2/(2−n)).
     fn around(&self, energy: f64, power: f64) -> (f64, f64) {
         let least = Exponential::exp(0.5 * (2.0 - power) * NEAREST);
         let reach = self.profile.grid().reach(energy, power);
-        (reach * least.max(NOTHING), (reach.min(1.0) * TINY).max(reach * least))
+        let nothing = reach * least.max(NOTHING);
+        (nothing, nothing)
     }
 
     /// Up to that impact parameter, found at a tiny one where the center is open: through it, or round a point that attracts.
