@@ -52,3 +52,13 @@ def test_a_valley_of_two_slopes_is_no_friction() -> None:
         valley = vv.Lagrangian(lambda q, v, t: v @ v / 2 - abs(q[0]), ["x"], position=[amplitude])
         period = 4 * (2 * amplitude) ** 0.5
         assert valley.run(3 * period)["x"][-1] == pytest.approx(amplitude, rel=1e-8)
+
+
+def test_a_start_at_rest_has_no_direction_of_friction() -> None:
+    with pytest.raises(vv.InvalidInput, match="no number at a velocity of 0") as refused:
+        sliding(1.05, 0.0).run(1.0)
+    assert refused.value.argument == "velocity"
+    pole = vv.systems.spherical_pendulum(position=[0.0, 0.0], velocity=[0.0, 0.0])
+    with pytest.raises(vv.InvalidInput, match="no number at the start") as refused:
+        pole.run(1.0)
+    assert refused.value.argument == "position"

@@ -210,14 +210,30 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         state = self._start()
         if self._constraints():
             check_on_constraints(self, state)
-        rates = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
-        if not np.isfinite(rates).all():
-            index = int(np.argmin(np.isfinite(rates)))
+        if self._has_rates(state):
+            return
+        # At rest only, or anywhere at these places?
+        speeds = state[len(self.coordinates) :]
+        moving = np.concatenate([state[: len(self.coordinates)], np.where(speeds == 0.0, 1.0, speeds)])
+        index = int(np.argmin(np.isfinite(self._rates(state))))
+        if self._has_rates(moving):
             raise InvalidInput(
-                "position",
-                f"the acceleration of {self.coordinates[index]!r} is no number at the start: a singularity of these "
-                "coordinates, or a mass matrix that is singular there; start away from it or take other coordinates",
+                "velocity",
+                f"the acceleration of {self.coordinates[index]!r} is no number at a velocity of 0: a force along v/|v| "
+                "(dry friction) has no direction there; start with a velocity, or write np.tanh(v/width) for v/|v|",
             )
+        raise InvalidInput(
+            "position",
+            f"the acceleration of {self.coordinates[index]!r} is no number at the start: a singularity of these "
+            "coordinates, or a mass matrix that is singular there; start away from it or take other coordinates",
+        )
+
+    def _rates(self, state: NDArray[np.float64]) -> NDArray[np.float64]:
+        rates: NDArray[np.float64] = self._model.rates(np.array([self.t0]), state[None, :], self._values[None, :])[0]
+        return rates
+
+    def _has_rates(self, state: NDArray[np.float64]) -> bool:
+        return bool(np.isfinite(self._rates(state)).all())
 
 
 def _named(error: InvalidInput, names: tuple[str, ...]) -> InvalidInput:
