@@ -6,7 +6,7 @@
 
 use super::Table;
 use super::pace::FADING;
-use super::step::{Changes, LEAST_SCALE, MOST_ITERATIONS};
+use super::step::{AGAIN, Changes, LEAST_SCALE, MOST_ITERATIONS, WILD};
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::expressions::machine::Blocks;
 use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
@@ -118,6 +118,18 @@ fn larger<V: Vector8>(x: V, most: V) -> V {
     V::select(x.less_equal(most), most, number)
 }
 
+/// How large a number is, or was before, and how far it goes in the step.
+#[inline(always)]
+fn size_of<V: Vector8>(y: V, rates: &[Lanes], h: V, before: V) -> V {
+    let mut largest = V::zero();
+    for &rate in rates {
+        largest = larger(V::load(rate).abs(), largest);
+    }
+    let now = y.abs() + (h * largest).abs();
+    // What overflows in a step that is too long is no size.
+    V::select(now.less(V::splat(f64::INFINITY)), now, V::zero()).max(before)
+}
+
 /// Sets what changes are measured by, in the lanes that run.
 #[inline(always)]
 fn set_scales<V: Vector8>(
@@ -130,14 +142,7 @@ fn set_scales<V: Vector8>(
     let mut most = V::zero();
     let sizes = columns.tried.iter_mut().zip(&columns.sizes);
     for (((size, known), rates), y) in sizes.zip(&columns.rates).zip(y) {
-        let mut largest = V::zero();
-        for &rate in &rates[..count] {
-            largest = larger(V::load(rate).abs(), largest);
-        }
-        let now = V::load(*y).abs() + (h * largest).abs();
-        // What overflows in a step that is too long is no size.
-        let now = V::select(now.less(V::splat(f64::INFINITY)), now, V::zero());
-        let after = now.max(fading * V::load(*known));
+        let after = size_of(V::load(*y), &rates[..count], h, fading * V::load(*known));
         *size = V::select(running, after, V::load(*size)).store();
         most = after.max(most);
     }
@@ -245,6 +250,42 @@ fn weighted<V: Vector8>(weights: &[Lanes; 2], row: &Row, last: usize) -> V {
     ((a + e) + (c + g)) + ((b + f) + (d + h))
 }
 
+/// The lanes that run whose stages were found by far more than they came to, as of one trajectory.
+#[inline(always)]
+fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> Bits {
+    let Work { table, form, state, columns, h, fading, running, .. } = work;
+    let y =
+        if matches!(form, Form::SecondOrder(_)) { &state.all().0[form.evaluated()..] } else { state.all().0 };
+    let (h, fading) = (V::load(*h), V::load(*fading));
+    let mut wild = Bits(0);
+    let sizes = columns.tried.iter().zip(&columns.sizes);
+    for (((&tried, &known), rates), &y) in sizes.zip(&columns.rates).zip(y) {
+        let size = size_of(V::load(y), &rates[..table.columns()], h, fading * V::load(known));
+        wild = wild.or(size.less(V::splat(WILD) * V::load(tried)));
+    }
+    wild.and(*running)
+}
+
+/// Finds the stages from `columns.rates` on, measured by what they come to.
+pub(super) fn found(work: &mut Work<'_>) -> Settled {
+    let (mut all, running) = (iterate(work), work.running);
+    for _ in 0..AGAIN {
+        let wild = began_wildly(work).and(all.converged);
+        if !wild.any() {
+            return all;
+        }
+        work.running = wild;
+        let again = iterate(work);
+        work.running = running;
+        all.converged = all.converged.and(wild.not().or(again.converged));
+        for lane in (0..WIDTH).filter(|&lane| wild.lane(lane)) {
+            all.evaluations[lane] += again.evaluations[lane];
+        }
+    }
+    all.converged = all.converged.and(began_wildly(work).not());
+    all
+}
+
 /// Writes the states at the end of the steps.
 #[inline(always)]
 fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<Lanes>) {
@@ -322,7 +363,8 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
 }
 
 tiered! {
-    pub(super) fn iterate[][](work: &mut Work<'_>) -> Settled = iterate_body;
+    fn iterate[][](work: &mut Work<'_>) -> Settled = iterate_body;
+    fn began_wildly[][](work: &Work<'_>) -> Bits = began_wildly_body;
     pub(super) fn advance[][](work: &Work<'_>, next: &mut State<Lanes>) -> () = advance_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;

@@ -4,7 +4,7 @@
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns::{advance, astray, iterate, led, led_to};
+use super::columns::{advance, astray, found, led, led_to};
 use super::pace::{Pace, Steps, first_step};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
@@ -187,7 +187,7 @@ impl Trial<Lanes> for GaussEight {
             Lanes(core::array::from_fn(|lane| self.paces[lane].fading(self.length.0[lane], h.0[lane])));
         let (table, form, machine, columns) = (self.table, self.form, &mut self.machine, &mut self.columns);
         let mut work = Work { table, form, machine, state, columns, t, h, fading, running };
-        let iterated = iterate(&mut work);
+        let iterated = found(&mut work);
         advance(&work, &mut self.next);
         self.count(&iterated, running);
         let smoothness = self.smoothness(h, running);
@@ -203,7 +203,7 @@ impl Trial<Lanes> for GaussEight {
                 }
             }
         }
-        self.columns.remember(running, errors.less_equal(Lanes::zero()));
+        self.columns.remember(running.and(iterated.converged), errors.less_equal(Lanes::zero()));
         let outcome = Lanes::settle(clock, running, errors, &Rule::new(1, Lanes::splat(f64::INFINITY)));
         self.length_tried = h;
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
@@ -241,7 +241,7 @@ impl Trial<Lanes> for GaussEight {
         let (t, h) = (Lanes::splat(self.t0) + outcome.from, outcome.h * theta);
         let fading = Lanes::one();
         let mut work = Work { table, form, machine, state, columns, t, h, fading, running: asked };
-        let iterated = iterate(&mut work);
+        let iterated = found(&mut work);
         advance(&work, into);
         self.count(&iterated, asked);
         for lane in (0..WIDTH).filter(|&lane| asked.and(iterated.converged.not()).lane(lane)) {

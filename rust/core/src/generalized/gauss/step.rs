@@ -20,6 +20,10 @@ pub(super) const MOST_ITERATIONS: u32 = 60;
 const ROUND_OFF: f64 = 1e-13;
 /// As above, where the right-hand side itself has lost digits.
 const STAGNATION: f64 = 1e-9;
+/// Where a size turns out to be less than this part of what it seemed by the rates that stages began with, they are found again.
+pub(super) const WILD: f64 = 0.125;
+/// So many times at most.
+pub(super) const AGAIN: u32 = 3;
 /// So many changes in a row that are none of them smaller than all before: those of a spiral fall, but not one by one.
 const NO_LONGER_FALLING: u32 = 5;
 /// No number's scale is below this times the largest: noise on what stands still would never converge.
@@ -53,6 +57,13 @@ impl Stages {
             sizes: vec![0.0; evaluated],
             tried: vec![0.0; evaluated],
         }
+    }
+
+    /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep
+    /// wall, and beside those anything has converged.
+    fn began_wildly(&self, y: &[f64], h: f64, fading: f64) -> bool {
+        let mut sizes = self.tried.iter().zip(&self.sizes).zip(&self.rates).zip(y);
+        sizes.any(|(((&tried, &known), rates), &y)| size(y, rates, h, fading * known) < WILD * tried)
     }
 
     /// Remembers how large numbers were in the step that was tried. One that was not kept leaves what it met beside what was
@@ -145,17 +156,22 @@ pub(super) fn largest(lanes: Lanes) -> f64 {
     })
 }
 
+/// How large a number is, or was before, and how far it goes in the step.
+#[inline(always)]
+fn size(y: f64, rates: &Lanes, h: f64, before: f64) -> f64 {
+    let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
+    // What overflows in a step that is too long is no size.
+    if now > before && now < f64::INFINITY { now } else { before }
+}
+
 /// Sets what changes are measured by: how large a number is, or was lately, and how far it goes in the step.
 #[inline(always)]
 fn set_scales(stages: &mut Stages, y: &[f64], h: f64, fading: f64) {
     let mut most = 0.0;
     let sizes = stages.tried.iter_mut().zip(&stages.sizes);
-    for (((size, known), rates), y) in sizes.zip(&stages.rates).zip(y) {
-        let now = y.abs() + (h * largest(Lanes(rates.0.map(f64::abs)))).abs();
-        let before = fading * *known;
-        // What overflows in a step that is too long is no size.
-        *size = if now > before && now < f64::INFINITY { now } else { before };
-        most = if *size > most { *size } else { most };
+    for (((tried, known), rates), y) in sizes.zip(&stages.rates).zip(y) {
+        *tried = size(*y, rates, h, fading * *known);
+        most = if *tried > most { *tried } else { most };
     }
     for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
         let size = if size > LEAST_SCALE * most { size } else { LEAST_SCALE * most };
@@ -210,6 +226,24 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
     Iterated { converged: false, evaluations: MOST_ITERATIONS }
 }
 
+/// Finds the stages from `stages.rates` on, measured by what they come to.
+pub(super) fn found(work: &mut Work<'_>) -> Iterated {
+    let mut all = iterate(work);
+    let evaluated = work.form.evaluated();
+    let y = work.state.all().0;
+    let y = if matches!(work.form, Form::SecondOrder(_)) { &y[evaluated..] } else { y };
+    let wild = |work: &Work<'_>| work.stages.began_wildly(y, work.h, work.fading);
+    for _ in 0..AGAIN {
+        if !all.converged || !wild(work) {
+            return all;
+        }
+        let again = iterate(work);
+        all = Iterated { converged: again.converged, evaluations: all.evaluations + again.evaluations };
+    }
+    all.converged &= !wild(work);
+    all
+}
+
 /// Writes the state at the end of the step.
 #[inline(always)]
 fn advance_body<V: Vector8>(work: &Work<'_>, next: &mut State<f64>) {
@@ -256,7 +290,7 @@ fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lan
 }
 
 tiered! {
-    pub(super) fn iterate[][](work: &mut Work<'_>) -> Iterated = iterate_body;
+    fn iterate[][](work: &mut Work<'_>) -> Iterated = iterate_body;
     pub(super) fn advance[][](work: &Work<'_>, next: &mut State<f64>) -> () = advance_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], rates: &[Lanes], to: &mut [Lanes]) -> () = led_body;
 }

@@ -5,7 +5,7 @@
 //! ([`eight`](super::eight)) have, too.
 
 use super::pace::{Pace, Steps, first_step};
-use super::step::{Iterated, Stages, Work, advance, iterate, largest, led};
+use super::step::{Iterated, Stages, Work, advance, found, largest, led};
 use super::{Method, Table};
 use crate::error::{Error, Result};
 use crate::expressions::Machine;
@@ -97,7 +97,7 @@ impl GaussStep {
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.stages);
         let fading = self.pace.fading(self.length, h);
         let mut work = Work { table, form, machine, state, stages, t, h, fading };
-        let iterated = iterate(&mut work);
+        let iterated = found(&mut work);
         if iterated.converged {
             advance(&work, &mut self.next);
         }
@@ -171,7 +171,9 @@ impl Trial<f64> for GaussStep {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }
         let (refused, rule) = (self.pace.refuses(self.steps), Rule::new(1, f64::INFINITY));
-        self.stages.remember(!refused);
+        if iterated.converged {
+            self.stages.remember(!refused);
+        }
         let outcome = f64::settle(clock, running, if refused { 4.0 } else { 0.0 }, &rule);
         self.length_tried = h;
         clock.h = if refused {
@@ -205,7 +207,7 @@ impl Trial<f64> for GaussStep {
         let (table, form, machine, stages) = (self.table, self.form, &mut self.machine, &mut self.shadow);
         let (t, h) = (self.t0 + outcome.from, outcome.h * theta);
         let mut work = Work { table, form, machine, state, stages, t, h, fading: 1.0 };
-        let iterated = iterate(&mut work);
+        let iterated = found(&mut work);
         advance(&work, into);
         self.evaluations += u64::from(iterated.evaluations);
         if iterated.converged {
