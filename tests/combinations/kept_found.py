@@ -267,4 +267,27 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             t0=-41.50037560488363,
         ),
     ),
+    # A copy that stops being finite at an output inside a step had its events before it in that step left out.
+    (
+        "other_outputs_change_no_bit",
+        Recipe(
+            method="heun",
+            bodies=14,
+            forces=(("Oblate", 83), ("SampledDrag", 68)),
+            seed=640,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            members=7,
+            own=("velocity", "parameters", "mass"),
+            wild_member=True,
+            steps=13,
+            decades=12,
+            outputs=3,
+            columns=("energy", "velocity", "position", "angular_momentum", "center_of_mass"),
+            events=(("apsis", 97), ("apsis", 33), ("plane", 97)),
+            terminal=1,
+            collisions="bounce",
+        ),
+    ),
 ]

@@ -124,6 +124,7 @@ fn lockstep(
         asks: false,
         watches,
         failed: vec![None; units.len()],
+        ended: vec![false; units.len()],
         running: units.len(),
         units: prepared,
         rows: 0,
@@ -180,6 +181,8 @@ struct Records<'a> {
     units: Vec<Prepared>,
     /// The output time at which a unit was no longer finite.
     failed: Vec<Option<usize>>,
+    /// Whether it has ended with that: where events are looked for, with the step in which the output was, as without it.
+    ended: Vec<bool>,
     /// How many are still finite.
     running: usize,
     /// Output times so far.
@@ -198,8 +201,11 @@ impl Recorder<Lanes> for Records<'_> {
         for (lane, unit) in self.units.iter().enumerate() {
             if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);
-                self.running -= 1;
-                self.asks = true;
+                if !self.watched {
+                    self.ended[lane] = true;
+                    self.running -= 1;
+                    self.asks = true;
+                }
             }
         }
         self.rows = index + 1;
@@ -252,35 +258,32 @@ impl Recorder<Lanes> for Records<'_> {
         for (lane, unit) in self.units.iter().enumerate() {
             let watch = self.watches.get_mut(lane).and_then(Option::as_mut);
             let stopped = watch.as_ref().is_some_and(|watch| watch.stopped);
-            if self.failed[lane].is_some() || stopped {
+            if self.ended[lane] || stopped {
                 continue;
             }
-            match watch {
-                Some(watch) => {
-                    let [looked_at, in_step] = blocks[lane / WIDTH % 2].map(|lanes| lanes.lane(lane % WIDTH));
-                    if !looked_at {
-                        going = true;
-                        continue;
-                    }
-                    let begun = inside.system.evaluations();
-                    // A unit pays for what it looks at, whatever was looked at for another one.
-                    inside.last = None;
-                    // Who has not seen every node turns to where the step begins.
-                    if !in_step {
-                        watch.turn_to(unit, span.from, before, ticker)?;
-                    }
-                    if watch.step(unit, span, after, ticker)? {
-                        watch.look(unit, span, (after, lane), &mut inside, ticker)?;
-                    }
-                    let evaluations = inside.system.evaluations();
-                    self.looks[lane] += evaluations - begun;
-                    going |= !watch.stopped;
-                    if watch.stopped {
-                        let counts = Counts { steps, rejected: 0, evaluations: evaluations - repeated };
-                        self.spent[lane] = Some(paid_by(lane, counts, &self.looks));
-                    }
+            let begun = inside.system.evaluations();
+            let [looked_at, in_step] = blocks[lane / WIDTH % 2].map(|lanes| lanes.lane(lane % WIDTH));
+            let mut over = self.failed[lane].is_some();
+            if let (Some(watch), true) = (watch, looked_at) {
+                // A unit pays for what it looks at, whatever was looked at for another one.
+                inside.last = None;
+                // Who has not seen every node turns to where the step begins.
+                if !in_step {
+                    watch.turn_to(unit, span.from, before, ticker)?;
                 }
-                None => going = true,
+                if watch.step(unit, span, after, ticker)? {
+                    watch.look(unit, span, (after, lane), &mut inside, ticker)?;
+                }
+                over |= watch.stopped;
+            }
+            let evaluations = inside.system.evaluations();
+            self.looks[lane] += evaluations - begun;
+            self.ended[lane] = self.failed[lane].is_some();
+            self.running -= usize::from(self.ended[lane]);
+            going |= !over;
+            if over {
+                let counts = Counts { steps, rejected: 0, evaluations: evaluations - repeated };
+                self.spent[lane] = Some(paid_by(lane, counts, &self.looks));
             }
         }
         Ok(going)
@@ -288,8 +291,9 @@ impl Recorder<Lanes> for Records<'_> {
 
     fn goes_on(&mut self, state: &State<Lanes>) -> bool {
         for (lane, unit) in self.units.iter().enumerate() {
-            if self.failed[lane].is_none() && !unit.is_finite(state, lane) {
-                self.failed[lane] = Some(self.rows);
+            if !self.ended[lane] && (self.failed[lane].is_some() || !unit.is_finite(state, lane)) {
+                self.failed[lane] = self.failed[lane].or(Some(self.rows));
+                self.ended[lane] = true;
                 self.running -= 1;
                 self.asks = true;
             }
@@ -304,7 +308,7 @@ impl Recorder<Lanes> for Records<'_> {
     fn spent(&mut self, steps: u64, evaluations: u64) {
         let counts = Counts { steps, rejected: 0, evaluations };
         for (lane, spent) in self.spent.iter_mut().enumerate() {
-            if self.failed[lane].is_some() && spent.is_none() {
+            if self.ended[lane] && spent.is_none() {
                 *spent = Some(paid_by(lane, counts, &self.looks));
             }
         }
