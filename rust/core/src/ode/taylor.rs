@@ -7,7 +7,7 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, LargestRoot, OwnSizes, Sum, nest};
+use super::passes::series::{Choice, EndsAstray, LargestRoot, OwnSizes, Sum, nest};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -34,10 +34,12 @@ const FIRST_ORDER: usize = 6;
 const MARGIN: f64 = 0.01;
 /// Looser tolerances leave the series without its convergence.
 const LOOSEST: f64 = 1e-3;
-/// Of a step that nothing limited and that led astray, so much is tried next.
+/// Of a step that led astray, so much is tried next.
 const SHORTER: f64 = 1.0 / 8.0;
 /// Rates that are the same but for rounding differ by less, relative to how far they move a number.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// So many tolerances the orders that a series leaves out may count in its second derivative, at the end of a step.
+const NEXT_ORDERS: f64 = 300.0;
 /// The first unit of numbers that are measured by themselves, as a part of the whole time.
 const FIRST_UNIT: f64 = 1.0 / 1024.0;
 /// How far numbers go in a step is found from the step, and that from how far they go: each time with a seventh of the error.
@@ -52,7 +54,7 @@ pub struct TaylorStep<S: Element> {
     unit: S,
     /// The shortest unit that was too long for this step.
     too_long: S,
-    /// The longest step after one that nothing limited, and that led astray.
+    /// The longest step after one that led astray.
     bound: S,
     /// The step tried last.
     h: S,
@@ -60,6 +62,8 @@ pub struct TaylorStep<S: Element> {
     /// What the step is multiplied with, for the margin.
     margin: f64,
     next: State<S>,
+    /// The rates at its end.
+    rates: Vec<S>,
 }
 
 impl<S: Controlled> TaylorStep<S> {
@@ -71,8 +75,8 @@ impl<S: Controlled> TaylorStep<S> {
         rule.limits = (SHRINK, 1.0);
         let jet = Jet::new(len, orders.highest);
         let none = S::splat(f64::INFINITY);
-        let (unit, h, next) = (S::one(), S::zero(), state.clone());
-        Self { orders, jet, unit, too_long: none, bound: none, h, rule, margin: 1.0, next }
+        let (unit, h, next, rates) = (S::one(), S::zero(), state.clone(), vec![S::zero(); len]);
+        Self { orders, jet, unit, too_long: none, bound: none, h, rule, margin: 1.0, next, rates }
     }
 
     /// The order for a tolerance.
@@ -129,44 +133,41 @@ impl<S: Controlled> TaylorStep<S> {
         inverse
     }
 
-    /// Whether the rates at the end of a step are not those of the polynomial that led there. Where all the last coefficients
-    /// vanish nothing limits a step, and a force may still begin on the way, as of a wall that is flat to all their orders.
+    /// Whether the rates at the end of a step are not those of the polynomial that led there: a force may begin on the way that
+    /// no coefficient tells of, as of a steep wall after a long free way.
     fn leads_astray(
-        &self,
+        &mut self,
         elapsed: &S,
         norm: &Norm<S>,
         system: &mut dyn System<S>,
         ticker: &mut Ticker<'_>,
     ) -> Result<S::Mask> {
-        let Jet { q, v, len, order, unit, .. } = &self.jet;
-        let (next, t, x) = (&self.next, *elapsed + self.h, self.h / *unit);
-        let mut rates = vec![S::zero(); *len];
+        let Self { jet: Jet { q, v, len, order, unit, .. }, next, rates, h, .. } = self;
+        let (len, t, x) = (*len, *elapsed + *h, *h / *unit);
         // What a rate moves a number by, in the unit of time.
         let (of_rates, moves) = match next.form() {
             Form::FirstOrder(_) => {
-                system.rate(&t, next.all().0, &mut rates, ticker)?;
-                (q, *unit)
+                system.rate(&t, next.all().0, rates, ticker)?;
+                (&q[..], *unit)
             }
             Form::SecondOrder(_) => {
-                system.acceleration(&t, next.q(), next.v(), &mut rates, ticker)?;
-                (v, *unit * *unit)
+                system.acceleration(&t, next.q(), next.v(), rates, ticker)?;
+                (&v[..], *unit * *unit)
             }
         };
         // Rounding leads nobody astray.
-        let tolerance = norm.rtol.max(S::splat(ROUNDING));
-        let mut astray = S::Mask::splat(false);
-        for (number, &rate) in rates.iter().enumerate() {
-            let (mut slope, mut goes, mut power) = (S::zero(), S::zero(), S::one());
-            for order in 1..=*order {
-                let coefficient = of_rates[order * len + number];
-                slope = (S::splat(order as f64) * coefficient).multiply_add(power, slope);
-                power = power * x;
-                goes = (q[order * len + number] * power).abs().max(goes);
-            }
-            let missed = (rate * moves - slope).abs() * (x * x).max(S::one());
-            astray = astray.or(missed.less_equal(tolerance * goes).not());
-        }
-        Ok(astray)
+        let tolerance = &(S::splat(NEXT_ORDERS) * norm.rtol.max(S::splat(ROUNDING)));
+        let (highest, x, moves) = (*order, &x, &moves);
+        Ok(S::zero().less(S::pass(EndsAstray {
+            rates,
+            of_rates,
+            blocks: q,
+            len,
+            highest,
+            x,
+            moves,
+            tolerance,
+        })))
     }
 
     /// The state at the time `x` after the expansion.
@@ -282,9 +283,9 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let again = far.less(longest.min(self.too_long)).and(sound);
         let size2 = S::select(again, S::splat(HUGE), size2);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
-        let unlimited = inverse.less_equal(S::zero()).and(size2.less(S::one())).and(running);
-        let astray = if norm.blocks.is_empty() && unlimited.any() {
-            unlimited.and(self.leads_astray(&clock.elapsed, norm, system, ticker)?)
+        let taken = size2.less(S::one()).and(running);
+        let astray = if norm.blocks.is_empty() && taken.any() {
+            taken.and(self.leads_astray(&clock.elapsed, norm, system, ticker)?)
         } else {
             S::Mask::splat(false)
         };

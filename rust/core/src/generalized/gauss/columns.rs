@@ -362,11 +362,29 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
     most.store()
 }
 
+/// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes.
+#[inline(always)]
+fn missed_body<V: Vector8>(
+    weights: &[Lanes; WIDTH],
+    stages: usize,
+    columns: &Columns,
+    found: &[Lanes],
+    h: Lanes,
+) -> Lanes {
+    let mut most = V::zero();
+    for ((row, &found), &scale) in columns.rates.iter().zip(found).zip(&columns.scales) {
+        let led = combined!(stages, row, j => V::load(weights[j]));
+        most = larger((V::load(found) - led).abs() * V::load(h).abs() * V::load(scale), most);
+    }
+    most.store()
+}
+
 tiered! {
     fn iterate[][](work: &mut Work<'_>) -> Settled = iterate_body;
     fn began_wildly[][](work: &Work<'_>) -> Bits = began_wildly_body;
     pub(super) fn advance[][](work: &Work<'_>, next: &mut State<Lanes>) -> () = advance_body;
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
+    pub(super) fn missed[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
     pub(super) fn astray[][](rates: &Row, guess: &Row, stages: usize) -> Lanes = astray_body;
 }

@@ -4,7 +4,8 @@
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns::{advance, astray, found, led, led_to};
+use super::columns::{advance, astray, found, led, led_to, missed};
+use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
@@ -25,6 +26,7 @@ use std::sync::Arc;
 /// A collocation method at work on eight trajectories.
 pub struct GaussEight {
     table: &'static Table,
+    ending: Ending,
     form: Form,
     machine: Blocks<AT_ONCE>,
     columns: Columns,
@@ -58,6 +60,7 @@ impl GaussEight {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
+            ending: Ending::of(method.table),
             form,
             machine: Blocks::new(code, parameters),
             columns: Columns::new(evaluated),
@@ -114,6 +117,20 @@ impl GaussEight {
             most = (away * h.abs() * scale).max(most);
         }
         most
+    }
+
+    /// By how much the rates at the ends of steps are not those that the stages lead to, where that is to be asked.
+    fn missed(&mut self, t: Lanes, h: Lanes, running: Bits) -> Lanes {
+        let asked = self.lanes(|_, pace| pace.missable(self.steps)).and(running);
+        if !asked.any() {
+            return Lanes::zero();
+        }
+        self.machine.run(t, self.next.all().0);
+        let found: Vec<Lanes> = (0..self.form.evaluated()).map(|i| self.machine.output(i)).collect();
+        for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
+            self.taken[lane] += 1;
+        }
+        missed(&self.ending.weights, self.table.stages, &self.columns, &found, h)
     }
 
     fn count(&mut self, iterated: &Iterated, lanes: Bits) {
@@ -191,19 +208,26 @@ impl Trial<Lanes> for GaussEight {
         advance(&work, &mut self.next);
         self.count(&iterated, running);
         let smoothness = self.smoothness(h, running);
-        let mut errors = Lanes::zero();
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let (pace, converged) = (&mut self.paces[lane], iterated.converged.lane(lane));
             pace.converged = converged;
             pace.delta = if converged { smoothness.0[lane] } else { f64::INFINITY };
-            if pace.refuses(self.steps) {
+        }
+        let missed = self.missed(t + h, h, running);
+        let mut errors = Lanes::zero();
+        for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
+            let pace = &mut self.paces[lane];
+            pace.missed = missed.0[lane];
+            if pace.refuses(self.steps, &self.ending) {
                 errors.0[lane] = 4.0;
                 if matches!(self.steps, Steps::Equal(_)) {
                     self.lost[lane] = Some(no_convergence(h.0[lane]));
                 }
             }
         }
-        self.columns.remember(running.and(iterated.converged), errors.less_equal(Lanes::zero()));
+        let kept = errors.less_equal(Lanes::zero());
+        let remembered = kept.or(self.lanes(|_, pace| pace.kept == 0));
+        self.columns.remember(running.and(iterated.converged).and(remembered), kept);
         let outcome = Lanes::settle(clock, running, errors, &Rule::new(1, Lanes::splat(f64::INFINITY)));
         self.length_tried = h;
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {

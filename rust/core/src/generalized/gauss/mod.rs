@@ -7,6 +7,7 @@
 
 mod columns;
 mod eight;
+mod ending;
 mod pace;
 mod step;
 mod tables;
@@ -57,7 +58,7 @@ pub static METHODS: [Method; 3] = [
 impl Method {
     /// Steps that are chosen for a relative tolerance, and held or not.
     pub fn chosen(&self, rtol: f64, held: bool) -> Steps {
-        Steps::Chosen { delta: self.table.delta(rtol), held }
+        Steps::Chosen { tolerance: rtol, delta: self.table.delta(rtol), held }
     }
 
     /// Whether its stages are fewer than the lanes.

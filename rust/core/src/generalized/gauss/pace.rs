@@ -6,13 +6,18 @@
 //! up where δ leaves a wide band. One trajectory alone and each of eight side by side have a pace of their own.
 
 use super::Table;
+use super::ending::Ending;
 use crate::numerics::elementary::{self, Exponential};
 use crate::numerics::lanes::WIDTH;
 use crate::numerics::real::Real;
 use crate::ode::system::Form;
 
-/// A step is taken again when δ is this many times what it should be.
+/// A step is taken again when δ is this many times what it should be …
 const BAND: f64 = 30.0;
+/// … or this: as much as that is only what stages have not followed.
+const NOT_FOLLOWED: f64 = 0.1;
+/// What δ is to be at most.
+const FOLLOWED: f64 = 0.03;
 /// Steps change where they would change by more than from here …
 const SHORTER: f64 = 0.85;
 /// … to here.
@@ -32,6 +37,8 @@ pub enum Steps {
     Equal(f64),
     /// So that δ is about this; held after the first ones, or not.
     Chosen {
+        /// The relative tolerance.
+        tolerance: f64,
         /// What δ is to be.
         delta: f64,
         /// Whether a step is held.
@@ -48,17 +55,31 @@ pub(super) struct Pace {
     pub(super) delta: f64,
     /// Whether they did.
     pub(super) converged: bool,
+    /// By how much the rates at its end are not what the stages lead to.
+    pub(super) missed: f64,
     /// Whether steps are held.
     holding: bool,
 }
 
 impl Pace {
     /// Whether the step that was tried is taken again.
-    pub(super) fn refuses(&self, steps: Steps) -> bool {
+    pub(super) fn refuses(&self, steps: Steps, ending: &Ending) -> bool {
         match steps {
             Steps::Equal(_) => !self.converged,
-            Steps::Chosen { delta, .. } => !self.converged || self.delta > BAND * delta,
+            Steps::Chosen { tolerance, delta, .. } => {
+                !self.converged || self.strays(delta) || ending.met(self.missed, self.delta, tolerance)
+            }
         }
+    }
+
+    /// Whether it is to be asked how much a step misses: of one that δ does not refuse.
+    pub(super) fn missable(&self, steps: Steps) -> bool {
+        matches!(steps, Steps::Chosen { delta, .. } if self.converged && !self.strays(delta))
+    }
+
+    /// Whether δ is out of the band.
+    fn strays(&self, target: f64) -> bool {
+        self.delta > Real::min(BAND * target, NOT_FOLLOWED)
     }
 
     /// What is left of the sizes of numbers in a step of length `h` after a kept one of length `last`.
@@ -81,8 +102,8 @@ impl Pace {
 
     /// The next step after one of length `h` that is kept.
     pub(super) fn after(&mut self, h: f64, (steps, longest): (Steps, f64), table: &Table) -> f64 {
-        let Steps::Chosen { delta: target, held } = steps else { return h };
-        self.holding &= self.delta <= BAND * target;
+        let Steps::Chosen { delta: target, held, .. } = steps else { return h };
+        self.holding &= !self.strays(target);
         if self.holding {
             return h;
         }
@@ -101,7 +122,9 @@ impl Pace {
     pub(super) fn instead_of(&mut self, h: f64, steps: Steps, table: &Table) -> f64 {
         self.holding = false;
         match steps {
-            Steps::Chosen { delta, .. } if self.converged => h * Real::max(self.factor(delta, table), 0.2),
+            Steps::Chosen { delta, .. } if self.converged && self.strays(delta) => {
+                h * Real::max(self.factor(delta, table), 0.2)
+            }
             _ => h * 0.4,
         }
     }
@@ -151,7 +174,7 @@ impl Table {
         let astray = self.c.0[..self.stages].iter().fold(1.0 / once, |product, c| product * (farthest - c));
         let turn = Exponential::exp(elementary::ln(rtol / error) * ((s + 1.0) / (2.0 * s + 1.0)));
         // By more than a radian no step is to turn.
-        if turn < 1.0 { astray * turn } else { astray }
+        Real::min(if turn < 1.0 { astray * turn } else { astray }, FOLLOWED)
     }
 
     /// The leading term of the polynomial through the stages, at the farthest stage of a next step.

@@ -4,6 +4,7 @@
 //! The one idea: whatever is decided of a step, its [`Pace`] decides, which eight trajectories side by side
 //! ([`eight`](super::eight)) have, too.
 
+use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::step::{Iterated, Stages, Work, advance, found, largest, led};
 use super::{Method, Table};
@@ -28,6 +29,7 @@ pub(super) fn no_convergence(h: f64) -> String {
 /// A collocation method at work on one trajectory.
 pub struct GaussStep {
     table: &'static Table,
+    ending: Ending,
     form: Form,
     machine: Machine<Lanes>,
     stages: Stages,
@@ -35,6 +37,8 @@ pub struct GaussStep {
     before: Vec<Lanes>,
     length: f64,
     length_tried: f64,
+    /// Where the stages lead at the end of the step.
+    led: Vec<Lanes>,
     /// Those of a shadow step.
     shadow: Stages,
     next: State<f64>,
@@ -58,10 +62,12 @@ impl GaussStep {
         let evaluated = form.evaluated();
         Self {
             table: method.table,
+            ending: Ending::of(method.table),
             form,
             machine,
             stages: Stages::new(evaluated),
             before: vec![Lanes([0.0; WIDTH]); evaluated],
+            led: vec![Lanes([0.0; WIDTH]); evaluated],
             length: 0.0,
             length_tried: 0.0,
             shadow: Stages::new(evaluated),
@@ -122,6 +128,23 @@ impl GaussStep {
         }
         most
     }
+
+    /// By how much the rates at the end of the step are not those that the stages lead to, as a part of a size.
+    fn missed(&mut self, t: f64, h: f64) -> f64 {
+        led(&self.ending.weights, &self.stages.rates, &mut self.led);
+        let end = self.next.all().0;
+        for (register, &y) in self.machine.state().iter_mut().zip(end) {
+            *register = Lanes([y; WIDTH]);
+        }
+        self.machine.run(Lanes([t; WIDTH]));
+        self.evaluations += 1;
+        let mut most = 0.0;
+        for (i, led) in self.led.iter().enumerate() {
+            let missed = (self.machine.output(i).0[0] - led.0[0]).abs() * h.abs() * self.stages.scales[i];
+            most = if missed <= most { most } else { missed };
+        }
+        most
+    }
 }
 
 impl Trial<f64> for GaussStep {
@@ -167,11 +190,12 @@ impl Trial<f64> for GaussStep {
         let iterated = self.iterated(t, h, state);
         self.pace.converged = iterated.converged;
         self.pace.delta = if iterated.converged { self.smoothness(h) } else { f64::INFINITY };
+        self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
         }
-        let (refused, rule) = (self.pace.refuses(self.steps), Rule::new(1, f64::INFINITY));
-        if iterated.converged {
+        let (refused, rule) = (self.pace.refuses(self.steps, &self.ending), Rule::new(1, f64::INFINITY));
+        if iterated.converged && (!refused || self.pace.kept == 0) {
             self.stages.remember(!refused);
         }
         let outcome = f64::settle(clock, running, if refused { 4.0 } else { 0.0 }, &rule);

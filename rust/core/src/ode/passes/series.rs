@@ -87,6 +87,50 @@ impl<S: Element> Pass<S> for OwnSizes<'_, S> {
     }
 }
 
+/// Whether rates at the end of a step are not those of the polynomial that led there: 1 where they are not.
+#[derive(Debug)]
+pub(in crate::ode) struct EndsAstray<'a, S> {
+    /// The rates that were found.
+    pub(in crate::ode) rates: &'a [S],
+    /// Blocks of coefficients of what they are the rates of, and of the coordinates, from order 0 on.
+    pub(in crate::ode) of_rates: &'a [S],
+    /// As above.
+    pub(in crate::ode) blocks: &'a [S],
+    /// Numbers of a block.
+    pub(in crate::ode) len: usize,
+    /// The highest order.
+    pub(in crate::ode) highest: usize,
+    /// The step in the unit of time of the coefficients.
+    pub(in crate::ode) x: &'a S,
+    /// What a rate moves a number by in that unit.
+    pub(in crate::ode) moves: &'a S,
+    /// What they may differ by, of how far the number goes.
+    pub(in crate::ode) tolerance: &'a S,
+}
+
+impl<S: Element> Pass<S> for EndsAstray<'_, S> {
+    type Output = S;
+    #[inline(always)]
+    fn run<V: View<S>>(self) -> S {
+        let (rates, of_rates, blocks) = (V::view(self.rates), V::view(self.of_rates), V::view(self.blocks));
+        let [x, moves, tolerance] = [self.x, self.moves, self.tolerance].map(|&s| V::load(s));
+        let in_a_step = (x * x).max(V::one());
+        let mut astray = V::zero();
+        for (number, &rate) in rates.iter().enumerate() {
+            let (mut slope, mut goes, mut power) = (V::zero(), V::zero(), V::one());
+            for order in 1..=self.highest {
+                let at = order * self.len + number;
+                slope = (V::splat(order as f64) * of_rates[at]).multiply_add(power, slope);
+                power = power * x;
+                goes = (blocks[at] * power).abs().max(goes);
+            }
+            let missed = (rate * moves - slope).abs() * in_a_step;
+            astray = V::select(missed.less_equal(tolerance * goes), astray, V::one());
+        }
+        astray.store()
+    }
+}
+
 /// The choice of a step.
 #[derive(Debug)]
 pub(in crate::ode) struct Choice<'a, S: Real> {
