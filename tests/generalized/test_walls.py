@@ -28,7 +28,7 @@ def allowed(method: str, rtol: float) -> float:
     if method == "gauss4":
         return {1e-6: 2e-2, 1e-10: 2e-4, 1e-12: 5e-6}[rtol]
     if method == "gauss8":
-        return {1e-6: 2e-4, 1e-10: 2e-5, 1e-12: 2e-7}[rtol]
+        return {1e-6: 2e-4, 1e-10: 1e-4, 1e-12: 5e-7}[rtol]
     return 1e3 * rtol
 
 

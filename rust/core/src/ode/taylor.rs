@@ -7,7 +7,7 @@
 use super::Taylor;
 use super::norm::{Change, Norm};
 use super::passes::errors::{HUGE, PairTerm};
-use super::passes::series::{Choice, EndsAstray, LargestRoot, OwnSizes, Sum, nest};
+use super::passes::series::{Choice, LargestRoot, Missed, OwnMissed, OwnSizes, Sum, nest};
 use super::series::Jet;
 use super::state::State;
 use super::step_control::{Clock, Controlled, Rule, Settled};
@@ -137,6 +137,7 @@ impl<S: Controlled> TaylorStep<S> {
     /// no coefficient tells of, as of a steep wall after a long free way.
     fn leads_astray(
         &mut self,
+        state: &State<S>,
         elapsed: &S,
         norm: &Norm<S>,
         system: &mut dyn System<S>,
@@ -155,19 +156,23 @@ impl<S: Controlled> TaylorStep<S> {
                 (&v[..], *unit * *unit)
             }
         };
+        let (highest, x) = (*order, &x);
+        S::pass(Missed { rates, blocks: of_rates, highest, x, moves: &moves });
         // Rounding leads nobody astray.
-        let tolerance = &(S::splat(NEXT_ORDERS) * norm.rtol.max(S::splat(ROUNDING)));
-        let (highest, x, moves) = (*order, &x, &moves);
-        Ok(S::zero().less(S::pass(EndsAstray {
-            rates,
-            of_rates,
-            blocks: q,
-            len,
-            highest,
-            x,
-            moves,
-            tolerance,
-        })))
+        let tolerance = norm.rtol.max(S::splat(ROUNDING));
+        let size2 = if norm.blocks.is_empty() {
+            S::pass(OwnMissed { missed: rates, blocks: q, highest, x, tolerance: &tolerance })
+        } else {
+            let terms = [PairTerm { stage: 0, weights: [S::one(), S::zero()] }];
+            let change = |factor| Change { k: rates, stride: len, terms: &terms, factor };
+            let changes = match next.form() {
+                Form::FirstOrder(_) => [change(*x); 2],
+                Form::SecondOrder(_) => [change(*x * *x), change(*x / *unit)],
+            };
+            let rounding = norm.rtol / tolerance;
+            norm.sizes(state, next, &t, &changes)[0] * rounding * rounding
+        };
+        Ok(size2.less_equal(S::splat(NEXT_ORDERS * NEXT_ORDERS)).not())
     }
 
     /// The state at the time `x` after the expansion.
@@ -267,9 +272,10 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
             })
         };
         let longest = self.rule.max_step.min(self.bound);
-        let mut chosen = choice(longest);
+        let (mut chosen, mut sharp) = (choice(longest), S::Mask::splat(false));
         if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
+            sharp = smooth.less_equal(chosen[0]);
             if smooth.less(chosen[0]).and(running).any() {
                 chosen = choice(longest.min(smooth));
             }
@@ -283,9 +289,10 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let again = far.less(longest.min(self.too_long)).and(sound);
         let size2 = S::select(again, S::splat(HUGE), size2);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
-        let taken = size2.less(S::one()).and(running);
-        let astray = if norm.blocks.is_empty() && taken.any() {
-            taken.and(self.leads_astray(&clock.elapsed, norm, system, ticker)?)
+        // What ends where something turns sharply meets other rates there.
+        let looked_at = size2.less(S::one()).and(running).and(sharp.not());
+        let astray = if looked_at.any() {
+            looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?)
         } else {
             S::Mask::splat(false)
         };
@@ -358,6 +365,6 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
     }
 
     fn cost(&self) -> Cost {
-        Cost { start: 1, tried: 1, kept: 0, dense: 0, read: 0 }
+        Cost { start: 1, tried: 2, kept: 0, dense: 0, read: 0 }
     }
 }

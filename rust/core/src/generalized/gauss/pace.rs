@@ -67,7 +67,8 @@ impl Pace {
         match steps {
             Steps::Equal(_) => !self.converged,
             Steps::Chosen { tolerance, delta, .. } => {
-                !self.converged || self.strays(delta) || ending.met(self.missed, self.delta, tolerance)
+                let astray = Real::max(self.delta, delta / BAND);
+                !self.converged || self.strays(delta) || ending.met(self.missed, astray, tolerance)
             }
         }
     }

@@ -87,47 +87,76 @@ impl<S: Element> Pass<S> for OwnSizes<'_, S> {
     }
 }
 
-/// Whether rates at the end of a step are not those of the polynomial that led there: 1 where they are not.
+/// By how much the rates at the end of a step are not those of the polynomial that led there.
 #[derive(Debug)]
-pub(in crate::ode) struct EndsAstray<'a, S> {
-    /// The rates that were found.
-    pub(in crate::ode) rates: &'a [S],
-    /// Blocks of coefficients of what they are the rates of, and of the coordinates, from order 0 on.
-    pub(in crate::ode) of_rates: &'a [S],
-    /// As above.
+pub(in crate::ode) struct Missed<'a, S> {
+    /// The rates that were found; afterwards what they differ by, in the unit of time of the coefficients.
+    pub(in crate::ode) rates: &'a mut [S],
+    /// Blocks of coefficients of what they are the rates of, from order 0 on.
     pub(in crate::ode) blocks: &'a [S],
-    /// Numbers of a block.
-    pub(in crate::ode) len: usize,
+    /// The highest order.
+    pub(in crate::ode) highest: usize,
+    /// The step in that unit.
+    pub(in crate::ode) x: &'a S,
+    /// What a rate moves a number by in it.
+    pub(in crate::ode) moves: &'a S,
+}
+
+impl<S: Element> Pass<S> for Missed<'_, S> {
+    type Output = ();
+    #[inline(always)]
+    fn run<V: View<S>>(self) {
+        let (rates, blocks) = (V::view_mut(self.rates), V::view(self.blocks));
+        let (x, moves, len) = (V::load(*self.x), V::load(*self.moves), rates.len());
+        for (number, rate) in rates.iter_mut().enumerate() {
+            let (mut slope, mut power) = (V::zero(), V::one());
+            for order in 1..=self.highest {
+                slope = (V::splat(order as f64) * blocks[order * len + number]).multiply_add(power, slope);
+                power = power * x;
+            }
+            *rate = *rate * moves - slope;
+        }
+    }
+}
+
+/// The largest square of how far numbers that miss by so much go astray in a step, against how far they go in it.
+#[derive(Debug)]
+pub(in crate::ode) struct OwnMissed<'a, S> {
+    /// What they miss.
+    pub(in crate::ode) missed: &'a [S],
+    /// Blocks of coefficients, from order 0 on.
+    pub(in crate::ode) blocks: &'a [S],
     /// The highest order.
     pub(in crate::ode) highest: usize,
     /// The step in the unit of time of the coefficients.
     pub(in crate::ode) x: &'a S,
-    /// What a rate moves a number by in that unit.
-    pub(in crate::ode) moves: &'a S,
-    /// What they may differ by, of how far the number goes.
+    /// The tolerance.
     pub(in crate::ode) tolerance: &'a S,
 }
 
-impl<S: Element> Pass<S> for EndsAstray<'_, S> {
+impl<S: Element> Pass<S> for OwnMissed<'_, S> {
     type Output = S;
     #[inline(always)]
     fn run<V: View<S>>(self) -> S {
-        let (rates, of_rates, blocks) = (V::view(self.rates), V::view(self.of_rates), V::view(self.blocks));
-        let [x, moves, tolerance] = [self.x, self.moves, self.tolerance].map(|&s| V::load(s));
+        let (missed, blocks) = (V::view(self.missed), V::view(self.blocks));
+        let (x, tolerance) = (V::load(*self.x), V::load(*self.tolerance));
+        let len = missed.len();
         let in_a_step = (x * x).max(V::one());
-        let mut astray = V::zero();
-        for (number, &rate) in rates.iter().enumerate() {
-            let (mut slope, mut goes, mut power) = (V::zero(), V::zero(), V::one());
+        let mut most = V::zero();
+        for (number, &missed) in missed.iter().enumerate() {
+            let (mut goes, mut power) = (V::zero(), V::one());
             for order in 1..=self.highest {
-                let at = order * self.len + number;
-                slope = (V::splat(order as f64) * of_rates[at]).multiply_add(power, slope);
                 power = power * x;
-                goes = (blocks[at] * power).abs().max(goes);
+                goes = (blocks[order * len + number] * power).abs().max(goes);
             }
-            let missed = (rate * moves - slope).abs() * in_a_step;
-            astray = V::select(missed.less_equal(tolerance * goes), astray, V::one());
+            let missed = missed.abs() * in_a_step;
+            let nothing = missed.less_equal(V::zero());
+            let ratio = V::select(nothing, V::zero(), missed / (tolerance * goes));
+            let square = ratio * ratio;
+            let sound = square.less(V::splat(HUGE));
+            most = V::select(sound, square, V::splat(f64::INFINITY)).max(most);
         }
-        astray.store()
+        most.store()
     }
 }
 
