@@ -365,6 +365,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
     }
 
     fn cost(&self) -> Cost {
-        Cost { start: 1, tried: 2, kept: 0, dense: 0, read: 0 }
+        // An expansion, and the look at its end with it.
+        Cost { start: 1, tried: 1, kept: 0, dense: 0, read: 0 }
     }
 }
