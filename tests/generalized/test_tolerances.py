@@ -34,7 +34,7 @@ def test_the_error_of_gauss4_and_gauss8_follows_rtol(method: str, name: str) -> 
             dissipation=lambda q, v, t: v[0] ** 2 / 20,
         ),
     }[name]
-    order, tolerances = {"gauss4": (4, 10.0 ** -np.arange(5.0, 13.0)), "gauss8": (8, 10.0 ** -np.arange(9.0, 14.0))}[
+    order, tolerances = {"gauss4": (4, 10.0 ** -np.arange(5.0, 13.0)), "gauss8": (8, 10.0 ** -np.arange(8.0, 13.0))}[
         method
     ]
     exact = states(system.run(20.0, method="gauss16", rtol=1e-15))[-1]
@@ -46,10 +46,9 @@ def test_the_error_of_gauss4_and_gauss8_follows_rtol(method: str, name: str) -> 
     assert (errors <= (50.0 if name == "dragged" else 500.0) * steps * tolerances).all(), errors / (steps * tolerances)
     slope = np.polyfit(np.log(tolerances), np.log(errors), 1)[0]
     # Which step is held hangs on ten of them; without holding, steps and errors follow their powers.
-    assert 0.6 < slope < 1.25
+    assert 0.65 < slope < 1.25
     if name == "dragged":
-        # Which step near a turn is refused for its end moves the error of one tolerance by a factor of some five.
-        assert slope == pytest.approx(order / (order + 1), abs=0.3)
+        assert slope == pytest.approx(order / (order + 1), abs=0.2)
         assert np.polyfit(np.log(tolerances), np.log(steps), 1)[0] == pytest.approx(-1 / (order + 1), abs=0.03)
 
 

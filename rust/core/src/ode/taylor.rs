@@ -272,10 +272,9 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
             })
         };
         let longest = self.rule.max_step.min(self.bound);
-        let (mut chosen, mut sharp) = (choice(longest), S::Mask::splat(false));
+        let mut chosen = choice(longest);
         if let Some(smooth) = system.smooth_until(&self.jet, chosen[0]) {
             let smooth = if norm.together { -(-smooth).largest_lane() } else { smooth };
-            sharp = smooth.less_equal(chosen[0]);
             if smooth.less(chosen[0]).and(running).any() {
                 chosen = choice(longest.min(smooth));
             }
@@ -289,8 +288,7 @@ impl<S: Controlled> Trial<S> for TaylorStep<S> {
         let again = far.less(longest.min(self.too_long)).and(sound);
         let size2 = S::select(again, S::splat(HUGE), size2);
         Self::state_at(&self.jet, state, self.h, &mut self.next);
-        // What ends where something turns sharply meets other rates there.
-        let looked_at = size2.less(S::one()).and(running).and(sharp.not());
+        let looked_at = size2.less(S::one()).and(running);
         let astray = if looked_at.any() {
             looked_at.and(self.leads_astray(state, &clock.elapsed, norm, system, ticker)?)
         } else {

@@ -34,6 +34,8 @@ pub struct GaussEight {
     before: Vec<Row>,
     length: Lanes,
     length_tried: Lanes,
+    /// Rates at the ends of the steps that are tried.
+    ends: Vec<Lanes>,
     /// Those of shadow steps.
     shadow: Columns,
     next: State<Lanes>,
@@ -67,6 +69,7 @@ impl GaussEight {
             before: vec![NOTHING; evaluated],
             length: Lanes::zero(),
             length_tried: Lanes::zero(),
+            ends: vec![Lanes::zero(); evaluated],
             shadow: Columns::new(evaluated),
             next: state.clone(),
             steps,
@@ -126,11 +129,13 @@ impl GaussEight {
             return Lanes::zero();
         }
         self.machine.run(t, self.next.all().0);
-        let found: Vec<Lanes> = (0..self.form.evaluated()).map(|i| self.machine.output(i)).collect();
+        for (i, rate) in self.ends.iter_mut().enumerate() {
+            *rate = self.machine.output(i);
+        }
         for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
             self.taken[lane] += 1;
         }
-        missed(&self.ending.weights, self.table.stages, &self.columns, &found, h)
+        missed(&self.ending.weights, self.table.stages, &self.columns, &self.ends, h)
     }
 
     fn count(&mut self, iterated: &Iterated, lanes: Bits) {

@@ -38,8 +38,7 @@ impl Ending {
         }
     }
 
-    /// Whether rates that miss by so much, as a part of a size, have met something new, in a step that was led astray by `delta`:
-    /// it may vanish at times, and where a step is held nothing is refused that is far less than what it is to be.
+    /// Whether rates that miss by so much, as a part of a size, have met something new, where steps are led astray by `delta`.
     pub(super) fn met(&self, missed: f64, delta: f64, tolerance: f64) -> bool {
         let smooth = self.share * delta;
         let least = TOLERANCES * tolerance;

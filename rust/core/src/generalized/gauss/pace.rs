@@ -15,9 +15,11 @@ use crate::ode::system::Form;
 /// A step is taken again when δ is this many times what it should be …
 const BAND: f64 = 30.0;
 /// … or this: as much as that is only what stages have not followed.
-const NOT_FOLLOWED: f64 = 0.1;
+const NOT_FOLLOWED: f64 = 0.2;
 /// What δ is to be at most.
-const FOLLOWED: f64 = 0.03;
+const FOLLOWED: f64 = 0.1;
+/// What is left of a δ a step later.
+const LATELY: f64 = 0.8;
 /// Steps change where they would change by more than from here …
 const SHORTER: f64 = 0.85;
 /// … to here.
@@ -57,6 +59,8 @@ pub(super) struct Pace {
     pub(super) converged: bool,
     /// By how much the rates at its end are not what the stages lead to.
     pub(super) missed: f64,
+    /// δ of the steps before it that were kept, the older the less.
+    lately: f64,
     /// Whether steps are held.
     holding: bool,
 }
@@ -67,7 +71,8 @@ impl Pace {
         match steps {
             Steps::Equal(_) => !self.converged,
             Steps::Chosen { tolerance, delta, .. } => {
-                let astray = Real::max(self.delta, delta / BAND);
+                // It passes through zero at times.
+                let astray = Real::max(self.delta, Real::max(self.lately, delta / BAND));
                 !self.converged || self.strays(delta) || ending.met(self.missed, astray, tolerance)
             }
         }
@@ -104,6 +109,7 @@ impl Pace {
     /// The next step after one of length `h` that is kept.
     pub(super) fn after(&mut self, h: f64, (steps, longest): (Steps, f64), table: &Table) -> f64 {
         let Steps::Chosen { delta: target, held, .. } = steps else { return h };
+        self.lately = Real::max(self.delta, LATELY * self.lately);
         self.holding &= !self.strays(target);
         if self.holding {
             return h;
