@@ -10,7 +10,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._names import body_label
 from visviva.errors import InvalidInput
-from visviva.rigid._mass import parallel_axis, principal_axes
+from visviva.rigid._inertia import parallel_axis, principal_axes
 from visviva.rigid._orientation import quaternion_from_matrix, rotate
 
 if TYPE_CHECKING:

@@ -4,6 +4,7 @@
 //! lane does what [`solve`](super::run::solve) does for one, operation by operation, so a copy has the bits that it has alone.
 //! Methods with equal steps go from node to node together, and take up copies eight at a time.
 
+mod outputs;
 mod side_by_side;
 
 pub use side_by_side::SideBySide;
@@ -328,61 +329,6 @@ impl<'a> Abreast<'a> {
         kept
     }
 
-    /// Reads the output times that the kept steps pass.
-    fn record(&mut self, outcome: &Settled<Lanes>, kept: Bits, ticker: &mut Ticker<'_>) -> Result<()> {
-        let forward = self.request.span.0 <= self.request.span.1;
-        let mut dense = false;
-        loop {
-            let (mut theta, mut between) = (Lanes::zero(), Bits(0));
-            let (outputs, cost) = (self.outputs, self.cost);
-            let Self { slots, trial, state, .. } = self;
-            for (lane, slot) in slots.iter_mut().enumerate().filter(|(lane, _)| kept.lane(*lane)) {
-                let Some(slot) = slot else { continue };
-                let (from, to) = (slot.from, slot.solution.reached);
-                while let Some(&t) = outputs.get(slot.next_output)
-                    && (if forward { t <= to } else { t >= to })
-                {
-                    let at = if t == to {
-                        trial.next()
-                    } else if t == from {
-                        &*state
-                    } else {
-                        theta.0[lane] = (t - from) / (to - from);
-                        between = between.or(Bits(1 << lane));
-                        slot.solution.evaluations += if dense { cost.read } else { cost.dense + cost.read };
-                        break;
-                    };
-                    slot.write(t, at, lane);
-                }
-            }
-            if !between.any() {
-                return Ok(());
-            }
-            let Self { trial, system, state, between: there, .. } = self;
-            if !dense {
-                trial.dense(outcome, system, state, ticker)?;
-                dense = true;
-            }
-            trial.at(outcome, system, state, theta, there, ticker)?;
-            let (in_step, now) = (self.in_step, self.system.evaluations());
-            for lane in (0..WIDTH).filter(|&lane| between.lane(lane)) {
-                let (taken, lost) = (self.trial.taken(lane), self.trial.lost(lane));
-                let Some(slot) = &mut self.slots[lane] else { continue };
-                slot.solution.evaluations += taken;
-                if in_step {
-                    slot.solution.evaluations = now - slot.before;
-                }
-                if lost.is_some() {
-                    // As in a run alone: nothing is known beyond.
-                    slot.solution.reached = outputs[slot.next_output];
-                    self.end(lane, Ending::StepTooSmall, lost, ticker);
-                } else {
-                    slot.write(outputs[slot.next_output], &self.between, lane);
-                }
-            }
-        }
-    }
-
     /// Ends a trajectory.
     fn end(&mut self, lane: usize, ending: Ending, failure: Option<String>, ticker: &mut Ticker<'_>) {
         let Some(Slot { index, mut solution, .. }) = self.slots[lane].take() else { return };
@@ -397,14 +343,5 @@ impl<'a> Abreast<'a> {
         for slot in self.slots.iter_mut().filter_map(Option::take) {
             self.done[slot.index] = Some(Solution { ending: Ending::Interrupted, ..slot.solution });
         }
-    }
-}
-
-impl Slot {
-    /// Writes a row.
-    fn write(&mut self, t: f64, state: &State<Lanes>, lane: usize) {
-        self.solution.t.push(t);
-        self.solution.y.extend(state.all().0.iter().map(|y| y.0[lane]));
-        self.next_output += 1;
     }
 }

@@ -16,6 +16,7 @@ mod pack;
 mod pairs;
 mod profile;
 mod refine;
+mod search;
 mod spectrum;
 mod trapezoid;
 mod turning;

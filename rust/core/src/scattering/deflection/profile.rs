@@ -5,6 +5,7 @@
 //! question has one bracketed answer.
 
 use super::grid::{Grid, POINTS, place, radius};
+use super::search::{bisected, highest};
 use crate::numerics::lanes::{Lanes, WIDTH, as_numbers, as_numbers_mut};
 use crate::numerics::power_of_two::{exponent, scale};
 use crate::potentials::Potential;
@@ -382,34 +383,4 @@ fn own_length(potential: &dyn Potential) -> Option<i32> {
     let mut lengths =
         parameters.iter().zip(dimensions).filter(|(_, dimension)| *dimension == [1.0, 0.0, 0.0]);
     lengths.next().map(|(length, _)| exponent(length.size()))
-}
-
-/// Where a condition that holds at `low` and not at `high` ceases to, to the last digit.
-fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
-    loop {
-        let middle = 0.5 * (low + high);
-        if middle <= low || middle >= high {
-            return high;
-        }
-        if holds(middle) { low = middle } else { high = middle }
-    }
-}
-
-/// The highest place of a function with one maximum between two distances, to half the digits, as it has no more.
-fn highest(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
-    let golden = 0.618_033_988_749_894_9;
-    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
-    let (mut at_left, mut at_right) = (function(left), function(right));
-    while high - low > 1e-8 * high {
-        if at_left >= at_right {
-            (high, right, at_right) = (right, left, at_left);
-            left = high - golden * (high - low);
-            at_left = function(left);
-        } else {
-            (low, left, at_left) = (left, right, at_right);
-            right = low + golden * (high - low);
-            at_right = function(right);
-        }
-    }
-    0.5 * (low + high)
 }

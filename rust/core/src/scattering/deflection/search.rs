@@ -1,0 +1,31 @@
+//! Where functions of one distance turn or conditions on it cease, once both are bracketed.
+
+/// Where a condition that holds at `low` and not at `high` ceases to, to the last digit.
+pub(super) fn bisected(mut low: f64, mut high: f64, holds: impl Fn(f64) -> bool) -> f64 {
+    loop {
+        let middle = 0.5 * (low + high);
+        if middle <= low || middle >= high {
+            return high;
+        }
+        if holds(middle) { low = middle } else { high = middle }
+    }
+}
+
+/// The highest place of a function with one maximum between two distances, to half the digits, as it has no more.
+pub(super) fn highest(mut low: f64, mut high: f64, function: impl Fn(f64) -> f64) -> f64 {
+    let golden = 0.618_033_988_749_894_9;
+    let (mut left, mut right) = (high - golden * (high - low), low + golden * (high - low));
+    let (mut at_left, mut at_right) = (function(left), function(right));
+    while high - low > 1e-8 * high {
+        if at_left >= at_right {
+            (high, right, at_right) = (right, left, at_left);
+            left = high - golden * (high - low);
+            at_left = function(left);
+        } else {
+            (low, left, at_left) = (left, right, at_right);
+            right = low + golden * (high - low);
+            at_right = function(right);
+        }
+    }
+    0.5 * (low + high)
+}
