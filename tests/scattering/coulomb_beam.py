@@ -32,11 +32,12 @@ def philox(key: tuple[int, int], counter: np.ndarray) -> np.ndarray:
     return x.T
 
 
-def uniforms(seed: int, first: int, count: int) -> np.ndarray:
-    """The number of each event: half a block, words low and high, its upper 53 bits."""
+def uniforms(seed: int, first: int, count: int, draw: int = 0) -> np.ndarray:
+    """A draw of each event: half a block, words low and high, its upper 53 bits."""
     events = np.arange(first, first + count, dtype=np.uint64)
     counter = np.zeros((count, 4), np.uint64)
     counter[:, 0], counter[:, 1] = (events >> np.uint64(1)) & np.uint64(0xFFFFFFFF), events >> np.uint64(33)
+    counter[:, 2] = draw
     words = philox((seed & 0xFFFFFFFF, seed >> 32), counter)
     odd = (events & np.uint64(1)).astype(bool)
     low, high = np.where(odd, words[:, 2], words[:, 0]), np.where(odd, words[:, 3], words[:, 1])

@@ -17,7 +17,7 @@ import visviva as vv
 
 sys.path.insert(0, str(Path(__file__).parent))
 
-from coulomb_beam import philox
+from coulomb_beam import uniforms
 
 p, s = vv.potentials, vv.scattering
 Channel, Spread = s.Channel, s.Spread
@@ -118,21 +118,9 @@ def test_every_event_is_counted_in_its_bin(potential: p.Potential, beam: dict[st
         assert (alone[name].counts == result[name].counts).all()
 
 
-def uniform(number: int, first: int, n: int) -> np.ndarray:
-    """A draw of each event once more in NumPy."""
-    events = np.arange(first, first + n, dtype=np.uint64)
-    counter = np.zeros((n, 4), np.uint64)
-    counter[:, 0], counter[:, 1] = (events >> np.uint64(1)) & np.uint64(0xFFFFFFFF), events >> np.uint64(33)
-    counter[:, 2] = number
-    words = philox((BEAM["seed"] & 0xFFFFFFFF, BEAM["seed"] >> 32), counter)
-    odd = (events & np.uint64(1)).astype(bool)
-    low, high = np.where(odd, words[:, 2], words[:, 0]), np.where(odd, words[:, 3], words[:, 1])
-    return ((high << np.uint64(32) | low) >> np.uint64(11)).astype(np.float64) * 2.0**-53
-
-
 def test_channels_are_draw_6_in_the_order_given() -> None:
     first, n = 2**33 + 7, 5000
-    u = uniform(6, first, n)
+    u = uniforms(BEAM["seed"], first, n, draw=6)
     expected = np.array([1, 2, 3, 0])[np.searchsorted([0.25, 0.25 + 0.3, 0.25 + 0.3 + 0.2], u, side="right")]
     found = listed(first_event=first, n_events=n)
     assert (found["channel"] == expected).all()
@@ -228,7 +216,7 @@ def test_probabilities_may_hang_on_the_impact_parameter(beam: dict[str, object])
     first, n = 2**33 + 7, 20_000
     asked = {"channels": VARYING, "first_event": first, "n_events": n, **beam}
     events = listed(**asked)
-    u, b = uniform(6, first, n), events["impact_parameter"]
+    u, b = uniforms(BEAM["seed"], first, n, draw=6), events["impact_parameter"]
     part = np.interp(b, *VARYING[0].probability)
     expected = np.where(u < part, 1, np.where(u < part + 0.2, 2, 0))
     # Next to the border NumPy may round to the other side.

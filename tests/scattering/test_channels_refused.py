@@ -36,6 +36,14 @@ def test_a_closed_channel_is_refused_with_its_threshold(changes: dict[str, objec
     [
         ([Channel(1.0, 0.6), Channel(2.0, 0.5)], "channels"),
         ([Channel(1.0, 0.01)] * 65, "channels"),
+        # Together more than 1 about one energy and one impact parameter only.
+        (
+            [
+                Channel(1.0, ([0.0, 1.0], [0.2, 0.9]), excitation_function=([1.0, 2.0, 3.0], [0.0, 1.0, 0.0])),
+                Channel(1.0, 0.2),
+            ],
+            "channels",
+        ),
         ("elastic", "channels"),
         (3, "channels"),
         (Channel(1.0, 0.5, (0.1, 0.2)), "products"),
@@ -59,6 +67,9 @@ def test_bad_channels_are_refused_by_name(channels: object, argument: str) -> No
         ((1.0, ([-1.0, 0.0], [0.5, 0.5])), "probability"),
         ((1.0, ([0.0], [0.5])), "probability"),
         ((1.0, (0.5,)), "probability"),
+        ((1.0, 0.5, None, 0.5), "excitation_function"),
+        ((1.0, 0.5, None, ([1.0, 2.0], [0.5, 1.5])), "excitation_function"),
+        ((1.0, 0.5, None, ([2.0, 1.0], [0.5, 0.5])), "excitation_function"),
         ((1.0, 0.5, (1.0,)), "products"),
         ((1.0, 0.5, (1.0, 0.0)), "products"),
         ((1.0, 0.5, (1.0, np.inf)), "products"),
@@ -68,3 +79,17 @@ def test_what_is_no_channel_is_refused(values: tuple[object, ...], argument: str
     with pytest.raises(vv.errors.InvalidInput) as refused:
         Channel(*values)
     assert refused.value.argument == argument
+
+
+@pytest.mark.parametrize(
+    ("excitation_function", "beam"),
+    [
+        (([1.24, 5.0], [0.0, 1.0]), {"beam_energy": 1.245}),
+        (([0.5, 0.6, 0.7, 1.25, 2.0], [0.0, 0.1, 0.0, 0.0, 1.0]), {"beam_energy": 1.0, "energy_spread": Spread.uniform(0.5)}),
+        (([0.5, 1.0], [0.1, 0.0]), {"beam_energy": s.Spectrum([0.5, 3.0], [1.0, 1.0])}),
+    ],
+)  # fmt: skip
+def test_a_factor_below_the_threshold_is_refused(excitation_function: object, beam: dict[str, object]) -> None:
+    with pytest.raises(vv.errors.InvalidInput, match=r"threshold, 1\.25.* or no probability below it") as refused:
+        run(channels=Channel(-1.0, 0.5, excitation_function=excitation_function), **beam)
+    assert refused.value.argument == "channels"

@@ -218,7 +218,10 @@ def described(beam: Beam) -> dict[str, Any]:
         "divergence": _pair(beam.divergence),
         "spot": beam.spot,
         "importance": None if strata is None else (list(strata.edges), list(strata.fractions)),
-        "channels": [(channel.probability, channel.q_value, channel.products) for channel in beam.channels],
+        "channels": [
+            (channel.probability, channel.excitation_function or 1.0, channel.q_value, channel.products)
+            for channel in beam.channels
+        ],
     }
 
 

@@ -33,6 +33,10 @@ class Channel:
         the impact parameter `Tally.expected` knows ``cm_angle`` and ``impact_parameter`` only.
     products : tuple of float, optional
         Masses of what projectile and target become, in the unit of `masses`; by default they stay what they are.
+    excitation_function : pair of array_like, optional
+        (Energies of the projectile in the laboratory, the factor at each), in [0, 1], linear between them and beyond
+        the ends as at the ends: `probability` is multiplied by it. A beam may come below the threshold of a channel
+        where the factor is 0. Of such a channel and an energy spread `Tally.expected` knows ``impact_parameter`` only.
 
     Raises
     ------
@@ -57,11 +61,22 @@ class Channel:
     [(0, 5.0), (1, 3.5)]
     >>> round(float(vv.scattering.threshold_energy(mass_ratio=0.25, q_value=-1.5)), 12)
     1.875
+
+    The same from the threshold on, more and more often, by a beam of two lines of which one is below it:
+
+    >>> rising = vv.scattering.Channel(-1.5, 0.5, excitation_function=([1.875, 10.0], [0.0, 1.0]))
+    >>> lines = vv.scattering.Spectrum([1.0, 6.0], [1.0, 1.0])
+    >>> events = vv.scattering.scattering_events(
+    ...     vv.potentials.HardSphere(1.0), beam_energy=lines, channels=[rising], **beam)
+    >>> excited = events["channel"] == 1
+    >>> {float(energy) for energy in events["beam_energy"][excited]}
+    {6.0}
     """
 
     q_value: float
     probability: float | tuple[tuple[float, ...], tuple[float, ...]]
     products: tuple[float, float] | None = None
+    excitation_function: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "q_value", number("q_value", self.q_value))
@@ -71,6 +86,9 @@ class Channel:
             if not (pair > 0.0).all():
                 raise InvalidInput("products", f"expected two positive masses, got {pair.tolist()}")
             object.__setattr__(self, "products", (float(pair[0]), float(pair[1])))
+        if self.excitation_function is not None:
+            table = _table("excitation_function", "energies", self.excitation_function)
+            object.__setattr__(self, "excitation_function", table)
 
 
 def _probability(given: object) -> float | tuple[tuple[float, ...], tuple[float, ...]]:
@@ -79,18 +97,22 @@ def _probability(given: object) -> float | tuple[tuple[float, ...], tuple[float,
         if not 0.0 <= part <= 1.0:
             raise InvalidInput("probability", f"expected a part of all events, in [0, 1], got {part}")
         return part
-    if len(given) != 2:
-        raise InvalidInput("probability", f"expected impact parameters and the part at each, got {len(given)} arrays")
-    places, parts = (float_array("probability", values, (None,)) for values in given)
+    return _table("probability", "impact parameters", given)
+
+
+def _table(name: str, arguments: str, given: object) -> tuple[tuple[float, ...], tuple[float, ...]]:
+    """Arguments that rise from 0 or more, and a part in [0, 1] for each."""
+    if not isinstance(given, (tuple, list)) or len(given) != 2:
+        raise InvalidInput(name, f"expected {arguments} and the part at each, two arrays, got {given!r}")
+    places, parts = (float_array(name, values, (None,)) for values in given)
     if len(places) != len(parts) or len(places) < 2:
         raise InvalidInput(
-            "probability",
-            f"expected 2 or more impact parameters and a part for each, got {len(places)} and {len(parts)}",
+            name, f"expected 2 or more {arguments} and a part for each, got {len(places)} and {len(parts)}"
         )
     if not (places[0] >= 0.0 and (places[1:] > places[:-1]).all()):
-        raise InvalidInput("probability", f"expected impact parameters that rise from 0 or more, got {places.tolist()}")
+        raise InvalidInput(name, f"expected {arguments} that rise from 0 or more, got {places.tolist()}")
     if not ((parts >= 0.0) & (parts <= 1.0)).all():
-        raise InvalidInput("probability", f"expected parts of all events, in [0, 1], got {parts.tolist()}")
+        raise InvalidInput(name, f"expected parts of all events, in [0, 1], got {parts.tolist()}")
     return tuple(places.tolist()), tuple(parts.tolist())
 
 

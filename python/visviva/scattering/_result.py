@@ -31,8 +31,9 @@ if TYPE_CHECKING:
 
 __all__ = ["MonteCarlo"]
 
-# Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels.
-_FORMAT, _VERSION = "visviva scattering", 4
+# Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels, version 5
+# their excitation functions.
+_FORMAT, _VERSION = "visviva scattering", 5
 
 
 @known_keywords
@@ -254,7 +255,10 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
             "divergence": beam.divergence and [beam.divergence.shape, beam.divergence.width],
             "spot": beam.spot,
             "importance": beam.importance and [beam.importance.edges, beam.importance.fractions],
-            "channels": [[channel.q_value, channel.probability, channel.products] for channel in beam.channels],
+            "channels": [
+                [channel.q_value, channel.probability, channel.products, channel.excitation_function]
+                for channel in beam.channels
+            ],
             "smallest_angle": beam.smallest_angle,
             "tables": beam.tables,
             "events": self.events,
@@ -337,7 +341,7 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
         _spread(header.get("divergence")),
         header.get("spot"),
         None if strata is None else Strata(*strata),
-        tuple(Channel(q, part, products) for q, part, products in header.get("channels", [])),
+        tuple(Channel(*told) for told in header.get("channels", [])),
     )
     events = tuple((seed, first, end) for seed, first, end in header["events"])
     tallies: list[Tally | JointTally] = []

@@ -25,7 +25,7 @@ pub use beam::Beam;
 pub use channels::{Channel, Channels};
 pub use listed::{Event, events};
 pub use mixture::{Mixture, Tally};
-pub use probability::Probability;
+pub use probability::{Factor, Probability};
 pub use profile::{Profile, Spread};
 pub use quantity::Quantity;
 pub use strata::Strata;
@@ -166,10 +166,12 @@ pub fn expected(
         }
     }
     check_size(mixture, tallies)?;
-    let exits = if differ(tallies) { mixture.exit_parts() } else { vec![1.0] };
-    let steps = steps(mixture, tallies, exits.len(), threads, ticker)?;
-    let parts: Vec<f64> =
-        mixture.parts().flat_map(|line| exits.iter().map(move |exit| line * exit)).collect();
+    let differ = differ(tallies);
+    let steps = steps(mixture, tallies, differ, threads, ticker)?;
+    let of_beam = |(line, beam): (f64, &Beam)| -> Vec<f64> {
+        if differ { beam.channels().parts().map(|exit| line * exit).collect() } else { vec![line] }
+    };
+    let parts: Vec<f64> = mixture.parts().zip(mixture.beams()).flat_map(of_beam).collect();
     let weights = mixture.strata().map_or_else(|| vec![1.0], Strata::weights);
     let of_tally = |(tally, steps): (&Tally, &Vec<Steps>)| {
         let mut drawn = vec![0.0; tally.slots() * weights.len()];
@@ -217,18 +219,21 @@ fn differ(tallies: &[Tally]) -> bool {
     tallies.iter().flat_map(Tally::axes).any(|(quantity, _)| quantity.is_of_channel())
 }
 
-/// Of each tally, for each component and each of so many channels of it.
+/// Of each tally, for each component and each channel of it, or all channels as one where they do not differ.
 fn steps(
     mixture: &Mixture,
     tallies: &[Tally],
-    channels: usize,
+    differ: bool,
     threads: usize,
     ticker: &mut Ticker<'_>,
 ) -> Result<Vec<Vec<Steps>>> {
-    let beams: Vec<&Beam> = mixture.beams().collect();
+    let exits = |beam: &Beam| if differ { beam.channels().count() } else { 1 };
+    let of: Vec<(&Beam, usize)> =
+        mixture.beams().flat_map(|beam| (0..exits(beam)).map(move |exit| (beam, exit))).collect();
     let of_tally = |tally: &Tally| {
-        for_chunks(threads, beams.len() * channels, ticker, |index, ticker| {
-            tally.steps(beams[index / channels], index % channels, ticker)
+        for_chunks(threads, of.len(), ticker, |index, ticker| {
+            let (beam, exit) = of[index];
+            tally.steps(beam, exit, ticker)
         })
     };
     tallies.iter().map(of_tally).collect()
@@ -242,11 +247,13 @@ impl<'a> Program<'a> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
         let differ = differ(tallies);
-        if mixture.is_drawn() || (differ && mixture.channels_vary()) {
+        let told = mixture.channels();
+        if mixture.is_drawn() || (differ && told.is_none()) {
             return Ok(Self::Drawn(mixture, tallies));
         }
-        let (channel, channels) = if differ { (mixture.exit_lookup(), mixture.exits()) } else { (None, 1) };
-        let steps = steps(mixture, tallies, channels, threads, ticker)?;
+        let (channel, channels) =
+            told.filter(|_| differ).map_or((None, 1), |channels| (channels.lookup(), channels.count()));
+        let steps = steps(mixture, tallies, differ, threads, ticker)?;
         Ok(Self::Steps(Stepped { component: mixture.lookup(), channel, channels, steps }))
     }
     fn counters(&self) -> Counters {

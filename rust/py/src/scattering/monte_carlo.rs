@@ -12,7 +12,7 @@ use visviva_core::memory::collected;
 use visviva_core::parallel::{Ticker, thread_count};
 use visviva_core::scattering::bins::{Bins, Spacing};
 use visviva_core::scattering::monte_carlo::{
-    Beam, Channel, Mixture, Probability, Profile, Quantity, Spread, Strata, Tally, events, expected,
+    Beam, Channel, Factor, Mixture, Probability, Profile, Quantity, Spread, Strata, Tally, events, expected,
     monte_carlo as simulate,
 };
 
@@ -69,14 +69,23 @@ pub(crate) struct Described<'py> {
     channels: Vec<AskedChannel>,
 }
 
-/// The probability of a channel, its Q, and the masses of the products.
-type AskedChannel = (AskedProbability, f64, Option<(f64, f64)>);
+/// The probability of a channel, what it is multiplied by at each energy, its Q, and the masses of the products.
+type AskedChannel = (AskedFactor, AskedFactor, f64, Option<(f64, f64)>);
 
-/// The probability of a channel: a number, or impact parameters and the probability at each.
+/// A number, or arguments and the factor at each.
 #[derive(FromPyObject)]
-enum AskedProbability {
+enum AskedFactor {
     Constant(f64),
-    OfPlace((Vec<f64>, Vec<f64>)),
+    Table((Vec<f64>, Vec<f64>)),
+}
+
+impl From<AskedFactor> for Factor {
+    fn from(asked: AskedFactor) -> Self {
+        match asked {
+            AskedFactor::Constant(value) => Self::Constant(value),
+            AskedFactor::Table((arguments, values)) => Self::Table(arguments, values),
+        }
+    }
 }
 
 /// What the work is given of one.
@@ -115,11 +124,8 @@ impl Described<'_> {
         let profile = Profile { energy_spread, divergence: spread("divergence", divergence)?, spot };
         let strata = importance.map(|(edges, fractions)| Strata::new(&edges, &fractions)).transpose();
         let strata = strata.map_err(|error| raised(py, error))?;
-        let channel = |(probability, q_value, products)| {
-            let probability = match probability {
-                AskedProbability::Constant(value) => Probability::Constant(value),
-                AskedProbability::OfPlace((places, values)) => Probability::OfPlace(places, values),
-            };
+        let channel = |(place, energy, q_value, products): AskedChannel| {
+            let probability = Probability { of_place: place.into(), of_energy: energy.into() };
             Channel { probability, q_value, products }
         };
         let channels: Vec<Channel> = channels.into_iter().map(channel).collect();

@@ -194,15 +194,20 @@ impl Beam {
     ) -> Result<()> {
         let collision = checked(energy, masses, b_max)?;
         profile.check(energy, b_max)?;
-        channels.exits(collision, energy, profile.energies(energy)).map(|_| ())
+        Self::told(channels, energy, profile).exits(collision, energy, profile.energies(energy)).map(|_| ())
     }
     /// The same beam whose events go through channels.
     ///
     /// # Errors
     /// `InvalidInput` naming `channels` of which one is closed at its least energy.
-    pub(super) fn through(self, channels: &Arc<Channels>) -> Result<Self> {
+    pub(super) fn through(self, channels: &Channels) -> Result<Self> {
+        let channels = Self::told(channels, self.energy, &self.profile);
         let exits = channels.exits(self.collision, self.energy, self.profile.energies(self.energy))?;
-        Ok(Self { channels: channels.clone(), exits, ..self })
+        Ok(Self { channels: Arc::new(channels), exits, ..self })
+    }
+    /// Channels with the energy told, if all events have one.
+    fn told(channels: &Channels, energy: f64, profile: &Profile) -> Channels {
+        if profile.energy_spread.is_some() { channels.clone() } else { channels.at_energy(energy) }
     }
     /// Its channels.
     pub(super) fn channels(&self) -> &Channels {
@@ -232,13 +237,13 @@ impl Beam {
     pub(super) fn arrival(&self, draws: Draws) -> Arrival {
         let place = draws.bits(PLACE);
         let share = self.share(place);
-        let b = self.b_max * share.sqrt();
+        let (b, energy) = (self.b_max * share.sqrt(), self.profile.energy(self.energy, draws));
         Arrival {
-            energy: self.profile.energy(self.energy, draws),
+            energy,
             share,
             stratum: self.stratum(place),
             direction: self.profile.direction(draws),
-            exit: if self.exits.len() > 1 { self.channels.find(draws.bits(CHANNEL), b) } else { 0 },
+            exit: if self.exits.len() > 1 { self.channels.find(draws.bits(CHANNEL), b, energy) } else { 0 },
         }
     }
     /// One of the middle energy along the axis.

@@ -6,7 +6,7 @@
 //! event stays a step function of the draw of its place, one for each channel.
 
 use super::beam::UNIT;
-use super::probability::Probability;
+use super::probability::{Factor, Probability};
 use super::quantity::Quantity;
 use crate::numerics::philox::DRAW_BITS;
 use crate::scattering::histogram::Lookup;
@@ -39,8 +39,10 @@ pub struct Channel {
 pub struct Channels {
     /// The first draw of each that has any, and its number: 0 is elastic, others count from 1 as given.
     open: Vec<(u64, usize)>,
-    /// Of each reaction, where one of them hangs on the impact parameter; then all are open, and elastic is the last.
-    varying: Vec<Probability>,
+    /// Of each reaction.
+    probabilities: Vec<Probability>,
+    /// Whether one of them hangs on what an event is; then all are open, and elastic is the last.
+    varies: bool,
     reactions: Vec<Reaction>,
 }
 
@@ -75,23 +77,39 @@ impl Channels {
         }
         let probabilities: Vec<Probability> =
             channels.iter().map(|channel| channel.probability.clone()).collect();
-        // Piecewise linear ones are together greatest where one of them bends.
-        let bends = [0.0].into_iter().chain(probabilities.iter().flat_map(Probability::places).copied());
-        for b in bends {
-            let sum: f64 = probabilities.iter().map(|probability| probability.at(b)).sum();
-            if sum > 1.0 + ROUNDED {
-                let (sum, b) = (number(sum), number(b));
-                return refused(format!(
-                    "expected probabilities that are together at most 1, what is left being elastic, but at the impact parameter {b} they are {sum}"
-                ));
+        // Products of what is piecewise linear are together greatest where they bend.
+        let bends = |factor: fn(&Probability) -> &Factor| -> Vec<f64> {
+            [0.0].into_iter().chain(probabilities.iter().flat_map(|p| factor(p).bends()).copied()).collect()
+        };
+        let energies = bends(|probability| &probability.of_energy);
+        for b in bends(|probability| &probability.of_place) {
+            for energy in &energies {
+                let sum: f64 = probabilities.iter().map(|probability| probability.at(b, *energy)).sum();
+                if sum > 1.0 + ROUNDED {
+                    let place = if energies.len() > 1 {
+                        format!("impact parameter {} and the energy {}", number(b), number(*energy))
+                    } else {
+                        format!("impact parameter {}", number(b))
+                    };
+                    return refused(format!(
+                        "expected probabilities that are together at most 1, what is left being elastic, but at the {place} they are {}",
+                        number(sum)
+                    ));
+                }
             }
         }
-        let varies = probabilities.iter().any(|probability| !probability.places().is_empty());
-        let (mut sum, mut start) = (0.0, 0);
-        let (mut open, mut reactions) = (Vec::new(), Vec::with_capacity(channels.len()));
-        for (index, channel) in channels.iter().enumerate() {
-            sum += channel.probability.at(0.0);
-            reactions.push(Reaction::new(masses, channel.products.unwrap_or(masses), channel.q_value)?);
+        let reaction =
+            |channel: &Channel| Reaction::new(masses, channel.products.unwrap_or(masses), channel.q_value);
+        let reactions = channels.iter().map(reaction).collect::<Result<_>>()?;
+        Ok(Self::opened(probabilities, reactions))
+    }
+    /// Those of them that have draws.
+    fn opened(probabilities: Vec<Probability>, reactions: Vec<Reaction>) -> Self {
+        let of_event = |p: &Probability| !(p.of_place.bends().is_empty() && p.of_energy.bends().is_empty());
+        let varies = probabilities.iter().any(of_event);
+        let (mut sum, mut start, mut open) = (0.0, 0, Vec::new());
+        for (index, probability) in probabilities.iter().enumerate() {
+            sum += probability.at(0.0, 0.0);
             let end = end_of(sum);
             if end > start || varies {
                 open.push((start, index + 1));
@@ -101,16 +119,21 @@ impl Channels {
         if start < DRAWS || varies {
             open.push((start, 0));
         }
-        Ok(Self { open, varying: if varies { probabilities } else { Vec::new() }, reactions })
+        Self { open, probabilities, varies, reactions }
+    }
+    /// The same where all events have one energy.
+    pub(super) fn at_energy(&self, energy: f64) -> Self {
+        let told = self.probabilities.iter().map(|probability| probability.at_energy(energy)).collect();
+        Self::opened(told, self.reactions.clone())
     }
     /// Only elastic.
     pub fn elastic() -> Self {
-        Self { open: vec![(0, 0)], varying: Vec::new(), reactions: Vec::new() }
+        Self { open: vec![(0, 0)], probabilities: Vec::new(), varies: false, reactions: Vec::new() }
     }
     /// The exits of a beam: of a middle energy, and the least and the greatest of its spread.
     ///
     /// # Errors
-    /// `InvalidInput` naming `channels` of which one is closed at the least energy.
+    /// `InvalidInput` naming `channels` of which one is closed at the least energy and yet has a probability there.
     pub(super) fn exits(
         &self,
         collision: Collision,
@@ -118,17 +141,18 @@ impl Channels {
         [least, greatest]: [f64; 2],
     ) -> Result<Arc<[Exit]>> {
         let mut made = Vec::with_capacity(self.reactions.len());
-        for (index, reaction) in self.reactions.iter().enumerate() {
+        for (index, (reaction, probability)) in self.reactions.iter().zip(&self.probabilities).enumerate() {
             let threshold = reaction.threshold();
-            if least < threshold {
+            if least < threshold && !probability.vanishes(least, threshold.min(greatest)) {
                 let (threshold, q, least) = (number(threshold), number(reaction.q_value()), number(least));
                 return Err(Error::invalid(
                     "channels",
                     format!(
-                        "expected beam energies of at least the threshold, {threshold}, that q_value = {q} of channel {index} sets, got {least}"
+                        "expected beam energies of at least the threshold, {threshold}, that q_value = {q} of channel {index} sets, or no probability below it, got {least}"
                     ),
                 ));
             }
+            let [least, middle, greatest] = [least, middle, greatest].map(|energy| energy.max(threshold));
             let _checked = (reaction.at(least)?, reaction.at(greatest)?);
             made.push(if reaction.is_elastic() {
                 Exit::Elastic(collision)
@@ -148,19 +172,19 @@ impl Channels {
     pub(super) fn count(&self) -> usize {
         self.open.len()
     }
-    /// Whether which one an event goes through hangs on its impact parameter.
+    /// Whether which one an event goes through hangs on its impact parameter or its energy.
     pub(super) fn vary(&self) -> bool {
-        !self.varying.is_empty()
+        self.varies
     }
-    /// Which of them a draw is at an impact parameter, in the order of [`exits`](Self::exits).
-    pub(super) fn find(&self, draw: u64, b: f64) -> usize {
-        if self.vary() {
+    /// Which of them a draw is at an impact parameter and an energy, in the order of [`exits`](Self::exits).
+    pub(super) fn find(&self, draw: u64, b: f64, energy: f64) -> usize {
+        if self.varies {
             let mut sum = 0.0;
             let below = |probability: &Probability| {
-                sum += probability.at(b);
+                sum += probability.at(b, energy);
                 draw < end_of(sum)
             };
-            return self.varying.iter().position(below).unwrap_or(self.varying.len());
+            return self.probabilities.iter().position(below).unwrap_or(self.probabilities.len());
         }
         self.open.partition_point(|(start, _)| *start <= draw).saturating_sub(1)
     }
@@ -185,11 +209,18 @@ impl Exit {
     pub(super) fn is_elastic(&self) -> bool {
         matches!(self, Self::Elastic(_))
     }
+    /// That energy, or the threshold, below which there are no events.
+    fn open_at(&self, energy: f64) -> f64 {
+        match self {
+            Self::Elastic(_) => energy,
+            Self::Reaction(reaction, ..) => energy.max(reaction.threshold()),
+        }
+    }
     fn encounter(&self, energy: f64) -> Encounter {
         match self {
             Self::Elastic(collision) => Encounter::elastic(*collision),
             Self::Reaction(_, middle, encounter) if *middle == energy => *encounter,
-            Self::Reaction(reaction, ..) => reaction.encounter(energy),
+            Self::Reaction(reaction, ..) => reaction.encounter(self.open_at(energy)),
         }
     }
     /// The value of a quantity of half an angle at a beam energy, directions from that of the projectile before.
@@ -204,6 +235,7 @@ impl Exit {
                 Quantity::ImpactParameter => f64::NAN,
             };
         }
+        let energy = self.open_at(energy);
         // No rounding takes an energy above its greatest, which may be an edge.
         let part = |body: &Product, half| body.energy(half).min(body.energy(HalfAngle::of(0.0)));
         match quantity {

@@ -66,7 +66,7 @@ impl Mixture {
         threads: usize,
         ticker: &mut Ticker<'_>,
     ) -> Result<Self> {
-        let channels = Arc::new(Channels::new(channels, masses)?);
+        let channels = Channels::new(channels, masses)?;
         for energy in energies {
             Beam::check(&channels, *energy, masses, b_max, &profile)?;
         }
@@ -92,25 +92,15 @@ impl Mixture {
     ///
     /// # Errors
     /// `InvalidInput` naming `channels` of which one is closed at the least energy of a beam.
-    pub(super) fn through(self, channels: &Arc<Channels>) -> Result<Self> {
+    pub(super) fn through(self, channels: &Channels) -> Result<Self> {
         let of_component = |(start, beam): (u64, Beam)| Ok((start, beam.through(channels)?));
         Ok(Self { components: self.components.into_iter().map(of_component).collect::<Result<_>>()? })
     }
-    /// Whether which channel an event goes through hangs on its impact parameter.
-    pub(super) fn channels_vary(&self) -> bool {
-        self.beams().any(|beam| beam.channels().vary())
-    }
-    /// How many channels have events.
-    pub(super) fn exits(&self) -> usize {
-        self.beams().next().map_or(1, |beam| beam.channels().count())
-    }
-    /// Which of them a draw is, if there are several.
-    pub(super) fn exit_lookup(&self) -> Option<Lookup> {
-        self.beams().next().and_then(|beam| beam.channels().lookup())
-    }
-    /// The part of all draws that is each one's.
-    pub(super) fn exit_parts(&self) -> Vec<f64> {
-        self.beams().next().map_or_else(Vec::new, |beam| beam.channels().parts().collect())
+    /// The channels of all beams, if an event's draw tells which of them it goes through.
+    pub(super) fn channels(&self) -> Option<&Channels> {
+        let mut beams = self.beams().map(Beam::channels);
+        let first = beams.next()?;
+        (!first.vary() && beams.all(|channels| channels == first)).then_some(first)
     }
     /// The strata of its events, if there are any.
     pub fn strata(&self) -> Option<&Strata> {

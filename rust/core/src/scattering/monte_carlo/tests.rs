@@ -269,7 +269,7 @@ fn a_mixture_counts_every_event_in_its_own_beam() {
 #[test]
 fn channels_count_every_event_in_their_own() {
     let channel = |probability, q_value, products| Channel {
-        probability: Probability::Constant(probability),
+        probability: Probability::constant(probability),
         q_value,
         products,
     };
