@@ -8,11 +8,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from visviva._arrays import number
+from visviva import _expression_table
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
-from visviva.generalized._nodes import FUNCTIONS, Nodes, check_call
+from visviva.generalized._nodes import Nodes, check_call
 from visviva.generalized._source import calls
 from visviva.generalized._symbolic import Symbols, sympy, time
 
@@ -21,10 +21,6 @@ if TYPE_CHECKING:
 
 __all__ = ["ExpressionForce", "parameter_names"]
 
-#: Operations by their numbers in a table; functions come after them.
-_OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
-#: In the place of an operation: the letters of a parameter's name follow.
-_NAME = 1000
 _PLACES = ("x", "y", "z")
 _VELOCITIES = ("vx", "vy", "vz")
 _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
@@ -83,19 +79,12 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     """
     if (potential is None) == (force is None):
         raise InvalidInput("potential", "expected one of potential and force")
-    if parameters is not None and not hasattr(parameters, "items"):
-        kind = type(parameters).__name__
-        raise InvalidInput("parameters", f"expected values by parameter, as {{k: 4.0}}, got {kind}")
-    given = dict(parameters or {})
-    names = tuple(_parameter_name(key) for key in given)
-    values = [number(f"parameters[{name!r}]", value) for name, value in zip(names, given.values(), strict=True)]
-    if len(set(names)) < len(names):
-        raise InvalidInput("parameters", f"expected different names, got {list(names)}")
+    names, values = _expression_table.named(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
     argument: Literal["potential", "force"] = "potential" if force is None else "force"
     roots = (potential,) if force is None else _components(force, names)
     found = [_node(argument, root, nodes, names) for root in roots]
-    return ExpressedForce(argument, _table(nodes, found, names), values, *_AXES)
+    return ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
 
 
 def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
@@ -118,13 +107,6 @@ def _component(components: Any, which: int) -> Any:
     return three[which]
 
 
-def _parameter_name(key: Any) -> str:
-    name = str(key)
-    if not name.isidentifier() or name in (*_PLACES, *_VELOCITIES, "t"):
-        raise InvalidInput("parameters", f"expected names that are not x, y, z, vx, vy, vz or t, got {key!r}")
-    return name
-
-
 def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) -> int:
     """Give the node of one expression, of SymPy or a function."""
     if not hasattr(expression, "free_symbols"):
@@ -138,26 +120,9 @@ def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) 
     return Symbols(nodes, *known).node(argument, expression.xreplace(plain))
 
 
-def _table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]:
-    """Write nodes as numbers: how many roots, and which; each node, with its number of arguments; names by letters."""
-    table: list[float] = [len(roots), *roots]
-    for operation, arguments, value in nodes.all:
-        table += [_OPERATIONS.index(operation), value, len(arguments), *arguments]
-    for index, name in enumerate(names):
-        table += [_NAME, index, len(name), *map(ord, name)]
-    return table
-
-
 def parameter_names(force: ExpressedForce) -> tuple[str, ...]:
     """Give the names of a force's parameters, in the order of its ``values``."""
-    table = [int(number) for number in force.nodes]
-    names, at = [], 1 + table[0]
-    while at < len(table):
-        operation, _, count = table[at : at + 3]
-        if operation == _NAME:
-            names.append("".join(map(chr, table[at + 3 : at + 3 + count])))
-        at += 3 + count
-    return tuple(names)
+    return _expression_table.parameter_names(force.nodes)
 
 
 def __dir__() -> list[str]:

@@ -1,7 +1,7 @@
 # Written by tools/write_stubs.py from the core's registry.
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, ClassVar, Literal, Self
+from typing import Any, ClassVar, Literal, Self, overload
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -12,6 +12,7 @@ __all__ = [
     "Buckingham",
     "Coulomb",
     "Custom",
+    "Expressed",
     "HardSphere",
     "LennardJones",
     "Mie",
@@ -140,8 +141,17 @@ class PiecewisePolynomial(Potential):
     error: float
     def __init__(self, breaks: ArrayLike, coefficients: ArrayLike, error: float = 0.0) -> None: ...
 
-def Custom(  # noqa: N802
-    function: Any, r_min: float, r_max: float, *, tolerance: float = ...
-) -> PiecewisePolynomial: ...
+@dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
+class Expressed(Potential):
+    nodes: NDArray[np.float64]
+    values: NDArray[np.float64]
+    length: float
+    energy: float
+    def __init__(self, nodes: ArrayLike, values: ArrayLike, length: float = 1.0, energy: float = 1.0) -> None: ...
+
+@overload
+def Custom(function: Any, r_min: float, r_max: float, *, tolerance: float | None = ...) -> PiecewisePolynomial: ...
+@overload
+def Custom(function: Any, *, parameters: Mapping[Any, float] | None = ...) -> Expressed: ...
 def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...

@@ -132,6 +132,15 @@ class Draw:
         last = 64.0 if self.tame else 8.0
         return vv.potentials.Custom(lambda r: strength / r + decay * np.exp(-rate * r), 2.0**-6, last, tolerance=1e-9)
 
+    def formula(self) -> vv.potentials.Potential:
+        """What `Custom` makes of a formula."""
+        numbers = {"strength": self.number(), "decay": self.number(), "rate": self.number("positive")}
+
+        def of_distance(r: Any, strength: Any, decay: Any, rate: Any) -> Any:
+            return strength / r + decay * np.exp(-rate * r)
+
+        return vv.potentials.Custom(of_distance, parameters=numbers)
+
     def sampled_drag(self) -> vv.SampledDrag:
         """What `drag.custom` makes of a law, known up to speeds that a tame scene does not reach."""
         slow, fast = self.number("positive"), self.number("not_negative")
@@ -164,6 +173,7 @@ class Draw:
     TABLES: ClassVar[dict[str, Callable[[Draw], vv.potentials.Potential]]] = {
         "Tabulated": tabulated,
         "PiecewisePolynomial": custom,
+        "Expressed": formula,
     }
 
     def indices(self) -> list[int]:

@@ -178,7 +178,13 @@ def what_is_reversed_retraces_its_path(recipe: Recipe) -> None:
         signs = np.random.default_rng(recipe.seed).choice([-1.0, 1.0], (2, *x.shape))
         off = turned.with_state(x + error_x * signs[0], turned.particles.velocity + error_v * signs[1], case.t[-1])
         allowed = _sum(allowed, change((y, w), states(Case(off, there), **how)))
-    _alike(f"{recipe.method}, there and back", (bodies.position, bodies.velocity), (y, -w), allowed, (Case(turned, there), how))
+    _alike(
+        f"{recipe.method}, there and back",
+        (bodies.position, bodies.velocity),
+        (y, -w),
+        allowed,
+        (Case(turned, there), how),
+    )
 
 
 def _span(case: Case) -> float:

@@ -19,6 +19,7 @@ PLACES = np.linspace(0.25, 6.0, 600)
 OTHERS = {
     "tabulated": (PLACES, 1.3 * np.exp(-0.7 * PLACES) / PLACES),
     "piecewise_polynomial": potentials.Custom(lambda r: 1.3 * np.exp(-0.7 * r) / r, 0.25, 6.0).parameters,
+    "expressed": potentials.Custom(lambda r, k: k * np.exp(-0.7 * r) / r, parameters={"k": 1.3}).parameters,
     "soft_sphere": (1.3, 9.0, 2.5),
     "screened_coulomb": (1.3, 0.7, "zbl"),
 }

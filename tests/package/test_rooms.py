@@ -10,7 +10,7 @@ from pathlib import Path
 
 SOURCES = Path(__file__).parents[2] / "rust" / "core" / "src"
 
-# numerics ← expressions, ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering
+# numerics ← expressions ← ode, potentials ← forces ← nbody, rigid, generalized ← central ← scattering
 # ← closed_forms, conservation ← scene.
 # Rooms of one floor do not know each other.
 FLOORS = (
@@ -18,7 +18,8 @@ FLOORS = (
     ("words",),
     ("numerics",),
     ("memory", "parallel", "units"),
-    ("expressions", "ode", "potentials"),
+    ("expressions",),
+    ("ode", "potentials"),
     ("forces",),
     ("nbody", "rigid", "generalized"),
     ("central",),

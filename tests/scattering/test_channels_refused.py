@@ -85,7 +85,11 @@ def test_what_is_no_channel_is_refused(values: tuple[object, ...], argument: str
     ("excitation_function", "beam"),
     [
         (([1.24, 5.0], [0.0, 1.0]), {"beam_energy": 1.245}),
-        (([0.5, 0.6, 0.7, 1.25, 2.0], [0.0, 0.1, 0.0, 0.0, 1.0]), {"beam_energy": 1.0, "energy_spread": Spread.uniform(0.5)}),
+        # A bump below it, between what a spread reaches.
+        (
+            ([0.5, 0.6, 0.7, 1.25, 2.0], [0.0, 0.1, 0.0, 0.0, 1.0]),
+            {"beam_energy": 1.0, "energy_spread": Spread.uniform(0.5)},
+        ),
         (([0.5, 1.0], [0.1, 0.0]), {"beam_energy": s.Spectrum([0.5, 3.0], [1.0, 1.0])}),
     ],
 )  # fmt: skip

@@ -79,7 +79,9 @@ def test_one_energy_is_the_constant_that_it_makes() -> None:
     """Bits of the channel whose probability is told as a number, on the fast path."""
     told = Channel(-1.5, 0.5 * 0.4)
     rising = run(channels=RISING, beam_energy=3.0, tally=ALL, bins=29)
-    for of_energy, constant in zip(rising.tallies, run(channels=told, beam_energy=3.0, tally=ALL, bins=29).tallies):
+    for of_energy, constant in zip(
+        rising.tallies, run(channels=told, beam_energy=3.0, tally=ALL, bins=29).tallies, strict=True
+    ):
         assert (of_energy.counts == constant.counts).all()
         assert (of_energy.expected() == constant.expected()).all()
 
@@ -87,7 +89,7 @@ def test_one_energy_is_the_constant_that_it_makes() -> None:
 def test_below_its_threshold_a_channel_is_none() -> None:
     closed = run(channels=RISING, beam_energy=1.5, tally=ALL, bins=29)
     elastic = run(beam_energy=1.5, tally=ALL, bins=29)
-    for tally, other in zip(closed.tallies, elastic.tallies):
+    for tally, other in zip(closed.tallies, elastic.tallies, strict=True):
         assert (tally.counts == other.counts).all()
         assert (tally.edges == other.edges).all()
         assert tally.covered == other.covered

@@ -136,8 +136,9 @@ class Symbols:
         n = len(self._coordinates)
         for index, symbol in enumerate(parameters):
             self._known[symbol] = nodes.add("parameter", (), float(index))
-        for index, (symbol, velocity) in enumerate(zip(self._coordinates, velocities, strict=True)):
+        for index, symbol in enumerate(self._coordinates):
             self._known[symbol] = nodes.add("variable", (), float(index))
+        for index, velocity in enumerate(velocities):
             self._known[velocity] = nodes.add("variable", (), float(n + index))
 
     def node(self, argument: str, expression: Any) -> int:

@@ -18,8 +18,8 @@ use crate::ode::methods::{
 };
 use crate::ode::system::{Form, Needs};
 use crate::potentials::{
-    PotentialDeclaration, buckingham, coulomb, hard_sphere, lennard_jones, mie, morse, piecewise_polynomial,
-    plummer, power_law, screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
+    PotentialDeclaration, buckingham, coulomb, expressed, hard_sphere, lennard_jones, mie, morse,
+    piecewise_polynomial, plummer, power_law, screened_coulomb, soft_sphere, square_well, tabulated, yukawa,
 };
 use crate::words::unknown;
 
@@ -122,6 +122,7 @@ pub static POTENTIALS: &[&PotentialDeclaration] = &[
     &screened_coulomb::DECLARATION,
     &tabulated::DECLARATION,
     &piecewise_polynomial::DECLARATION,
+    &expressed::DECLARATION,
 ];
 
 /// The potential of a name.

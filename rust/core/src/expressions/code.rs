@@ -58,7 +58,7 @@ pub struct Code {
     pub(super) body: Vec<u16>,
     /// The registers of the results.
     pub(super) outputs: Vec<u16>,
-    operations: usize,
+    pub(super) operations: usize,
 }
 
 /// The parts of a code, as a file has them.

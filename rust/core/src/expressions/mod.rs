@@ -6,6 +6,7 @@
 
 pub mod assembler;
 pub mod code;
+pub mod curve;
 mod derivative;
 pub mod execute;
 pub mod function;
@@ -16,6 +17,7 @@ pub mod machine;
 pub mod nodes;
 pub mod program;
 pub mod series;
+pub mod table;
 mod verify;
 mod walk;
 

@@ -16,14 +16,25 @@ const PART: f64 = 0.5;
 /// Longer than any step.
 const LONG: f64 = 1e300;
 
-/// The squares of the shortest lengths of the potentials on the systems in the lanes; nothing of those that have none.
+/// The squares of the shortest lengths of the potentials on the systems in the lanes; nothing of those that have none. A
+/// steep power of the distance acts abruptly though it has no length: any distance may be where.
 pub(super) fn lengths2<'a>(
     context: &Context<'a>,
     potential: impl Fn(&System<'a>) -> &'a Arc<dyn Potential>,
 ) -> Option<Lanes> {
-    let length = |system: &System<'a>| potential(system).scaled(context.units).lengths().first().copied();
+    let length = |system: &System<'a>| {
+        let potential = potential(system).scaled(context.units);
+        potential.lengths().first().copied().or_else(|| is_steep(&*potential).then_some(0.0))
+    };
     let _: f64 = length(&context.first())?;
     context.per_system(|system| length(system).map_or(0.0, |length| length * length)).first().copied()
+}
+
+/// Of a potential without a length, that is a power law: whether its force falls faster than 1/r³, as what turns by itself
+/// near a center does.
+fn is_steep(potential: &dyn Potential) -> bool {
+    let [_, force, curvature] = potential.at(1.0);
+    curvature.abs() > 3.0 * force.abs()
 }
 
 /// Where bodies are, how they move and what accelerates them, component after component.

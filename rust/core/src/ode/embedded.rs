@@ -27,6 +27,9 @@ mod between;
 use attempt::Attempt;
 use between::{Between, Weights};
 
+/// How many times its tolerance a step may be off at its end by half of what is there.
+const MISSED: f64 = 1e3;
+
 /// An embedded method at work on one state (of one or of eight trajectories).
 pub struct EmbeddedStep<S: Element> {
     method: &'static Embedded,
@@ -98,6 +101,18 @@ impl<S: Controlled> EmbeddedStep<S> {
             Form::SecondOrder(_) => [self.change(of_q, h * h), self.change(of_v, h)],
         };
         self.combined(norm.sizes(state, &self.next, elapsed, &changes))
+    }
+
+    /// Where the derivative at the end, which no estimate weighs, is another than that of the last stage, which is at the end
+    /// too: a stiff force that begins within the step has thrown the stages back to where it is not.
+    fn misses_its_end(&self, state: &State<S>, elapsed: &S, h: S, norm: &Norm<S>) -> S::Mask {
+        let (end, one, zero) = (self.end_stage(), S::one(), S::zero());
+        let terms =
+            [PairTerm { stage: end, weights: [one; 2] }, PairTerm { stage: end - 1, weights: [-one, zero] }];
+        let changes = [self.change(&terms, h * h), self.change(&terms, h)];
+        let [difference, whole] = norm.sizes(state, &self.next, elapsed, &changes);
+        let matters = S::splat(MISSED * MISSED).less(difference);
+        matters.and((S::splat(0.25) * whole).less(difference))
     }
 
     /// `(E² / sqrt(E² + 0.01 E3²))²` of two estimates, with `E²` and `E3²` at hand; the first if there is one only.
@@ -224,10 +239,13 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
         if let Some(mean) = &norm.mean {
             return S::pass(Attempt { method: self, running, system, state, clock, mean, ticker });
         }
-        if matches!(self.stages.form(), Form::SecondOrder(_))
-            && let Some(longest) =
+        let longest = match self.stages.form() {
+            Form::SecondOrder(_) => {
                 system.longest_step((state.q(), state.v()), &self.stages.k[..self.stages.len()])
-        {
+            }
+            Form::FirstOrder(_) => None,
+        };
+        if let Some(longest) = longest {
             clock.shorten(longest);
         }
         let (from, h) = (clock.elapsed, S::next_step(clock, running));
@@ -237,9 +255,18 @@ impl<S: Controlled> Trial<S> for EmbeddedStep<S> {
             self.stages.evaluate(end_stage, &(from + h), &self.next, system, ticker)?;
         }
         let size2 = self.error_size(state, &from, h, norm);
+        let before = *clock;
         let outcome = S::settle(clock, running, size2, &self.rule);
         if outcome.accepted.any() && !self.end_in_estimate {
             self.stages.evaluate(end_stage, &clock.elapsed, &self.next, system, ticker)?;
+            if longest.is_some() {
+                let missed = self.misses_its_end(state, &from, h, norm).and(outcome.accepted);
+                if missed.any() {
+                    *clock = before;
+                    let size2 = S::select(missed, S::splat(HUGE), size2);
+                    return Ok(S::settle(clock, running, size2, &self.rule));
+                }
+            }
         }
         Ok(outcome)
     }

@@ -6,6 +6,7 @@
 
 pub mod buckingham;
 pub mod coulomb;
+pub mod expressed;
 pub mod fit;
 pub mod hard_sphere;
 mod hermite;
@@ -28,6 +29,7 @@ mod thomas_fermi_table;
 pub mod yukawa;
 
 use crate::error::Result;
+use crate::expressions::curve::Argument;
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::elementary::Exponential;
 use crate::numerics::lanes::Lanes;
@@ -48,10 +50,10 @@ const FAR: i32 = 300;
 /// What a potential declares about itself.
 pub type PotentialDeclaration = Declaration<dyn Potential>;
 
-/// The scalars of formulas: those with an exponential and powers, that can be looked up in a table.
-pub trait Analytic: Exponential + Powers + Lookup {}
+/// The scalars of formulas: those with an exponential and powers, that can be looked up in a table and run code.
+pub trait Analytic: Exponential + Powers + Lookup + Argument {}
 
-impl<S: Exponential + Powers + Lookup> Analytic for S {}
+impl<S: Exponential + Powers + Lookup + Argument> Analytic for S {}
 
 /// The numbers of a formula: of one potential, or lane by lane those of several.
 pub type Numbers<S> = [S; 5];
@@ -78,6 +80,18 @@ pub trait Formula: Debug + Send + Sync + Sized + 'static {
     /// What else it is made of, which they must have alike, as numbers; `None`: they must have the very same potential.
     fn in_every_lane(&self) -> Option<Vec<u64>> {
         None
+    }
+    /// Whether it diverges at r = 0; told of each where a kind does not say.
+    fn singular(&self) -> bool {
+        Self::SINGULAR
+    }
+    /// Where something may happen, ascending, if its parameters do not tell.
+    fn lengths(&self) -> Option<Vec<f64>> {
+        None
+    }
+    /// What an energy of one among its parameters makes of V where something happens.
+    fn size(&self) -> f64 {
+        1.0
     }
     /// V(r).
     fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S;
@@ -134,6 +148,8 @@ pub trait Potential: Debug + Send + Sync {
     fn all_rows(&self, r: &[Lanes], value: &mut [Lanes], force: &mut [Lanes], curvature: &mut [Lanes]);
     /// As [`evaluate`](Self::evaluate), at one distance.
     fn at(&self, r: f64) -> [f64; 3];
+    /// A length of its own, if it has one: the first of its parameters that is one, or where something happens.
+    fn own_length(&self) -> Option<f64>;
     /// The lengths that it declares, and inverses of inverse lengths: where something may happen, in order.
     fn lengths(&self) -> Vec<f64>;
     /// V(r) and −dV/dr to about thirty digits.
@@ -180,7 +196,12 @@ struct Held<P> {
 /// # Errors
 /// None.
 pub fn held<P: Formula>(values: &[Value]) -> Result<Arc<dyn Potential>> {
-    Ok(Arc::new(Held { formula: P::new(values), values: values.to_vec() }))
+    Ok(hold(P::new(values), values))
+}
+
+/// The potential of a formula that was made of those values.
+fn hold<P: Formula>(formula: P, values: &[Value]) -> Arc<dyn Potential> {
+    Arc::new(Held { formula, values: values.to_vec() })
 }
 
 impl<P: Formula> Potential for Held<P> {
@@ -188,7 +209,7 @@ impl<P: Formula> Potential for Held<P> {
         P::DECLARATION
     }
     fn singular(&self) -> bool {
-        P::SINGULAR
+        self.formula.singular()
     }
     fn jumps(&self) -> bool {
         P::JUMPS
@@ -216,7 +237,17 @@ impl<P: Formula> Potential for Held<P> {
     fn at(&self, r: f64) -> [f64; 3] {
         self.formula.all(&self.formula.numbers(), r)
     }
+    fn own_length(&self) -> Option<f64> {
+        if let Some(lengths) = self.formula.lengths() {
+            return lengths.first().copied();
+        }
+        let mut all = self.values.iter().zip(P::DECLARATION.exponents(&self.values));
+        all.find(|(_, dimension)| *dimension == [1.0, 0.0, 0.0]).map(|(length, _)| length.size())
+    }
     fn lengths(&self) -> Vec<f64> {
+        if let Some(lengths) = self.formula.lengths() {
+            return lengths;
+        }
         let dimensions = P::DECLARATION.exponents(&self.values);
         let mut lengths = Vec::new();
         for (value, dimension) in self.values.iter().zip(dimensions) {
@@ -242,7 +273,7 @@ impl<P: Formula> Potential for Held<P> {
     fn near_one(&self, length: i32) -> Option<(Arc<dyn Potential>, i32)> {
         let dimensions = P::DECLARATION.exponents(&self.values);
         // The exponent of the unit of mass in which a strength is near one, while that of time stays.
-        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.size() {
+        let near = |(value, [l, m, _]): (&Value, [f64; 3])| match value.size() * self.formula.size() {
             strength if m != 0.0 && strength != 0.0 && strength.is_finite() => {
                 Some(((f64::from(exponent(strength)) - l * f64::from(length)) / m).round() as i32)
             }

@@ -13,6 +13,9 @@ fn parameters(declaration: &PotentialDeclaration, seeds: &[f64; 4]) -> Option<Ve
     if declaration.name == "piecewise_polynomial" {
         return Some(fitted(seeds));
     }
+    if declaration.name == "expressed" {
+        return Some(formula(seeds));
+    }
     let seeds = seeds.iter().cycle();
     let value = |(parameter, seed): (&Parameter, &f64)| match parameter.kind {
         Kind::Number(Sign::Any) => Some(Value::Number(*seed)),
@@ -43,6 +46,25 @@ fn table(seeds: &[f64; 4]) -> Vec<Value> {
     let r: Vec<f64> = (0..200).map(|i| 0.6 + 0.013 * f64::from(i)).collect();
     let v = |r: &f64| seeds[0] / r + seeds[1] * Exponential::exp(-r * seeds[2].abs()) + seeds[3];
     vec![Value::Table(r.iter().copied().collect()), Value::Table(r.iter().map(v).collect())]
+}
+
+/// The same sum as nodes: r, the four parameters, a/r, c r, its exponential, that times b, and all of it.
+fn formula(seeds: &[f64; 4]) -> Vec<Value> {
+    let (variable, parameter, sum, product, quotient, exp) = (1.0, 2.0, 4.0, 5.0, 6.0, 12.0);
+    let parameters = (0..4).map(|i| (parameter, f64::from(i), vec![]));
+    let nodes = core::iter::once((variable, 0.0, vec![])).chain(parameters).chain([
+        (quotient, 0.0, vec![1.0, 0.0]),
+        (product, 0.0, vec![3.0, 0.0]),
+        (exp, 0.0, vec![6.0]),
+        (product, 0.0, vec![2.0, 7.0]),
+        (sum, 0.0, vec![5.0, 8.0, 4.0]),
+    ]);
+    let rows = nodes.flat_map(|(operation, value, of): (f64, f64, Vec<f64>)| {
+        [vec![operation, value, of.len() as f64], of].concat()
+    });
+    let table: Vec<f64> = [1.0, 9.0].into_iter().chain(rows).collect();
+    let values = vec![seeds[0], seeds[1], -seeds[2].abs(), seeds[3]];
+    vec![Value::Table(table.into()), Value::Table(values.into()), Value::Number(1.0), Value::Number(1.0)]
 }
 
 /// What is made of a smooth function from 0.6 to 3.2.

@@ -3,8 +3,8 @@
 //! The one idea: what a user writes is a graph in the scene's own coordinates and units, with derivatives taken on it; a
 //! scene that is shifted, turned or rescaled changes the few numbers that lead from its bodies to those coordinates.
 
+mod compiled;
 mod kernel;
-mod table;
 
 use super::Force;
 use super::bodies::{Of, PreciseBodies};
@@ -64,7 +64,7 @@ pub static DECLARATION: ForceDeclaration = Declaration {
         [gives, nodes, parameters, first, second, third, origin, length, mass, time] => {
             let axes = [first.vector(), second.vector(), third.vector()];
             check_axes(&axes)?;
-            let expressions = table::read(gives.word() == "potential", nodes.table(), parameters.table())?;
+            let expressions = compiled::read(gives.word() == "potential", nodes.table(), parameters.table())?;
             Ok(Arc::new(ExpressionForce {
                 expressions,
                 place: Place {

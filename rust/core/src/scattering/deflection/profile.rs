@@ -54,7 +54,7 @@ pub(super) struct Profile {
 
 impl Profile {
     pub(super) fn new(potential: &Arc<dyn Potential>) -> Self {
-        let own = own_length(potential.as_ref());
+        let own = potential.own_length().map(exponent);
         let length = own.unwrap_or(0);
         let (scaled, energy) = potential.near_one(length).unwrap_or_else(|| (Arc::clone(potential), 0));
         let domain = scaled.domain().map_or([0.0, f64::INFINITY], |(first, last)| [first, last]);
@@ -374,13 +374,4 @@ impl Rounded for f64 {
     fn round_to(self, unit: f64) -> f64 {
         (self / unit).round() * unit
     }
-}
-
-/// The exponent of the first length among the parameters; a power law has none.
-fn own_length(potential: &dyn Potential) -> Option<i32> {
-    let parameters = potential.parameters();
-    let dimensions = potential.declaration().exponents(parameters);
-    let mut lengths =
-        parameters.iter().zip(dimensions).filter(|(_, dimension)| *dimension == [1.0, 0.0, 0.0]);
-    lengths.next().map(|(length, _)| exponent(length.size()))
 }

@@ -1,0 +1,159 @@
+//! A function of one number with its first two derivatives, as code that any scalar runs.
+//!
+//! The one idea: registers belong to the thread, so that a curve can be asked by all threads at once, and its loops are
+//! compiled once for each tier.
+
+use super::assembler::compile;
+use super::code::{Code, word};
+use super::execute::{self, Part, Scalar, room};
+use super::graph::{Graph, Id, Node};
+use super::program::Output;
+use crate::error::{Error, Result};
+use crate::numerics::double_double::DoubleDouble;
+#[cfg(target_arch = "x86_64")]
+use crate::numerics::lanes::{Avx2, Avx512};
+use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::tiered;
+use std::cell::Cell;
+
+thread_local! {
+    static REGISTERS: Cell<Vec<Lanes>> = const { Cell::new(Vec::new()) };
+}
+
+/// A function of one number, its derivative, and all of them with the second, as codes.
+#[derive(Clone, Debug)]
+pub struct Curve {
+    value: Code,
+    slope: Code,
+    all: Code,
+}
+
+impl Curve {
+    /// Of a node, as a function of the first variable.
+    ///
+    /// # Errors
+    /// `InvalidInput` naming `nodes` for one that is of something else, or is too large.
+    pub fn new(mut graph: Graph, root: Id) -> Result<Self> {
+        let other = |node: &Node| matches!(node, Node::Time | Node::Parameter(_));
+        if graph.any(&[root], other) {
+            return Err(Error::invalid(
+                "nodes",
+                "expected a function of one number, got one of time or parameters",
+            ));
+        }
+        let x = graph.variable(0);
+        let slope = graph.gradient(root, &[x])[0];
+        let second = graph.gradient(slope, &[x])[0];
+        let code = |ids: &[Id]| {
+            let outputs: Vec<Output> = ids.iter().copied().map(Output::Node).collect();
+            compile(&graph, (1, 0), &[], &outputs)
+        };
+        Ok(Self { value: code(&[root])?, slope: code(&[slope])?, all: code(&[root, slope, second])? })
+    }
+
+    /// One that is no number anywhere.
+    pub fn nowhere() -> Self {
+        let code = |outputs| Code {
+            variables: 1,
+            parameters: 0,
+            registers: 2,
+            scratch: 0,
+            constants: vec![f64::NAN],
+            preamble: vec![word::END],
+            body: vec![word::CONSTANT, 1, 0, word::END],
+            outputs: vec![1; outputs],
+            operations: 1,
+        };
+        Self { value: code(1), slope: code(1), all: code(3) }
+    }
+}
+
+/// Scalars of which a curve is a function.
+pub trait Argument: Sized {
+    /// The value of a curve.
+    #[must_use]
+    fn value_on(self, curve: &Curve) -> Self;
+    /// Its derivative.
+    #[must_use]
+    fn slope_on(self, curve: &Curve) -> Self;
+    /// Its value, its derivative and its second derivative, with the bits of the others.
+    #[must_use]
+    fn all_on(self, curve: &Curve) -> [Self; 3];
+}
+
+/// Runs a code whose variable is the first register, and gives the first of its results.
+#[inline(always)]
+fn results<V: Vector8 + Scalar, const N: usize>(code: &Code, x: Lanes) -> [Lanes; N] {
+    // Taken, not borrowed: what is done within a closure would not be compiled for the tier.
+    let mut kept = REGISTERS.take();
+    let wanted = room::<1>(code);
+    if kept.len() < wanted {
+        kept.resize(wanted, Lanes([0.0; WIDTH]));
+    }
+    let registers = V::view_mut(&mut kept);
+    registers[0] = V::load(x);
+    if code.preamble.first() != Some(&word::END) {
+        execute::execute::<V, 1>(code, Part::Preamble, registers);
+    }
+    execute::execute::<V, 1>(code, Part::Body, registers);
+    let mut found = [Lanes([0.0; WIDTH]); N];
+    for (found, &register) in found.iter_mut().zip(&code.outputs) {
+        *found = registers[usize::from(register)].store();
+    }
+    REGISTERS.set(kept);
+    found
+}
+
+tiered! {
+    fn results_tier[const N: usize][N](code: &Code, x: Lanes) -> [Lanes; N] = results;
+}
+
+macro_rules! by_lanes {
+    ($($(#[$meta:meta])* $type:ty: $load:expr, $store:expr;)+) => {$(
+        $(#[$meta])*
+        impl Argument for $type {
+            #[inline(always)]
+            fn value_on(self, curve: &Curve) -> Self {
+                let [value] = results_tier(&curve.value, $store(self));
+                $load(value)
+            }
+            #[inline(always)]
+            fn slope_on(self, curve: &Curve) -> Self {
+                let [slope] = results_tier(&curve.slope, $store(self));
+                $load(slope)
+            }
+            #[inline(always)]
+            fn all_on(self, curve: &Curve) -> [Self; 3] {
+                let [value, slope, second] = results_tier(&curve.all, $store(self));
+                [$load(value), $load(slope), $load(second)]
+            }
+        }
+    )+};
+}
+by_lanes! {
+    f64: |lanes: Lanes| lanes.0[0], |x| Lanes([x; WIDTH]);
+    Lanes: |lanes| lanes, |x| x;
+    #[cfg(target_arch = "x86_64")]
+    Avx2: Self::load, |x: Self| x.store();
+    #[cfg(target_arch = "x86_64")]
+    Avx512: Self::load, |x: Self| x.store();
+}
+
+/// To the rounding of the curve itself; what the rounded argument leaves out moves along its tangent.
+impl Argument for DoubleDouble {
+    fn value_on(self, curve: &Curve) -> Self {
+        self.all_on(curve)[0]
+    }
+    fn slope_on(self, curve: &Curve) -> Self {
+        self.all_on(curve)[1]
+    }
+    fn all_on(self, curve: &Curve) -> [Self; 3] {
+        let [value, slope, second] = self.high().all_on(curve);
+        let rest = Self::from(self.low());
+        [
+            Self::from(value) + rest * Self::from(slope),
+            Self::from(slope) + rest * Self::from(second),
+            Self::from(second),
+        ]
+    }
+}

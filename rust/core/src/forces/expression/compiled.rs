@@ -1,0 +1,61 @@
+//! From a table of nodes to what runs: derivatives, codes, and the series if there is one.
+
+use super::{Expressions, VARIABLES};
+use crate::error::{Error, Result};
+use crate::expressions::assembler::compile;
+use crate::expressions::graph::{Graph, Id, Node};
+use crate::expressions::program::Output;
+use crate::expressions::series::Series;
+use crate::expressions::table::{self, Parameters, Variables};
+use crate::ode::system::Needs;
+use std::sync::Arc;
+
+/// Reads the components of a force, or a potential energy.
+pub(super) fn read(potential: bool, nodes: &[f64], parameters: &[f64]) -> Result<Expressions> {
+    let wanted = if potential { 1 } else { 3 };
+    let (graph, roots) = table::read(
+        nodes,
+        wanted,
+        Variables { count: VARIABLES, unit: 1.0 },
+        Parameters::Kept(parameters.len()),
+    )?;
+    let made_from = core::iter::once(u64::from(potential)).chain(nodes.iter().map(|x| x.to_bits())).collect();
+    Ok(Expressions { made_from, ..expressions(potential, graph, roots, parameters)? })
+}
+
+/// Derives and compiles.
+fn expressions(potential: bool, mut graph: Graph, roots: Vec<Id>, parameters: &[f64]) -> Result<Expressions> {
+    let velocity = |node: &Node| matches!(node, Node::Variable(index) if *index >= 3);
+    let needs = Needs {
+        time: graph.any(&roots, |node| matches!(node, Node::Time)),
+        velocity: graph.any(&roots, velocity),
+        rotation: false,
+    };
+    if potential && needs.velocity {
+        return Err(Error::invalid(
+            "potential",
+            "expected a function of places and time, got one of velocities; pass the force instead",
+        ));
+    }
+    let force = if potential {
+        let places: Vec<Id> = (0..3).map(|i| graph.variable(i)).collect();
+        graph.gradient(roots[0], &places).into_iter().map(|slope| graph.scale(-1.0, slope)).collect()
+    } else {
+        roots.clone()
+    };
+    let inputs = (VARIABLES, parameters.len());
+    let outputs = |ids: &[Id]| ids.iter().copied().map(Output::Node).collect::<Vec<_>>();
+    let compiled = |ids: &[Id]| compile(&graph, inputs, &[], &outputs(ids)).map(Arc::new);
+    Ok(Expressions {
+        force: compiled(&force)?,
+        // A drive that begins more gently than any power that a series has would not be seen.
+        series: match Series::leaps(&graph, &force) {
+            None if !needs.time => Some(Arc::new(Series::new(&graph, inputs, &[], &outputs(&force))?)),
+            _ => None,
+        },
+        potential: if potential { Some(compiled(&roots)?) } else { None },
+        parameters: parameters.to_vec(),
+        needs,
+        made_from: vec![],
+    })
+}
