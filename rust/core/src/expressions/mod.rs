@@ -15,6 +15,7 @@ mod identity;
 mod linear;
 pub mod machine;
 pub mod nodes;
+pub mod precise;
 pub mod program;
 pub mod series;
 pub mod table;

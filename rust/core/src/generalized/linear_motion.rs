@@ -1,22 +1,23 @@
 //! Equations of motion that are linear, with constant coefficients: solved once, exact at any time.
 //!
 //! The one idea: their derivatives hang on parameters alone, so y′ = A y + b, and the state with a 1 after it is a vector
-//! that [`MatrixExponential`] moves. Masses are divided by in double-double: a quotient's rounding would turn the phase.
+//! that [`MatrixExponential`] moves. A and b are found in double-double, as what forces are at unit vectors: the rounding of a
+//! sum of two stiffnesses would be a stiffness to a mode that has little, that of a quotient would turn the phase.
 
 use super::events::{Interval, Watch};
 use super::model::{Kind, Model};
 use super::run::{Request, Solution};
 use crate::error::{Error, Result};
 use crate::expressions::graph::Dependence;
+use crate::expressions::precise::Precise;
 use crate::expressions::program::Output;
-use crate::expressions::{Code, Graph, Id, Machine};
+use crate::expressions::{Graph, Id};
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::matrix_exponential::{MatrixExponential, elapsed};
 use crate::numerics::real::Real;
 use crate::ode::run::Ending;
 use crate::parallel::Ticker;
 use std::collections::HashMap;
-use std::sync::Arc;
 
 /// Linear equations of 2·coordinates numbers.
 #[derive(Clone, Debug)]
@@ -27,8 +28,10 @@ pub struct LinearMotion {
     rows: usize,
     /// Whether masses divide them.
     masses: bool,
-    /// Right-hand sides at zero, their derivatives row by row, and the mass matrix if there is one.
-    code: Arc<Code>,
+    /// The right-hand sides.
+    right: Precise,
+    /// The mass matrix, if there is one.
+    mass: Precise,
 }
 
 impl LinearMotion {
@@ -61,40 +64,39 @@ impl LinearMotion {
             return Ok(None);
         }
         let one = graph.constant(1.0);
-        let mut columns = Vec::new();
         for index in 0..model.numbers() as u32 {
             let number = graph.variable(index);
             let column = graph.tangent(&right, &HashMap::from([(number, one)]));
             if varies(&graph, &column) {
                 return Ok(None);
             }
-            columns.push(column);
         }
-        let slopes = (0..right.len()).flat_map(|row| columns.iter().map(move |column| column[row]));
-        let outputs = right.iter().copied().chain(slopes).chain(mass).map(Output::Node).collect::<Vec<_>>();
-        let inputs = (model.numbers(), model.source.parameters);
-        let code = crate::expressions::assembler::compile(&graph, inputs, &[], &outputs)?;
-        Ok(Some(Self { n: model.source.coordinates, rows: right.len(), masses, code: Arc::new(code) }))
+        let (n, rows, inputs) =
+            (model.source.coordinates, right.len(), (model.numbers(), model.source.parameters));
+        let right = Precise::new(model.source.graph.clone(), right, inputs)?;
+        Ok(Some(Self { n, rows, masses, right, mass: Precise::new(graph, mass, inputs)? }))
     }
 
     /// The flow with these parameters of the state and a 1 after it, forwards or backwards in time.
     fn flow(&self, parameters: &[f64], (t0, end): (f64, f64)) -> Result<MatrixExponential> {
         let (n, rows, numbers) = (self.n, self.rows, 2 * self.n);
-        let mut found = vec![0.0; self.code.outputs()];
-        Machine::new(self.code.clone(), parameters).evaluate(t0, &vec![0.0; numbers], &mut found);
-        let (constants, rest) = found.split_at(rows);
-        let (slopes, mass) = rest.split_at(rows * numbers);
-        let mut right: Vec<Vec<DoubleDouble>> = slopes
-            .chunks_exact(numbers)
-            .zip(constants)
-            .map(|(slopes, constant)| {
-                slopes.iter().chain([constant]).map(|&x| DoubleDouble::from(x)).collect()
-            })
-            .collect();
+        let mut state = vec![0.0; numbers];
+        let constants = self.right.at(t0, &state, parameters);
+        let mass = self.mass.at(t0, &state, parameters);
+        let mut right = vec![Vec::with_capacity(numbers + 1); rows];
+        for index in 0..numbers {
+            state[index] = 1.0;
+            let forces = self.right.at(t0, &state, parameters);
+            for ((row, force), constant) in right.iter_mut().zip(forces).zip(&constants) {
+                row.push(force - *constant);
+            }
+            state[index] = 0.0;
+        }
+        right.iter_mut().zip(constants).for_each(|(row, constant)| row.push(constant));
         let mut matrix = vec![DoubleDouble::zero(); (numbers + 1) * (numbers + 1)];
         if self.masses {
-            let mass = mass.chunks_exact(n).map(|row| row.iter().map(|&x| DoubleDouble::from(x)).collect());
-            divide(&mut mass.collect::<Vec<_>>(), &mut right)?;
+            let mut mass: Vec<Vec<DoubleDouble>> = mass.chunks_exact(n).map(<[_]>::to_vec).collect();
+            divide(&mut mass, &mut right)?;
         }
         let start = numbers - rows;
         for i in 0..start {

@@ -1,0 +1,60 @@
+"""Two zeros of an event on either side of a place where it turns, between two nodes of a step: both are found.
+
+x = cos t: it passes 1 - d twice in every period, √(2d) before and after its maximum, wherever the nodes of the steps are.
+"""
+
+import numpy as np
+import pytest
+
+import visviva as vv
+
+SWING = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.5, 0.0]]), vv.Harmonic(1.0))
+
+
+def plane(d: float, **how: object) -> vv.events.Event:
+    return vv.events.plane([1.0 - d, 0.0, 0.0], [1.0, 0.0, 0.0], **how)
+
+
+# As near as the method errs itself over that time, and a decade nearer than an error of 1e-9 in a step would be.
+@pytest.mark.parametrize(
+    ("method", "how", "distances"),
+    [
+        ("taylor", {}, [1e-3, 5e-4, 2e-4, 1e-4, 1e-5, 1e-6]),
+        ("taylor", {"rtol": 1e-13}, [1e-4, 1e-7]),
+        ("dop853", {"rtol": 1e-12}, [1e-3, 1e-5, 1e-6]),
+        ("verner98", {"rtol": 1e-12}, [1e-3, 1e-5, 1e-6]),
+        ("dormand_prince54", {"rtol": 1e-12}, [1e-3, 1e-6]),
+    ],
+)
+def test_both_zeros_beside_every_maximum(method: str, how: dict[str, float], distances: list[float]) -> None:
+    end = 1000.0
+    out = SWING.run(end, method=method, events=[plane(d) for d in distances], **how)
+    for index, d in enumerate(distances):
+        half = np.arccos(1.0 - d)
+        turns = 2.0 * np.pi * np.arange(1, 160)
+        expected = np.sort(np.concatenate([[half], turns - half, turns + half]))
+        expected = expected[expected <= end]
+        found = out.events.t[out.events.which == index]
+        assert len(found) == len(expected), d
+        # A place that is off by 1e-9 passes the plane that much over its speed, √(2d), earlier or later.
+        assert np.abs(found - expected).max() < 1e-9 / half
+
+
+@pytest.mark.parametrize("phase", np.linspace(0.1, 6.2, 24))
+@pytest.mark.parametrize("d", [1e-4, 1e-6])
+def test_a_terminal_event_ends_the_run_at_the_first_of_both(phase: float, d: float) -> None:
+    body = vv.Particles([1.0], [[np.cos(phase), 0.0, 0.0]], [[-np.sin(phase), 0.5, 0.0]])
+    out = vv.Scene(body, vv.Harmonic(1.0)).run(7.0, method="taylor", events=[plane(d, terminal=True)])
+    assert out.status.name == "STOPPED"
+    first = 2.0 * np.pi - phase - np.arccos(1.0 - d)
+    assert out.events.t[-1] == pytest.approx(first, abs=1e-10 / np.sqrt(d))
+
+
+def test_in_a_magnetic_field_by_its_closed_form() -> None:
+    scene = vv.Scene(
+        vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]]),
+        vv.UniformMagneticField([0.0, 0.0, 1.0], charge=[1.0]),
+    )
+    run = scene.run(200.0, rtol=1e-12, events=[vv.events.plane([0.0, -2.0 + 1e-6, 0.0], [0.0, 1.0, 0.0])])
+    expected = 2 * len([k for k in range(40) if np.pi + 2.0 * np.pi * k < 199.9])
+    assert len(run.events) == expected
