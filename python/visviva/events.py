@@ -12,7 +12,6 @@ step and turns, it is followed down, so that two zeros in one step are found.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,10 +20,11 @@ import numpy as np
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event_table import EventTable
 from visviva._keywords import known_keywords
-from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
@@ -370,73 +370,6 @@ def function(
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
     return _made("function", direction, terminal, function=call)
-
-
-def to_core(given: Any) -> list[dict[str, Any]]:
-    """What the core is told of ``events=``."""
-    if isinstance(given, Event) or callable(given):
-        given = [given]
-    if not isinstance(given, Sequence):
-        raise InvalidInput("events", f"expected a list of events, got {type(given).__name__}")
-    told = []
-    for index, event in enumerate(given):
-        if isinstance(event, Event):
-            told.append(event._to_core())
-        elif callable(event):
-            way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
-            told.append(function(event, direction=way, terminal=last)._to_core())
-        else:
-            raise InvalidInput(
-                "events",
-                "expected one of visviva.events or a function f(t, position, velocity), "
-                f"got events[{index}] = {event!r}",
-            )
-    return told
-
-
-# Where an event names bodies.
-_BODIES = ("first", "second", "body", "about")
-
-
-def resolved(told: list[dict[str, Any]], names: tuple[str, ...]) -> list[dict[str, Any]]:
-    """The same with the indices of the bodies that were given by name."""
-    found = []
-    for event in told:
-        own = {name: body_index(name, event[name], names) for name in _BODIES if isinstance(event.get(name), str)}
-        whole = {**event, **own}
-        for first, second in (("first", "second"), ("body", "about")):
-            if own and isinstance(whole.get(second), int):
-                _check_two(second, whole[first], whole[second])
-        found.append(whole)
-    return found
-
-
-def described(told: list[dict[str, Any]]) -> list[dict[str, Any]]:
-    """What a result and its file keep of the events that the core was told of: of a function its name."""
-    return [
-        {**event, "function": None, "name": str(getattr(event["function"], "__qualname__", type(event["function"])))}
-        if event["kind"] == "function"
-        else event
-        for event in told
-    ]
-
-
-def from_description(kept: dict[str, Any]) -> Event:
-    """The event that `described` wrote, judged anew: it may come from a file."""
-    how: dict[str, Any] = {"direction": kept["direction"], "terminal": kept["last"] or False}
-    match kept["kind"]:
-        case "distance":
-            return distance(kept["first"], kept["second"], below=kept["distance"], **how)
-        case "plane":
-            return plane(kept["point"], kept["normal"], body=kept["body"], **how)
-        case "apsis":
-            return apsis(kept["body"], kept["about"], **how)
-        case "energy":
-            return energy(kept["value"], **how)
-        case "function":
-            return _made("function", name=str(kept["name"]), **how)
-        case kind:
-            raise InvalidInput("events", f"expected an event that visviva knows, got the kind {kind!r}")
 
 
 def __dir__() -> list[str]:

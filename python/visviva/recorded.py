@@ -303,7 +303,8 @@ class Recorded(Exported, Shown, ABC):
         """
         if "events" not in self._result:
             raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
-        from visviva.events import EventTable, from_description
+        from visviva._told_events import from_description
+        from visviva.events import EventTable
 
         # Files of before they were kept have none.
         definitions = tuple(map(from_description, self._result.get("looked_for", ())))

@@ -128,7 +128,7 @@ def _or_none(check: Callable[[str, object], _Check]) -> Callable[[str, object], 
 def _events(_: str, given: object) -> list[dict[str, Any]]:
     if isinstance(given, tuple | list) and not given:
         return []
-    from visviva.events import to_core
+    from visviva._told_events import to_core
 
     return to_core(given)
 
@@ -175,7 +175,7 @@ class PlanRequest:
         if prepared["rigid"] is not None and self.record is _RECORDED:
             asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
         if asked["events"]:
-            from visviva.events import resolved
+            from visviva._told_events import resolved
 
             asked["events"] = resolved(asked["events"], names)
         return cast("_core._Request", asked)
@@ -275,7 +275,7 @@ def finished(
 ) -> _Result:
     """The result of what the core gave, or the core's error with the result attached."""
     if asked["events"]:
-        from visviva.events import described
+        from visviva._told_events import described
 
         result["looked_for"] = described(asked["events"])
     made = make(result)

@@ -22,8 +22,8 @@ from visviva._joined_parts import joined
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva._progress import callback
+from visviva._told_events import from_description
 from visviva.errors import InvalidInput
-from visviva.events import from_description
 from visviva.io import load
 from visviva.plan import told
 from visviva.request import RunRequest, finished

@@ -57,5 +57,5 @@ def test_free_bodies_on_springs_do_not_drift() -> None:
         (rate(x) ** 2 + rate(y) ** 2 + rate(z) ** 2) / 2 - energy, [x, y, z], position=[1.0, 0.25, -1.25]
     )
     out = system.run(np.linspace(0.0, 1e6, 11))
-    assert out.plan.method == "matrix_exponential"
+    assert system.plan(t=1e6).method == "matrix_exponential"
     assert np.abs(out.position.sum(axis=1)).max() < 1e-15
