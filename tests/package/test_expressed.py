@@ -119,6 +119,27 @@ def test_deflections_are_those_of_the_named_potential(energy: float, size: float
     assert found.closest_approach == pytest.approx(expected.closest_approach, rel=1e-12)
 
 
+@pytest.mark.parametrize("n", [1, 2, 3, 6, 12, 24])
+@pytest.mark.parametrize(("size", "depth"), SCALES[:2])
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_a_power_of_the_distance_needs_no_length(n: int, size: float, depth: float, sign: float) -> None:
+    strength = sign * depth * size**n
+    named = p.PowerLaw(strength, n)
+    for made in (
+        Custom(lambda r, k: k / r**n, parameters={"k": strength}),
+        Custom(k / r**n, parameters={k: strength}),
+        Custom(lambda r, k: k * r**-n, parameters={"k": strength}),
+    ):
+        places = size * np.geomspace(0.05, 300.0, 60)
+        for what in ("value", "force", "curvature"):
+            assert getattr(made, what)(places) == pytest.approx(getattr(named, what)(places), rel=2e-14), what
+        b = size * np.array([0.0, 1e-3, 0.4, 1.0, 1.7, 5.0, 40.0])
+        found, expected = (vv.scattering.deflect(each, energy=depth, impact_parameter=b) for each in (made, named))
+        assert (found.status == expected.status).all()
+        bound = np.minimum(1e-12, 1e-10 * np.abs(expected.angle)) + 20.0 * 1.1e-16 * expected.conditioning
+        assert (np.abs(found.angle - expected.angle) <= bound)[expected.status == 0].all()
+
+
 @pytest.mark.parametrize(("size", "depth"), SCALES)
 def test_orbits_and_rainbows_are_those_of_the_named_potential(size: float, depth: float) -> None:
     made = Custom(4.0 * depth * ((size / r) ** 12 - (size / r) ** 6))

@@ -63,11 +63,12 @@ const MOST: usize = 3;
 /// Derivatives beyond that, or beneath its inverse, have not all their digits.
 const LARGE: f64 = 1e280;
 
-/// The power of two near the least distance at which a curve is no power of it any more, octave by octave; its values alone
-/// are asked, whose range is wider than that of derivatives.
+/// The power of two near the least distance at which a curve is no power of it any more, octave by octave, or, if it is one
+/// everywhere, where it is one; its values alone are asked, whose range is wider than that of derivatives.
 fn first_bend(curve: &Curve) -> i32 {
     let mut before: Option<f64> = None;
     let mut power: Option<f64> = None;
+    let mut one = 0;
     for k in -OCTAVES..=OCTAVES {
         let value = scale(1.0, k).value_on(curve);
         if !(LARGE.recip()..LARGE).contains(&value.abs()) {
@@ -81,10 +82,13 @@ fn first_bend(curve: &Curve) -> i32 {
             if !(first / SQRT_2..first * SQRT_2).contains(&ratio) {
                 return k;
             }
+            if (before.abs() < 1.0) != (value.abs() < 1.0) {
+                one = k;
+            }
         }
         before = Some(value);
     }
-    0
+    one
 }
 
 impl Expressed {
