@@ -6,6 +6,7 @@
 //! would cancel, it is the mean of the force in between.
 
 use super::comparison::Comparison;
+use super::delay_tail::DelayTail;
 use super::nodes::{Node, sinh};
 use super::profile::Profile;
 use super::trapezoid::INTEGRALS;
@@ -119,23 +120,31 @@ pub(super) fn integrate(
     if integrand == Integrand::Deflection {
         known[0] = Comparison::of(pair.value, pair.root).closed;
     }
+    let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
+    let mut marks = vec![0.0, farthest];
+    if wanted == INTEGRALS {
+        let tail = DelayTail::follow(profile, pair, farthest, tolerance);
+        marks.extend(tail.marks);
+        known[INTEGRALS - 1] = tail.rest;
+    }
+    let end = marks[marks.len() - 1];
     let whole = |sum: [f64; INTEGRALS], error: f64, size: f64| Whole {
         integral: core::array::from_fn(|i| known[i] + sum[i]),
         error: error.max(ROUNDING * size),
     };
-    let farthest = farthest(profile, pair, integrand, LEFT_OUT * tolerance);
-    let mut marks = vec![0.0, farthest];
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
     if pair.near < BESIDE {
         marks.extend(core::iter::successors(Some(pair.near), |w| Some(GRADED * w)).take_while(|w| *w < 1.0));
     }
-    marks.retain(|w| *w <= farthest);
+    marks.retain(|w| *w <= end);
     marks.sort_by(f64::total_cmp);
     marks.dedup();
     let noise = pair.noise(integrand);
     let mut intervals = Vec::new();
     for pair_of_marks in marks.windows(2) {
-        let parts = ((pair_of_marks[1] - pair_of_marks[0]) / LONGEST).ceil().max(1.0);
+        // What is left there of a delay is smooth.
+        let longest = if pair_of_marks[0] < farthest { LONGEST } else { f64::INFINITY };
+        let parts = ((pair_of_marks[1] - pair_of_marks[0]) / longest).ceil().max(1.0);
         let length = (pair_of_marks[1] - pair_of_marks[0]) / parts;
         for part in 0..parts as usize {
             let from = length.mul_add(part as f64, pair_of_marks[0]);

@@ -3,6 +3,7 @@
 //! Sources: Landau & Lifshitz, *Mechanics*, §§18–19; for C/r⁴ J. C. Maxwell, Phil. Trans. R. Soc. 157 (1867) 49, with
 //! c = C/(E r₀⁴): ψ = π(1 − √(1 − c)/M(1, √(1 + c))), M the arithmetic-geometric mean.
 
+use super::pairs::NEAR_ORBITING;
 use super::{Deflection, Edge, Status};
 use crate::numerics::angles::atan2;
 use crate::numerics::double_double::DoubleDouble;
@@ -10,7 +11,7 @@ use crate::numerics::elliptic::arithmetic_geometric_mean;
 use crate::numerics::real::Real;
 use crate::potentials::Potential;
 use crate::scattering::rutherford;
-use core::f64::consts::PI;
+use core::f64::consts::{PI, SQRT_2};
 
 /// A potential with such a form.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -108,7 +109,8 @@ fn coulomb(k: f64, energy: f64, b: f64) -> Deflection {
         complement: 2.0 * atan2(b, half.abs()),
         closest_approach: rutherford::closest_approach(half, b),
         derivative: -2.0 / (half + b * (b / half)),
-        delay: if k > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY },
+        // What repels is passed more slowly, all the way out.
+        delay: if k > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY },
         error: 0.0,
         turning_points: 1,
         status: Status::Scattered,
@@ -146,7 +148,7 @@ fn inverse_square(c: f64, b: f64) -> Deflection {
         delay: 0.0,
         error: 0.0,
         turning_points: 1,
-        status: Status::Scattered,
+        status: if c < 0.0 { beside((-c).sqrt(), b) } else { Status::Scattered },
     }
 }
 
@@ -178,9 +180,15 @@ fn inverse_fourth(c: f64, b: f64) -> Deflection {
         derivative: f64::NAN,
         delay: f64::NAN,
         error: 0.0,
-        turning_points: 1,
-        status: Status::Scattered,
+        // What attracts has one on the other side of the barrier.
+        turning_points: if sign < 0.0 { 2 } else { 1 },
+        status: if sign < 0.0 { beside(SQRT_2 * unit, b) } else { Status::Scattered },
     }
+}
+
+/// Of what left, at an impact parameter beside the one at which it would stay.
+fn beside(orbiting: f64, b: f64) -> Status {
+    if (orbiting / b - 1.0).abs() < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered }
 }
 
 fn sphere(radius: f64, b: f64) -> Deflection {
@@ -202,10 +210,12 @@ fn sphere(radius: f64, b: f64) -> Deflection {
 
 /// `share` is depth over energy; the speed within is √(1 + share) times that without.
 fn square_well(share: f64, radius: f64, b: f64) -> Deflection {
-    if b >= radius || share == 0.0 {
-        return free(b);
-    }
     let square = 1.0 + share;
+    if b >= radius || share == 0.0 {
+        // Behind its rim a well holds what could not leave it: from b/√square to the rim.
+        let within = share > 0.0 && b < square.sqrt() * radius;
+        return Deflection { turning_points: if within { 3 } else { 1 }, ..free(b) };
+    }
     if square <= 0.0 || b >= square.sqrt() * radius {
         return sphere(radius, b);
     }

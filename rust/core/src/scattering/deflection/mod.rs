@@ -10,6 +10,7 @@
 mod adaptive;
 mod closed;
 mod comparison;
+mod delay_tail;
 mod grid;
 mod nodes;
 mod pack;

@@ -16,7 +16,7 @@ use crate::parallel::Ticker;
 use core::f64::consts::PI;
 
 /// As a part of b: nearer to orbiting, four digits and more of b or E are lost in the angle.
-const NEAR_ORBITING: f64 = 1e-4;
+pub(super) const NEAR_ORBITING: f64 = 1e-4;
 /// What rounding leaves of the distance to a barrier, as a part of b.
 const ROUNDING: f64 = 64.0 * f64::EPSILON;
 /// And here equal steps would be many.
@@ -28,8 +28,12 @@ const TINY: f64 = 1.0 / (1 << 26) as f64;
 /// The logarithm of 1e-70, the least turning point beside a center that attracts, as a part of where |V| is the energy: nearer
 /// to it r² V″ and (b/r₀)³ leave the range of numbers, and what remains is a wrong number.
 const NEAREST: f64 = -161.18;
-/// And where b is a smaller part of that it is as good as 0.
+/// And where b is a smaller part of that it is as good as 0, …
 const NOTHING: f64 = 1.0 / (1_u64 << 60) as f64;
+/// … if |V| there is so many times the energy: where V falls slowly it is not, however small b is.
+const FAR_ABOVE: f64 = 4.0 / f64::EPSILON;
+/// Newton's steps to where a slow attraction turns, from what is off by a part of E/V at most.
+const STEPS: usize = 4;
 /// What nodes leave out, as a part of the tolerance.
 const LEFT_OUT: f64 = 0.05;
 
@@ -264,7 +268,9 @@ impl Quadrature<'_> {
         found.status = if nearness < NEAR_ORBITING { Status::NearOrbiting } else { Status::Scattered };
         let strong = x < STRONG;
         let single = || {
-            let steepness = pack.curvature.0[lane].abs() / (0.01 + y.abs());
+            // Measured against V where that is small: on the last of a soft edge the force is far below E/r₀, and all of it is
+            // lost in a short way.
+            let steepness = pack.curvature.0[lane].abs() / (0.01 * x.abs().min(1.0) + y.abs());
             let near = adaptive::near(r, steepness.max(1.0), profile.breaks());
             let curvature = pack.curvature.0[lane];
             Pair { energy: pack.energy.0[lane], turning: r, value: x, force: y, root, curvature, near }
@@ -321,7 +327,9 @@ impl Quadrature<'_> {
     fn around(&self, energy: f64, power: f64) -> (f64, f64) {
         let least = Exponential::exp(0.5 * (2.0 - power) * NEAREST);
         let reach = self.profile.grid().reach(energy, power);
-        let nothing = reach * least.max(NOTHING);
+        // At r₀ |V| is the energy times (reach/b)^(2n/(2−n)).
+        let far_above = Exponential::exp(-ln(FAR_ABOVE) * 0.5 * (2.0 - power) / power);
+        let nothing = reach * least.max(NOTHING.min(far_above));
         (nothing, nothing)
     }
 
@@ -334,15 +342,22 @@ impl Quadrature<'_> {
                 (found.angle, found.complement, found.closest_approach) = (0.0, PI, 0.0);
             }
             Way::Bounces(power) => {
-                // Between the limit of b = 0 and what was found a straight line.
+                // Between the limit of b = 0 and what was found as the first of what is left out goes: as b, or as E/V at r₀.
                 let limit = -PI * power / (2.0 - power);
                 let share = b / self.as_head_on(energy).1;
-                let off = (found.angle - limit) * share;
+                let faded = if b > 0.0 { Exponential::exp(ln(share) * left_out_power(power)) } else { 0.0 };
+                let off = (found.angle - limit) * faded;
                 found.angle = limit + off;
                 found.complement = PI - found.angle.abs();
                 found.error = found.error.max(off.abs());
-                found.closest_approach *=
-                    if b > 0.0 { Exponential::exp(ln(share) * 2.0 / (2.0 - power)) } else { 0.0 };
+                found.closest_approach = if b > 0.0 {
+                    // As V goes on inward, which there is many times the energy.
+                    let [inner, at] =
+                        [found.closest_approach, self.profile.value(found.closest_approach) / energy];
+                    turned_further_in(inner, at, power, share)
+                } else {
+                    0.0
+                };
             }
             _ if b > 0.0 => {}
             _ => (found.angle, found.complement) = (PI, 0.0),
@@ -351,6 +366,28 @@ impl Quadrature<'_> {
             found.derivative = f64::NAN;
         }
     }
+}
+
+/// As what power of b an angle goes to its limit at a center that attracts as 1/rⁿ.
+fn left_out_power(power: f64) -> f64 {
+    (2.0 * power / (2.0 - power)).min(1.0)
+}
+
+/// Where r²(1 − V/E) is `share`² of what it is at r₁, from V/E at r₁ and its power: by Newton's steps in ln r, of a function
+/// that is bent to one side, so that they do not swing.
+fn turned_further_in(inner: f64, value: f64, power: f64, share: f64) -> f64 {
+    let wanted = 2.0 * ln(share) + ln(1.0 - value);
+    // Without the energy that is ln(−V/E).
+    let mut way = (wanted - ln(-value)) / (2.0 - power);
+    for _ in 0..STEPS {
+        let pull = -value * Exponential::exp(-power * way);
+        if pull == f64::INFINITY {
+            break;
+        }
+        let off = 2.0f64.mul_add(way, ln(1.0 + pull)) - wanted;
+        way -= off / (2.0 - power * (pull / (1.0 + pull)));
+    }
+    inner * Exponential::exp(way)
 }
 
 /// Places in the order of their reaches.

@@ -17,6 +17,9 @@ use std::sync::Arc;
 /// to any b: the next to the orbit are a part of 2⁻⁵³ away, the depth of what passes goes as (E − U)^(3/2) of b.
 const TOUCHES: f64 = 16.0 * f64::EPSILON;
 
+/// Powers of r that differ by no more of themselves are one.
+const SAME_POWER: f64 = 1e-13;
+
 /// What is left of a force at the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Center {
@@ -50,6 +53,7 @@ pub(super) struct Profile {
     /// V where it ends.
     last_value: f64,
     endless_delay: f64,
+    power_from: f64,
 }
 
 impl Profile {
@@ -89,6 +93,7 @@ impl Profile {
             one_turning_point_from: 0.0,
             last_value: 0.0,
             endless_delay: 0.0,
+            power_from: f64::INFINITY,
         };
         if domain[1] < f64::INFINITY {
             made.last_value = made.value(domain[1]);
@@ -97,7 +102,13 @@ impl Profile {
         made.center = made.find_center();
         let (v, pull) = (made.grid.value[POINTS - 1], made.grid.pull[POINTS - 1]);
         if v != 0.0 && pull / v < 1.0 + 1e-9 {
-            made.endless_delay = if v > 0.0 { f64::NEG_INFINITY } else { f64::INFINITY };
+            made.endless_delay = if v > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY };
+        }
+        let power = |at: usize| made.grid.pull[at] / made.grid.value[at];
+        let last = power(POINTS - 1);
+        let same = |at: &usize| (power(*at) - last).abs() <= SAME_POWER * last;
+        if let Some(first) = (0..POINTS).rev().take_while(same).last() {
+            made.power_from = radius(first);
         }
         // Where everything repels, U passes E only behind V = E.
         if force.iter().skip(inside[0]).any(|f| *f < 0.0) {
@@ -203,6 +214,14 @@ impl Profile {
     /// What a delay is where V falls no faster than 1/r: never over.
     pub(super) fn endless_delay(&self) -> f64 {
         self.endless_delay
+    }
+    /// From where on V is a power of r, as far as the grid goes; infinite if it is not.
+    pub(super) fn power_from(&self) -> f64 {
+        self.power_from
+    }
+    /// The largest |V| at a distance and beyond, or a little more; beyond the grid that at the distance.
+    pub(super) fn largest_from(&self, r: f64) -> f64 {
+        if r < radius(POINTS - 1) { self.grid.beyond(r, 0) } else { self.value(r).abs() }
     }
     /// Refuses a table that ends before V does.
     ///
