@@ -39,6 +39,8 @@ const NOISE: f64 = 4.0 * f64::EPSILON;
 /// Where V ends softly beside the turning point, what it lost there falls as 1/w² from a peak that no point of a long interval
 /// meets: intervals beyond are no longer than this many times their beginning.
 const GRADED: f64 = 8.0;
+/// So near is the nearest of them.
+const NEAREST: f64 = 1e-12;
 /// So near is beside it.
 const BESIDE: f64 = 1e-2;
 /// Where it is at most.
@@ -134,7 +136,9 @@ pub(super) fn integrate(
     };
     marks.extend(ends.iter().filter(|r| **r > pair.turning).map(|r| inverse_cosh(r / pair.turning)));
     if pair.near < BESIDE {
-        marks.extend(core::iter::successors(Some(pair.near), |w| Some(GRADED * w)).take_while(|w| *w < 1.0));
+        // What is steep without measure would begin at nothing, which no factor makes more of.
+        let first = pair.near.max(NEAREST);
+        marks.extend(core::iter::successors(Some(first), |w| Some(GRADED * w)).take_while(|w| *w < 1.0));
     }
     marks.retain(|w| *w <= end);
     marks.sort_by(f64::total_cmp);
