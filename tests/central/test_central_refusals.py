@@ -56,3 +56,20 @@ def test_pictures() -> None:
             figure.canvas.draw()
     with pytest.raises(vv.InvalidInput, match="kind"):
         orbit.plot("orbits")
+
+
+@pytest.mark.parametrize("mass", [1.0, 0.3])
+def test_where_every_distance_is_a_circle(mass: float) -> None:
+    """V = −l²/2mr² and E = 0: the radial energy is 0 everywhere, and rounding makes no ends."""
+    force = vv.potentials.PowerLaw(-0.5 / mass, 2.0)
+    (everywhere,) = vv.orbits.range_of_motion(force, energy=0.0, angular_momentum=1.0, mass=mass)
+    assert (everywhere.r_min, everywhere.r_max, everywhere.kind) == (0.0, np.inf, "circular")
+    # A little less of the force, or more: it is pushed away, or falls.
+    for strength, kind in ((-0.49, "escapes"), (-0.51, "reaches_the_center")):
+        parts = vv.orbits.range_of_motion(
+            vv.potentials.PowerLaw(strength / mass, 2.0),
+            energy=0.1 if kind == "escapes" else -0.1,
+            angular_momentum=1.0,
+            mass=mass,
+        )
+        assert [part.kind for part in parts] == [kind]

@@ -21,15 +21,39 @@ def test_the_action_of_an_oscillator(ends: tuple[float, float]) -> None:
     system = oscillator(0.9).at(t0=ends[0])
     for count in (5, 41):
         out = system.run(t=np.linspace(*ends, count))
-        first, last = (0, -1) if ends[0] < ends[1] else (-1, 0)
-        wanted = 0.65 * (
-            out.position[last, 0] * out.velocity[last, 0] - out.position[first, 0] * out.velocity[first, 0]
-        )
+        wanted = 0.65 * (out.position[-1, 0] * out.velocity[-1, 0] - out.position[0, 0] * out.velocity[0, 0])
         found = system.action(out)
         assert abs(found.value - wanted) <= found.error
         # S is stationary: polynomials that are h⁶ off have an action h¹⁰ off. A run is exact to some ε.
         assert abs(found.value - wanted) <= 2e-15 + 1e-3 * (1.7 / (count - 1)) ** 10
         assert found.quadrature <= 1e-14
+
+
+def test_a_way_back_has_the_other_sign() -> None:
+    """The action and its variations are integrals from the first time of a run to its last."""
+    system = oscillator(0.9)
+    times = np.linspace(0.0, 1.7, 41)
+    ahead = system.run(t=times)
+    back = system.at(position=ahead.position[-1], velocity=ahead.velocity[-1], t0=1.7).run(t=times[::-1])
+
+    def curve(t: Array) -> Array:
+        return np.asarray(np.cos(t) + t**2)
+
+    eta = curve(times)
+
+    def values(out: Any, eta: Array) -> Array:
+        found = [system.action(out), system.first_variation(out, eta), system.second_variation(out, eta)]
+        found += [which(out, curve) for which in (system.first_variation, system.second_variation)]
+        return np.array([float(one) for one in found])
+
+    # The values at times belong to the times of the run, in its order. 1e-11: two runs, and polynomials through η.
+    assert values(back, eta[::-1]) == pytest.approx(-values(ahead, eta), rel=1e-11)
+    # p η at the last time less that at the first.
+    wanted = 1.3 * (back.velocity[-1, 0] * eta[0] - back.velocity[0, 0] * eta[-1])
+    assert values(back, eta[::-1])[3] == pytest.approx(wanted, rel=1e-12)
+    # What is least has no direction. 1e-9: two runs.
+    least = [system.accessory_problem(out).eigenvalue for out in (back, ahead)]
+    assert least[0] == pytest.approx(least[1], rel=1e-9)
 
 
 def test_places_alone_make_a_path() -> None:

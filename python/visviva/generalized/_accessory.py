@@ -260,6 +260,6 @@ def accessory_problem(system: Lagrangian, path: Any, degree: int) -> AccessoryPr
     """Give the smallest eigenvalue, and the conjugate points."""
     if system._constraints():
         raise InvalidInput("path", "variations are free here: eliminate the constraints, and ask again")
-    linear = _Linear(system, as_path(system, path, degree))
+    linear = _Linear(system, as_path(system, path, degree, ascending=True))
     points = linear.conjugate_points()
     return AccessoryProblem(linear.eigenvalue(), points[points < linear.path.t[-1]])

@@ -48,11 +48,15 @@ class Path:
         return q, slope / np.diff(self.t)[pieces][:, None, None]
 
 
-def as_path(system: Lagrangian, path: Any, degree: int) -> Path:
-    """Give the path that a user means: a run of a Lagrangian, or times and places."""
+def as_path(system: Lagrangian, path: Any, degree: int, *, ascending: bool = False) -> Path:
+    """Give the path that a user means: a run of a Lagrangian, or times and places.
+
+    A run backward in time is a path backward in time, whose integrals are from its first time to its last, unless
+    ``ascending`` asks for the same path from its earliest time on.
+    """
     n = len(system.coordinates)
     if isinstance(path, GeneralizedTrajectory):
-        return _of_run(path, n)
+        return _of_run(path, n, ascending)
     if not isinstance(path, (tuple, list)) or len(path) != 2:
         raise InvalidInput(
             "path", f"expected a trajectory of a Lagrangian, or times and places as (t, q), got {type(path).__name__}"
@@ -86,14 +90,16 @@ def through(t: NDArray[np.float64], places: NDArray[np.float64], degree: int) ->
     return Path(t, coefficients, coarser)
 
 
-def _of_run(out: GeneralizedTrajectory, n: int) -> Path:
+def _of_run(out: GeneralizedTrajectory, n: int, ascending: bool) -> Path:
     system = out.system
     if system._source.kind != "lagrangian":
         raise InvalidInput("path", "expected a run of a Lagrangian; hamiltonian.lagrangian() makes one to run")
     if len(system.coordinates) != n:
         raise InvalidInput("path", f"expected a path of {n} coordinates, got one of {len(system.coordinates)}")
-    order = slice(None) if len(out.t) < 2 or out.t[0] < out.t[-1] else slice(None, None, -1)
-    t, states = _times(out.t[order]), out._states[order]
+    back = slice(None, None, -1 if len(out.t) > 1 and out.t[0] > out.t[-1] else 1)
+    _times(out.t[back])
+    order = back if ascending else slice(None)
+    t, states = out.t[order], out._states[order]
     q, v = states[:, :n], states[:, n:]
     a = system._model.rates(np.ascontiguousarray(t), np.ascontiguousarray(states), system._values[None, :])
     h = np.diff(t)[:, None]

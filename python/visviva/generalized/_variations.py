@@ -21,7 +21,10 @@ class Variations:
     __slots__ = ()
 
     def action(self: Any, path: Any, *, degree: int = 5) -> PathIntegral:
-        """The action S = ∫ L dt along a path.
+        """The action S = ∫ L dt along a path, from its first time to its last.
+
+        Along a run backward in time it has the other sign: dt < 0 there, as in the principal function S(q₁, t₁; q₀, t₀)
+        with dS = p₁ dq₁ − p₀ dq₀ − E₁ dt₁ + E₀ dt₀, for t₁ before t₀ too. So have the variations.
 
         Parameters
         ----------

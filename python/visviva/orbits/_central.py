@@ -305,7 +305,8 @@ def range_of_motion(
     Returns
     -------
     tuple of RadialRange
-        From the center outward; empty if there is no motion.
+        From the center outward; empty if there is no motion. Where an inverse-cube force keeps a body on a circle at
+        every distance, one ``"circular"`` range of all of them.
 
     Raises
     ------

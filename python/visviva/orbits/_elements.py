@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+import numpy as np
+
 from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Shown
@@ -17,7 +19,6 @@ from visviva.orbits._rows import OfOrbits
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -142,6 +143,10 @@ class Elements(OfOrbits, Shown):
     def state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Give the position and velocity that these elements describe.
 
+        Each to a few ulps of its length, also near e = 1, as far as the anomaly tells the place: near the apocenter of
+        a long ellipse an ulp of π is one of √(μ/a) in the velocity. Where some elements were replaced and no longer
+        agree with the others, the pericenter, e, the three angles and the true anomaly count.
+
         Returns
         -------
         position, velocity : ndarray
@@ -160,15 +165,13 @@ class Elements(OfOrbits, Shown):
         >>> position.round(12) + 0.0, velocity.round(12) + 0.0
         (array([1., 0., 0.]), array([0. , 1.2, 0. ]))
         """
-        return state(
-            self.mu,
-            pericenter=self.pericenter,
-            eccentricity=self.eccentricity,
-            inclination=self.inclination,
-            node=self.node,
-            argument_of_pericenter=self.argument_of_pericenter,
-            true_anomaly=self.true_anomaly,
-        )
+        needed = ("mu", "energy", "pericenter", "eccentricity", "inclination", "node", "argument_of_pericenter")
+        # Infinite for a parabola, and perhaps left out: only the numbers above have to be finite.
+        further = ("semi_major_axis", "semi_minor_axis", "true_anomaly", "eccentric_anomaly", "mean_anomaly")
+        shape, flat, _ = broadcast({name: getattr(self, name) for name in needed}, {})
+        flat += [np.broadcast_to(getattr(self, name), shape).ravel() for name in further]
+        position, velocity = _core.orbit_state_again(flat)
+        return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
 
 
 def labelled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:

@@ -62,7 +62,7 @@ mod _core {
     #[pymodule_export]
     use crate::orbits::{
         conic_from_constants, conic_from_state, orbit_anomaly, orbit_elements, orbit_free_fall_time,
-        orbit_period, orbit_propagate, orbit_semi_major_axis, orbit_state,
+        orbit_period, orbit_propagate, orbit_semi_major_axis, orbit_state, orbit_state_again,
     };
     #[pymodule_export]
     use crate::registry::{

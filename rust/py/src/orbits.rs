@@ -15,6 +15,7 @@ use visviva_core::nbody::constants::{self, ConicConstants};
 use visviva_core::nbody::elements::{Elements, free_fall_time};
 use visviva_core::nbody::kepler::KeplerOrbit;
 use visviva_core::nbody::state::{Anomaly, Shape, state_from_elements};
+use visviva_core::nbody::state_again::{AllElements, state_of_all};
 use visviva_core::parallel::Ticker;
 use visviva_core::words::unknown;
 use visviva_core::{Error, Result};
@@ -211,9 +212,60 @@ pub(crate) fn orbit_state<'py>(
         each((name, count), ticker, elements.orbits(), one)
     })?
     .whole(py)?;
+    states_apart(py, name, &states)
+}
+
+/// Position and velocity of each set of elements that was found of a state, in the order
+/// that is taken apart below.
+#[pyfunction]
+pub(crate) fn orbit_state_again<'py>(
+    py: Python<'py>,
+    elements: [Array<'py>; 12],
+) -> PyResult<(Column<'py>, Column<'py>)> {
+    let elements = together(elements.each_ref().map(|column| ("elements", column)))?;
+    let count = elements.count;
+    let states = compute(py, 0, None, |ticker| {
+        let one = |[
+            mu,
+            energy,
+            pericenter,
+            eccentricity,
+            inclination,
+            node,
+            argument_of_pericenter,
+            semi_major_axis,
+            semi_minor_axis,
+            true_anomaly,
+            eccentric_anomaly,
+            mean_anomaly,
+        ]: [f64; 12]| {
+            let shape = Shape { pericenter, eccentricity, inclination, node, argument_of_pericenter };
+            let all = AllElements {
+                shape,
+                energy,
+                semi_major_axis,
+                semi_minor_axis,
+                true_anomaly,
+                eccentric_anomaly,
+                mean_anomaly,
+            };
+            state_of_all(mu, &all)
+        };
+        each(("true_anomaly", count), ticker, elements.orbits(), one)
+    })?
+    .whole(py)?;
+    states_apart(py, "elements", &states)
+}
+
+/// Positions and velocities as two arrays.
+fn states_apart<'py>(
+    py: Python<'py>,
+    name: &str,
+    states: &[PositionVelocity],
+) -> PyResult<(Column<'py>, Column<'py>)> {
     let vectors = |part: fn(&PositionVelocity) -> Vector3<f64>| {
         let values = flat(name, states.iter().map(part)).map_err(|error| raised(py, error))?;
-        moved(py, values, &[count, 3])
+        moved(py, values, &[states.len(), 3])
     };
     Ok((vectors(|state| state.0)?, vectors(|state| state.1)?))
 }

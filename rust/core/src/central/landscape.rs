@@ -193,6 +193,22 @@ impl Landscape {
         (reaches(first), reaches(last))
     }
 
+    /// Whether every distance is one of a circle: V is −l²/2mr² and an energy, which only rounding tells from E.
+    pub(super) fn every_circle(&self, motion: Radial<'_>) -> bool {
+        let still = |r: f64| {
+            let (value, turning) = (self.field.value(r), motion.centrifugal.high() / r / r);
+            let size = motion.energy.high().abs() + value.abs() + turning;
+            turning > 0.0 && motion.kinetic(DoubleDouble::from(r)).0.high().abs() <= ROUNDED * size
+        };
+        // Places apart by more than any force that is no inverse cube would go on with it.
+        let places = |first: f64, last: f64| {
+            let (low, high) = (exponent(first) + 1, exponent(last));
+            let between = (0..=LOOKS).map(move |k| scale(1.1, low + (high - low) * k / LOOKS));
+            [first, last].into_iter().chain(between.filter(move |r| *r > first && *r < last))
+        };
+        self.zones.iter().all(|zone| zone.ends.is_some_and(|(first, last)| places(first, last).all(still)))
+    }
+
     /// In each zone the zeros of a function that is monotone between its places.
     fn crossings(&self, f: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
         let of = |zone: &Zone| {
@@ -308,6 +324,10 @@ fn dip(f: impl Fn(f64) -> f64, low: f64, high: f64, sign: f64) -> Option<f64> {
     }
     None
 }
+
+/// How much of the energies rounding takes, and at how many places that is looked for.
+const ROUNDED: f64 = 4.0 * f64::EPSILON;
+const LOOKS: i32 = 64;
 
 /// What r²V does from the nearest place inward.
 fn center(field: &Field, nearest: Option<f64>) -> Center {

@@ -43,7 +43,7 @@ pub struct Range {
     pub inner: End,
     /// Its far end.
     pub outer: End,
-    /// Whether it is no wider than energy and angular momentum are known.
+    /// Whether it is no wider than energy and angular momentum are known, or every distance in it is one of a circle.
     pub circle: bool,
 }
 
@@ -84,6 +84,12 @@ impl Landscape {
         let (to_center, outward) = self.open_ends(motion);
         let domain =
             self.field().domain().map(|(a, b)| (self.field().give_length(a), self.field().give_length(b)));
+        if self.every_circle(motion) {
+            let (low, high) = domain.unwrap_or((0.0, f64::INFINITY));
+            let inner = if low > 0.0 { End::Edge(low) } else { End::Center };
+            let outer = if high.is_finite() { End::Edge(high) } else { End::Infinity };
+            return vec![Range { inner, outer, circle: true }];
+        }
         let mut inner = match domain {
             _ if !to_center => None,
             Some((low, _)) if low > 0.0 => Some(End::Edge(low)),

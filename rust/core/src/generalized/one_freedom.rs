@@ -6,9 +6,10 @@
 
 use super::gauss;
 use super::model::{Kind, Model};
+use super::smooth_integral::integral;
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Machine};
-use core::f64::consts::{FRAC_PI_2, PI};
+use core::f64::consts::PI;
 use std::sync::Arc;
 
 use crate::numerics::angles;
@@ -18,8 +19,10 @@ const SMALLEST_STEP: f64 = 1e-2;
 /// Steps that are alike, and all of them: the others grow, to 10^20.
 const STEPS_ALIKE: u32 = 3000;
 const MOST_STEPS: u32 = 8000;
-/// Nodes that are begun with, and the most there are.
-const NODES: (usize, usize) = (16, 1 << 20);
+/// As often a length is halved until two numbers are neighbours, whatever its unit.
+const HALVINGS: u32 = 2200;
+/// The last digit of a place may be this part of a swing.
+const COARSEST: f64 = 2.3e-7;
 /// Squared cosines below this are near a turning point.
 const NEAR_AN_END: f64 = 0.25;
 /// Where potentials differ by less than this part of them, they are not subtracted.
@@ -27,8 +30,6 @@ const CANCELLATION: f64 = 0.1;
 /// The most panels for the integral of a slope, and how well two of them agree that are exact.
 const PANELS: u32 = 32;
 const EXACT: f64 = 1e-15;
-/// Sums that agree to this are exact.
-const AGREEMENT: f64 = 4e-15;
 
 /// Energy at rest and mass: what a motion of one coordinate depends on.
 #[derive(Clone, Debug)]
@@ -95,25 +96,47 @@ impl OneFreedom {
             return self.kinetic + fallen;
         }
         // The difference of a short way would have few digits: the integral of the slope has all.
+        let (risen, doubt) = self.risen(self.start, q - self.start);
+        if doubt <= 4.0 * f64::EPSILON * (at_rest.abs() + self.at_rest.abs()) {
+            self.kinetic - risen
+        } else {
+            self.kinetic + fallen
+        }
+    }
+
+    /// What is left of the energy for motion at a place, by its way to an end where nothing is.
+    fn left_before(&mut self, place: f64, way: f64) -> f64 {
+        let (risen, doubt) = self.risen(place, way);
+        if doubt == 0.0 {
+            return risen;
+        }
+        let size = self.values(place, 0.0)[0].abs() + self.at_rest.abs() + self.kinetic;
+        if doubt <= 4.0 * f64::EPSILON * size { risen } else { self.left(place) }
+    }
+
+    /// By how much the energy at rest rises on a way from a place, as the integral of its slope, and how far that may be
+    /// off: 0 if two sums agree.
+    fn risen(&mut self, from: f64, way: f64) -> (f64, f64) {
         let (nodes, weights) = gauss::quadrature();
-        let (mut panels, mut last) = (1, f64::NAN);
+        let (mut panels, mut last, mut doubt) = (1, f64::NAN, f64::INFINITY);
         while panels <= PANELS {
-            let width = (q - self.start) / f64::from(panels);
+            let width = way / f64::from(panels);
             let (mut sum, mut size) = (0.0, 0.0);
             for panel in 0..panels {
                 for (x, w) in nodes.iter().zip(weights) {
-                    let slope = w * self.values(self.start + (f64::from(panel) + x) * width, 0.0)[2];
+                    let slope = w * self.values(from + (f64::from(panel) + x) * width, 0.0)[2];
                     sum += slope;
                     size += slope.abs();
                 }
             }
-            if (sum * width - last).abs() <= EXACT * size * width.abs() {
-                return self.kinetic - sum * width;
-            }
+            doubt = (sum * width - last).abs();
             last = sum * width;
+            if doubt <= EXACT * size * width.abs() {
+                return (last, 0.0);
+            }
             panels *= 2;
         }
-        self.kinetic + fallen
+        (last, doubt)
     }
 
     /// The first turning point on one side, `None` if there is none within reach.
@@ -136,7 +159,7 @@ impl OneFreedom {
             }
             if self.left(outside) < 0.0 {
                 // Halved to neighbouring numbers.
-                for _ in 0..200 {
+                for _ in 0..HALVINGS {
                     let middle = inside + 0.5 * (outside - inside);
                     if middle == inside || middle == outside {
                         break;
@@ -158,21 +181,28 @@ impl OneFreedom {
     /// # Errors
     /// A motion that does not turn back, or stands still.
     pub fn oscillation(&mut self) -> Result<Oscillation> {
+        let stands_still = || {
+            Error::invalid(
+                "position",
+                "the motion stands still, or swings by less than its place tells apart: an equilibrium; see linearize()",
+            )
+        };
+        if self.kinetic == 0.0 && self.values(self.start, 0.0)[2] == 0.0 {
+            return Err(stands_still());
+        }
         let scale = if self.start.abs() > 1.0 { self.start.abs() } else { 1.0 };
         let (Some(low), Some(high)) = (self.turning(-1.0, scale), self.turning(1.0, scale)) else {
             return Err(Error::invalid(
                 "position",
-                "the motion does not turn back; the period of a rotation is turn_period(2π)",
+                "the motion does not turn back; the period of a rotation is period(turn=2π)",
             ));
         };
         let (middle, half) = (0.5 * (low + high), 0.5 * (high - low));
-        if half.abs() <= 1e-9 * scale {
-            return Err(Error::invalid(
-                "position",
-                "the motion stands still: an equilibrium; see linearize()",
-            ));
+        // How much of the swing the last digit of a place is.
+        let digit = f64::EPSILON * low.abs().max(high.abs()) / half.abs();
+        if digit.is_nan() || digit > COARSEST {
+            return Err(stands_still());
         }
-        let (nodes, weights) = gauss::quadrature();
         let mut of = |phi: f64| {
             let (sine, cosine) = angles::sin_cos(phi);
             let square = cosine * cosine;
@@ -183,16 +213,13 @@ impl OneFreedom {
             } else {
                 // Next to an end the difference would have lost its digits: it is the slope's integral from there.
                 let far = half * square / (1.0 + sine.abs());
-                let to_the_end = if sine > 0.0 { far } else { -far };
-                let slopes =
-                    nodes.iter().zip(weights).map(|(x, w)| w * self.values(place + x * to_the_end, 0.0)[2]);
-                to_the_end * slopes.sum::<f64>()
+                self.left_before(place, if sine > 0.0 { far } else { -far })
             };
             // (E − U)/cos² has no zero at the ends.
             let speed = (2.0 * left / (mass * square)).sqrt();
             [half / speed, half * square * speed * mass]
         };
-        let [period, action] = trapezoid(&mut of)?;
+        let [period, action] = integral(&mut of, digit)?;
         Ok(Oscillation { turning: (low, high), period: 2.0 * period, action: action / PI })
     }
 
@@ -208,41 +235,7 @@ impl OneFreedom {
             let speed = (2.0 * self.left(place) / mass).sqrt();
             [turn.abs() / (PI * speed), turn.abs() / PI * speed * mass]
         };
-        let [period, action] = trapezoid(&mut of)?;
+        let [period, action] = integral(&mut of, 0.0)?;
         Ok([period, action / (2.0 * PI)])
     }
-}
-
-/// ∫ of two integrands from −π/2 to π/2 through the middles of equal steps, halved (by three) until nothing changes.
-fn trapezoid(of: &mut impl FnMut(f64) -> [f64; 2]) -> Result<[f64; 2]> {
-    let (mut nodes, mut last) = (NODES.0, [f64::NAN; 2]);
-    while nodes <= NODES.1 {
-        let h = PI / nodes as f64;
-        let (mut sums, mut rests) = ([0.0; 2], [0.0; 2]);
-        for k in 0..nodes {
-            let values = of(-FRAC_PI_2 + (k as f64 + 0.5) * h);
-            for index in 0..2 {
-                let change = values[index] + rests[index];
-                let sum = sums[index] + change;
-                rests[index] = change - (sum - sums[index]);
-                sums[index] = sum;
-            }
-        }
-        let found = sums.map(|sum| sum * h);
-        if found.iter().any(|x| !x.is_finite()) {
-            break;
-        }
-        if (0..2).all(|index| {
-            (found[index] - last[index]).abs()
-                <= AGREEMENT * found[index].abs() * (1.0 + (nodes as f64).sqrt() / 8.0)
-        }) {
-            return Ok(found);
-        }
-        last = found;
-        nodes *= 2;
-    }
-    Err(Error::invalid(
-        "position",
-        "the quadrature does not converge: the motion is next to a separatrix, or turns back",
-    ))
 }

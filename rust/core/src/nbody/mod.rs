@@ -7,4 +7,5 @@ pub mod elements;
 pub mod kepler;
 mod kepler_equation;
 pub mod state;
+pub mod state_again;
 pub mod two_body;

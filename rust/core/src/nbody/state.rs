@@ -1,4 +1,4 @@
-//! A state from the elements of a conic; the way back is in `elements.rs`.
+//! A state from the elements of a conic; the way back is in `elements.rs`, and `state_again.rs` has a state from all of them.
 //!
 //! The one idea: position and velocity in the plane of the motion from whichever anomaly is given, each by the formula
 //! that keeps its digits: none goes by way of another angle, so nothing is lost near e = 1 or near an asymptote.
@@ -46,7 +46,7 @@ pub struct Shape {
 /// [`Error::InvalidInput`] for arguments out of range, for a true anomaly on or beyond an asymptote, and for a place
 /// that float64 does not hold.
 pub fn state_from_elements(mu: f64, shape: Shape, anomaly: Anomaly) -> Result<(Vector3<f64>, Vector3<f64>)> {
-    let Shape { pericenter, eccentricity: e, inclination, node, argument_of_pericenter } = shape;
+    let Shape { pericenter, eccentricity: e, .. } = shape;
     if !mu.is_finite() || mu == 0.0 {
         return Err(Error::invalid(
             "mu",
@@ -65,17 +65,8 @@ pub fn state_from_elements(mu: f64, shape: Shape, anomaly: Anomaly) -> Result<(V
             format!("expected e ≥ 0 (mu < 0: e > 1), got {}", number(e)),
         ));
     }
-    let angles = [inclination, node, argument_of_pericenter];
-    if !angles.iter().all(|angle| angle.is_finite()) {
-        return Err(Error::invalid("angles", format!("expected finite angles, got {}", numbers(&angles))));
-    }
-    if !(0.0..=PI).contains(&inclination) {
-        return Err(Error::invalid(
-            "inclination",
-            format!("expected an angle in radians from 0 to π, got {}", number(inclination)),
-        ));
-    }
-    let Plane { place: [x, y], length, rate: [u, v], speed } = match anomaly {
+    let directions = shape.directions()?;
+    let plane = match anomaly {
         Anomaly::True(nu) => from_true(mu, pericenter, e, nu)?,
         Anomaly::Eccentric(eccentric) => {
             from_eccentric(mu, pericenter, e, eccentric, ("eccentric_anomaly", eccentric))?
@@ -97,22 +88,48 @@ pub fn state_from_elements(mu: f64, shape: Shape, anomaly: Anomaly) -> Result<(V
             from_eccentric(mu, pericenter, e, eccentric, ("mean_anomaly", mean))?
         }
     };
-    let (node_sine, node_cosine) = sin_cos(node);
-    let (sine_i, cosine_i) = sin_cos(inclination);
-    let (sine_w, cosine_w) = sin_cos(argument_of_pericenter);
-    let line = Vector3::new(node_cosine, node_sine, 0.0);
-    let across = Vector3::new(-node_sine * cosine_i, node_cosine * cosine_i, sine_i);
-    let towards = line * cosine_w + across * sine_w;
-    let along = across * cosine_w - line * sine_w;
-    Ok(((towards * x + along * y) * length, (towards * u + along * v) * speed))
+    Ok(plane.in_space(&directions))
+}
+
+impl Shape {
+    /// The direction towards the pericenter, and that of the motion there.
+    pub(super) fn directions(&self) -> Result<[Vector3<f64>; 2]> {
+        let Self { inclination, node, argument_of_pericenter, .. } = *self;
+        let angles = [inclination, node, argument_of_pericenter];
+        if !angles.iter().all(|angle| angle.is_finite()) {
+            return Err(Error::invalid(
+                "angles",
+                format!("expected finite angles, got {}", numbers(&angles)),
+            ));
+        }
+        if !(0.0..=PI).contains(&inclination) {
+            return Err(Error::invalid(
+                "inclination",
+                format!("expected an angle in radians from 0 to π, got {}", number(inclination)),
+            ));
+        }
+        let (node_sine, node_cosine) = sin_cos(node);
+        let (sine_i, cosine_i) = sin_cos(inclination);
+        let (sine_w, cosine_w) = sin_cos(argument_of_pericenter);
+        let line = Vector3::new(node_cosine, node_sine, 0.0);
+        let across = Vector3::new(-node_sine * cosine_i, node_cosine * cosine_i, sine_i);
+        Ok([line * cosine_w + across * sine_w, across * cosine_w - line * sine_w])
+    }
 }
 
 /// Position and velocity in the plane of the motion, towards the pericenter and along the motion there, each in a unit.
-struct Plane {
-    place: [f64; 2],
-    length: f64,
-    rate: [f64; 2],
-    speed: f64,
+pub(super) struct Plane {
+    pub(super) place: [f64; 2],
+    pub(super) length: f64,
+    pub(super) rate: [f64; 2],
+    pub(super) speed: f64,
+}
+
+impl Plane {
+    pub(super) fn in_space(&self, [towards, along]: &[Vector3<f64>; 2]) -> (Vector3<f64>, Vector3<f64>) {
+        let ([x, y], [u, v]) = (self.place, self.rate);
+        ((towards * x + along * y) * self.length, (towards * u + along * v) * self.speed)
+    }
 }
 
 fn from_true(mu: f64, pericenter: f64, e: f64, nu: f64) -> Result<Plane> {

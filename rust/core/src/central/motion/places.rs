@@ -76,7 +76,7 @@ impl Motion<'_> {
 
     /// Of a range that is no wider than the root of rounding, the motion to first order in its width.
     fn epicycle(&self, (radius, radial_velocity): (f64, f64)) -> Option<Epicycle> {
-        if !self.range.circle {
+        if !self.range.circle || matches!(self.form, Form::Open(_)) {
             return None;
         }
         let guide = 0.5 * (self.range.inner.radius() + self.range.outer.radius());
