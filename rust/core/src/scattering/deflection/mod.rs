@@ -12,6 +12,7 @@ mod closed;
 mod comparison;
 mod delay_tail;
 mod grid;
+mod head_on;
 mod nodes;
 mod pack;
 mod pairs;

@@ -23,17 +23,6 @@ const ROUNDING: f64 = 64.0 * f64::EPSILON;
 const NEAR_BARRIER: f64 = 0.003;
 /// An angle of less than this part of what cancels in it is found as a sum of small turns.
 const CANCELLED: f64 = 0.05;
-/// An impact parameter that stands for zero at an open center, in units of the potential's own length.
-const TINY: f64 = 1.0 / (1 << 26) as f64;
-/// The logarithm of 1e-70, the least turning point beside a center that attracts, as a part of where |V| is the energy: nearer
-/// to it r² V″ and (b/r₀)³ leave the range of numbers, and what remains is a wrong number.
-const NEAREST: f64 = -161.18;
-/// And where b is a smaller part of that it is as good as 0, …
-const NOTHING: f64 = 1.0 / (1_u64 << 60) as f64;
-/// … if |V| there is so many times the energy: where V falls slowly it is not, however small b is.
-const FAR_ABOVE: f64 = 4.0 / f64::EPSILON;
-/// Newton's steps to where a slow attraction turns, from what is off by a part of E/V at most.
-const STEPS: usize = 4;
 /// What nodes leave out, as a part of the tolerance.
 const LEFT_OUT: f64 = 0.05;
 
@@ -314,80 +303,6 @@ impl Quadrature<'_> {
         let whole = adaptive::integrate(self.profile, pair, integrand, &ends, (tolerance, wanted));
         (whole.integral, whole.error)
     }
-
-    /// The impact parameter up to which a pair is taken for one that comes head-on, and the one at which that is found.
-    #[inline(always)]
-    fn as_head_on(&self, energy: f64) -> (f64, f64) {
-        match self.profile.center() {
-            Center::Attractive(power) if power < 2.0 => self.around(energy, power),
-            _ => (0.0, TINY),
-        }
-    }
-    /// The same at a center that attracts as 1/rⁿ, where r₀ goes as b^(2/(2−n)).
-    fn around(&self, energy: f64, power: f64) -> (f64, f64) {
-        let least = Exponential::exp(0.5 * (2.0 - power) * NEAREST);
-        let reach = self.profile.grid().reach(energy, power);
-        // At r₀ |V| is the energy times (reach/b)^(2n/(2−n)).
-        let far_above = Exponential::exp(-ln(FAR_ABOVE) * 0.5 * (2.0 - power) / power);
-        let nothing = reach * least.max(NOTHING.min(far_above));
-        (nothing, nothing)
-    }
-
-    /// Up to that impact parameter, found at a tiny one where the center is open: through it, or round a point that attracts.
-    fn head_on(&self, energy: f64, b: f64, found: &mut Deflection) {
-        let mut critical = Critical::default();
-        match critical.way(self.profile, energy, 0.0) {
-            Way::Through => {
-                found.derivative = found.angle / TINY;
-                (found.angle, found.complement, found.closest_approach) = (0.0, PI, 0.0);
-            }
-            Way::Bounces(power) => {
-                // Between the limit of b = 0 and what was found as the first of what is left out goes: as b, or as E/V at r₀.
-                let limit = -PI * power / (2.0 - power);
-                let share = b / self.as_head_on(energy).1;
-                let faded = if b > 0.0 { Exponential::exp(ln(share) * left_out_power(power)) } else { 0.0 };
-                let off = (found.angle - limit) * faded;
-                found.angle = limit + off;
-                found.complement = PI - found.angle.abs();
-                found.error = found.error.max(off.abs());
-                found.closest_approach = if b > 0.0 {
-                    // As V goes on inward, which there is many times the energy.
-                    let [inner, at] =
-                        [found.closest_approach, self.profile.value(found.closest_approach) / energy];
-                    turned_further_in(inner, at, power, share)
-                } else {
-                    0.0
-                };
-            }
-            _ if b > 0.0 => {}
-            _ => (found.angle, found.complement) = (PI, 0.0),
-        }
-        if !self.all {
-            found.derivative = f64::NAN;
-        }
-    }
-}
-
-/// As what power of b an angle goes to its limit at a center that attracts as 1/rⁿ.
-fn left_out_power(power: f64) -> f64 {
-    (2.0 * power / (2.0 - power)).min(1.0)
-}
-
-/// Where r²(1 − V/E) is `share`² of what it is at r₁, from V/E at r₁ and its power: by Newton's steps in ln r, of a function
-/// that is bent to one side, so that they do not swing.
-fn turned_further_in(inner: f64, value: f64, power: f64, share: f64) -> f64 {
-    let wanted = 2.0 * ln(share) + ln(1.0 - value);
-    // Without the energy that is ln(−V/E).
-    let mut way = (wanted - ln(-value)) / (2.0 - power);
-    for _ in 0..STEPS {
-        let pull = -value * Exponential::exp(-power * way);
-        if pull == f64::INFINITY {
-            break;
-        }
-        let off = 2.0f64.mul_add(way, ln(1.0 + pull)) - wanted;
-        way -= off / (2.0 - power * (pull / (1.0 + pull)));
-    }
-    inner * Exponential::exp(way)
 }
 
 /// Places in the order of their reaches.

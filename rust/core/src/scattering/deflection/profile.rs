@@ -19,6 +19,8 @@ const TOUCHES: f64 = 16.0 * f64::EPSILON;
 
 /// Powers of r that differ by no more of themselves are one.
 const SAME_POWER: f64 = 1e-13;
+/// For so many places, 32 octaves, it must be one: of two powers that are near each other the sum changes its own slowly.
+const SETTLED: usize = POINTS / 4;
 
 /// What is left of a force at the centre.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -107,7 +109,9 @@ impl Profile {
         let power = |at: usize| made.grid.pull[at] / made.grid.value[at];
         let last = power(POINTS - 1);
         let same = |at: &usize| (power(*at) - last).abs() <= SAME_POWER * last;
-        if let Some(first) = (0..POINTS).rev().take_while(same).last() {
+        if let Some(first) =
+            (0..POINTS).rev().take_while(same).last().filter(|first| first + SETTLED <= POINTS)
+        {
             made.power_from = radius(first);
         }
         // Where everything repels, U passes E only behind V = E.
