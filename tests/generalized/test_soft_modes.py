@@ -1,4 +1,4 @@
-"""A soft mode beside a stiff one: what the solution of linear equations keeps where the sum of two stiffnesses is rounded.
+"""A soft mode beside a stiff one: what linear equations keep of it where the sum of two stiffnesses is rounded.
 
 V = A (x - y)²/2 + B (x + y)²/2 of unit masses: x + y turns with ω² = 2B, which A + B in float64 may hold no digit of.
 """

@@ -1,6 +1,6 @@
 """Two zeros of an event on either side of a place where it turns, between two nodes of a step: both are found.
 
-x = cos t: it passes 1 - d twice in every period, √(2d) before and after its maximum, wherever the nodes of the steps are.
+x = cos t: it passes 1 - d twice in every period, √(2d) before and after its maximum, wherever the steps have nodes.
 """
 
 import numpy as np

@@ -199,3 +199,19 @@ def test_what_is_no_formula_is_refused_by_name(make: Any, argument: str, words: 
     with pytest.raises(vv.InvalidInput, match=words) as caught:
         make()
     assert caught.value.argument == argument
+
+
+def test_what_becomes_level_has_no_force_there() -> None:
+    """Woods and Saxon's well in its two forms: of e^x in a denominator derivatives left the range far out."""
+    well = Custom(-50 / (1 + sp.exp(2 * (r - 3))))
+    same = Custom(lambda r: -25.0 * (1.0 - np.tanh(r - 3.0)))
+    places = np.array([0.5, 2.0, 3.0, 5.0, 30.0, 100.0, 357.0, 400.0, 1e6])
+    assert well.force(places) == pytest.approx(same.force(places), rel=1e-12, abs=1e-40)
+    assert well.curvature(places)[-2:].tolist() == [0.0, 0.0]
+    ways = [vv.scattering.deflect(each, energy=30.0, impact_parameter=[1.0, 3.0, 5.0, 400.0]) for each in (well, same)]
+    assert ways[0].angle == pytest.approx(ways[1].angle, abs=1e-12)
+    assert ways[0].derivative == pytest.approx(ways[1].derivative, rel=1e-9, abs=1e-15)
+    rainbows = [vv.scattering.rainbows(each, energy=30.0) for each in (well, same)]
+    assert rainbows[0][0].impact_parameter == pytest.approx(rainbows[1][0].impact_parameter, rel=1e-9)
+    far = vv.Scene(vv.Particles([1.0], [[500.0, 0, 0]], [[0, 1.0, 0]]), vv.CentralField(well)).run(10.0)
+    assert far.position[-1, 0].tolist() == [500.0, 10.0, 0.0]

@@ -1,13 +1,17 @@
 """Channels whose probability hangs on the energy: which one an event goes through, thresholds, and what is expected."""
 
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
-from coulomb_beam import uniforms
 from scipy.stats import chi2
 
 import visviva as vv
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+from coulomb_beam import uniforms
 
 p, s = vv.potentials, vv.scattering
 Channel, Spread = s.Channel, s.Spread

@@ -166,3 +166,69 @@ def test_behind_the_rim_of_a_well() -> None:
     assert smooth.turning_points.tolist() == [1, 1, 3, 3, 1]
     barrier = s.deflect(V.SquareWell(depth=-0.5, radius=1.0), energy=1.0, impact_parameter=b)
     assert barrier.turning_points.tolist() == [1, 1, 1, 1, 1]
+
+
+def turned(v: object, energy: float, b: mp.mpf, start: mp.mpf) -> mp.mpf:
+    """ψ = π − 2 ∫ b dr/r²√g, by r = r₀ cosh w, of V at 40 digits."""
+    with mp.workdps(40):
+
+        def g(r: mp.mpf) -> mp.mpf:
+            return 1 - v(r) / energy - b * b / (r * r)
+
+        r0 = mp.findroot(g, (start * mp.mpf("0.9"), start * mp.mpf("1.1")), tol=mp.mpf("1e-60"))
+
+        def integrand(w: mp.mpf) -> mp.mpf:
+            return b / (r0 * mp.cosh(w)) * mp.tanh(w) / mp.sqrt(g(r0 * mp.cosh(w)))
+
+        marks = [mp.mpf("1e-18"), 1, 3, 6, 10, 15, 20, 25, 30, 40, 60, 90]
+        return mp.pi - 2 * mp.quad(integrand, marks)
+
+
+@pytest.mark.parametrize(
+    ("potential", "v", "power"),
+    [
+        (V.Yukawa(-1.0, 1.0), lambda r: -mp.exp(-r) / r, 1.0),
+        (V.Yukawa(-2.0, 1.0), lambda r: -2 * mp.exp(-r) / r, 1.0),
+        (V.PowerLaw(-1.0, 1.5), lambda r: -(r ** mp.mpf("-1.5")), 1.5),
+    ],
+    ids=repr,
+)
+@pytest.mark.parametrize("energy", [1.0, 0.5, 0.05])
+def test_derivatives_at_a_center_that_attracts(potential: V.Potential, v: object, power: float, energy: float) -> None:
+    """ψ = ψ₀ + ψ′b + …: the slope at 0 from four angles at 40 digits; it was the rest of two integrals of 1/b."""
+    h = mp.mpf("1e-3")
+    limit = -mp.pi * power / (2 - power)
+    strength = -v(mp.mpf("1e-12")) * mp.mpf("1e-12") ** power
+
+    def turning(b: mp.mpf) -> mp.mpf:
+        """Of k/rⁿ alone, where |V| is far above the energy."""
+        return (b * b * energy / strength) ** (1 / (2 - mp.mpf(power)))
+
+    near = [turned(v, energy, k * h, turning(k * h)) for k in (1, 2, 3, 4)]
+    secants = [(angle - limit) / (k * h) for k, angle in zip((1, 2, 3, 4), near, strict=True)]
+    # Neville to b = 0 of what is a series in b: off by its fourth power, 1e-12.
+    slope = 4 * secants[0] - 6 * secants[1] + 4 * secants[2] - secants[3]
+    found = s.deflect(potential, energy=energy, impact_parameter=[0.0, 1e-14, 1e-10, 1e-8])
+    assert found.derivative == pytest.approx(np.full(4, float(slope)), rel=1e-7)
+    assert s.rainbows(potential, energy=energy) == () or s.rainbows(potential, energy=energy)[0].impact_parameter > 1e-3
+    assert all(glory.impact_parameter > 1e-3 for glory in s.glories(potential, energy=energy))
+    if power == 1.0:
+        # Backward: 1/ψ′² of the one branch that goes there.
+        section = s.cross_section(potential, energy=energy, angle=np.pi)
+        straight = 1.0 / float(slope) ** 2
+        assert float(section) == pytest.approx(straight, rel=1e-6) or float(section) > straight
+
+
+@pytest.mark.parametrize("share", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
+def test_transport_of_a_weak_square_well(share: float) -> None:
+    """Its largest angles are at its rim, on a part `share` of it: that was cut off, 2e-4 of all at 1e-8."""
+    with mp.workdps(30):
+        index = mp.sqrt(1 + mp.mpf(share))
+
+        def part(x: mp.mpf) -> mp.mpf:
+            return 2 * mp.sin(mp.asin(x) - mp.asin(x / index)) ** 2 * x
+
+        marks = [0, mp.mpf("0.5"), *(1 - mp.mpf(10) ** -k for k in range(1, 16)), 1]
+        exact = 2 * mp.pi * mp.quad(part, marks)
+    found = s.transport_cross_section(V.SquareWell(share, 1.0), energy=1.0)
+    assert float(found) == pytest.approx(float(exact), rel=1e-9)

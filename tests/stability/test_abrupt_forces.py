@@ -1,7 +1,7 @@
 """Forces that begin abruptly on a long free way: walls without a length of their own, and contacts of stiff spheres.
 
-What turns back is known beforehand: an elastic head-on collision sends a body back as fast as it came, and exchanges the
-velocities of two that are equally heavy.
+What turns back is known beforehand: an elastic head-on collision sends a body back as fast as it came, and exchanges
+the velocities of two that are equally heavy.
 """
 
 import numpy as np
@@ -11,7 +11,6 @@ import visviva as vv
 
 #: A drag that takes nothing in that time: energies say nothing then, so no warning could.
 NO_DRAG = vv.LinearDrag(1e14)
-
 
 
 @pytest.mark.parametrize("method", ["dop853", "verner98", "tsitouras54", "dormand_prince54", "bogacki_shampine32"])
@@ -57,7 +56,7 @@ def test_stiff_spheres_bounce(n: float, method: str) -> None:
         contact = vv.CentralField(vv.potentials.SoftSphere(stiffness, 1.0, n))
         for forces in ((contact,), (contact, NO_DRAG)):
             out = vv.Scene(body, *forces).run(2.0 * distance, method=method, rtol=1e-9)
-            # In the contact the rate is large and a derivative leaps: a few thousand times the tolerance (measured 1.3e-6).
+            # In the contact the rate is large and a derivative leaps: some thousand tolerances (measured 1.3e-6).
             assert out.velocity[-1, 0, 0] == pytest.approx(-1.0, abs=3e-6), (distance, stiffness, len(forces))
 
 

@@ -8,8 +8,8 @@ use super::graph::{Graph, Id, Node, number};
 use std::collections::HashMap;
 
 impl Graph {
-    /// What a node is made of, each with the derivative with respect to it.
-    fn partials(&mut self, id: Id) -> Vec<(Id, Id)> {
+    /// What a node is made of, each with the derivative with respect to it; nodes that are kept are not taken apart.
+    fn partials(&mut self, id: Id, kept: &dyn Fn(Id) -> bool) -> Vec<(Id, Id)> {
         match self.node(id).clone() {
             Node::Constant(_) | Node::Variable(_) | Node::Parameter(_) | Node::Time => vec![],
             Node::Sum(_, terms) => terms.iter().map(|&(c, x)| (x, self.constant(number(c)))).collect(),
@@ -17,8 +17,15 @@ impl Graph {
             Node::Product(a, b) => vec![(a, b), (b, a)],
             Node::Quotient(a, b) => {
                 let one = self.constant(1.0);
-                let (reciprocal, ratio) = (self.divide(one, b), self.divide(id, b));
-                vec![(a, reciprocal), (b, self.scale(-1.0, ratio))]
+                let mut partials = vec![(a, self.divide(one, b))];
+                // Factor by factor of what it is divided by: of k/r⁶ it is −6 (k/r⁶)/r, where (k/r⁶)/r⁶ would leave the range.
+                let mut factors = Vec::new();
+                self.factors(b, 1.0, kept, &mut factors);
+                for (factor, times) in factors {
+                    let ratio = self.divide(id, factor);
+                    partials.push((factor, self.scale(-times, ratio)));
+                }
+                partials
             }
             Node::Angle(y, x) => {
                 let (y2, x2) = (self.multiply(y, y), self.multiply(x, x));
@@ -32,6 +39,21 @@ impl Graph {
                 let lower = self.power(a, exponent - 1.0);
                 vec![(a, self.scale(exponent, lower))]
             }
+        }
+    }
+
+    /// What a product is made of, and how many times.
+    fn factors(&self, id: Id, times: f64, kept: &dyn Fn(Id) -> bool, into: &mut Vec<(Id, f64)>) {
+        match self.node(id) {
+            Node::Product(a, b) if !kept(id) && a == b => self.factors(*a, 2.0 * times, kept, into),
+            Node::Product(a, b) if !kept(id) => {
+                self.factors(*a, times, kept, into);
+                self.factors(*b, times, kept, into);
+            }
+            _ => match into.iter_mut().find(|(factor, _)| *factor == id) {
+                Some((_, before)) => *before += times,
+                None => into.push((id, times)),
+            },
         }
     }
 
@@ -106,7 +128,7 @@ impl Graph {
             let Some(terms) = active.get(&id).filter(|terms| !terms.is_empty()).cloned() else { continue };
             let outer = self.sum(0.0, &terms);
             let _ = active.insert(id, vec![(1.0, outer)]);
-            for (argument, slope) in self.partials(id) {
+            for (argument, slope) in self.partials(id, &|node| variables.contains(&node)) {
                 if !active.contains_key(&argument) {
                     continue;
                 }
@@ -137,7 +159,7 @@ impl Graph {
                 continue;
             }
             let mut terms = Vec::new();
-            for (argument, slope) in self.partials(id) {
+            for (argument, slope) in self.partials(id, &|node| direction.contains_key(&node)) {
                 let Some(&inner) = change.get(&argument) else { continue };
                 match self.as_constant(slope) {
                     Some(value) => terms.push((value, inner)),

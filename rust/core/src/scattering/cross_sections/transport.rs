@@ -175,7 +175,12 @@ fn intervals(deflector: &Deflector, energy: f64, edges: &[Edge]) -> Vec<Interval
         }
         if high < f64::INFINITY {
             let most = ln(high - middle);
-            add(Way::Near(high, -1.0), (ln(high) - NEAREST).min(most - 1.0), most);
+            let nearest = (ln(high) - NEAREST).min(most - 1.0);
+            add(Way::Near(high, -1.0), nearest, most);
+            if high == range {
+                // On the last of a weak well angles are larger than anywhere, however thin it is.
+                add(Way::Straight, high - Exponential::exp(nearest), high);
+            }
         } else {
             let from = ln(middle / length);
             add(Way::Far(length), from, from + FARTHEST);

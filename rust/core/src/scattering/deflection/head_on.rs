@@ -1,10 +1,12 @@
 //! Pairs that come head-on or nearly so: through an open center, or round one that attracts, by the limit of b → 0.
 
-use super::Deflection;
 use super::pairs::Quadrature;
 use super::profile::Center;
 use super::turning::{Critical, Way};
+use super::{Deflection, Status};
+use crate::Result;
 use crate::numerics::elementary::{Exponential, ln};
+use crate::parallel::Ticker;
 use core::f64::consts::PI;
 
 /// An impact parameter that stands for zero at an open center, in units of the potential's own length.
@@ -18,6 +20,10 @@ const NOTHING: f64 = 1.0 / (1_u64 << 60) as f64;
 const FAR_ABOVE: f64 = 4.0 / f64::EPSILON;
 /// Newton's steps to where a slow attraction turns, from what is off by a part of E/V at most.
 const STEPS: usize = 4;
+
+/// Up to that part of the distance where |V| is the energy an angle beside a center that attracts is a parabola: its cube
+/// there is a part of 1e-10, and what its derivative loses to rounding, which goes as 1/b², is no more yet.
+const PARABOLIC: f64 = 1e-5;
 
 impl Quadrature<'_> {
     /// The impact parameter up to which a pair is taken for one that comes head-on, and the one at which that is found.
@@ -36,6 +42,53 @@ impl Quadrature<'_> {
         let far_above = Exponential::exp(-ln(FAR_ABOVE) * 0.5 * (2.0 - power) / power);
         let nothing = reach * least.max(NOTHING.min(far_above));
         (nothing, nothing)
+    }
+
+    /// The derivatives of those that nearly meet a center which attracts: from the limit of b → 0 and two angles beside it.
+    /// The integral for them is the rest of two that are larger as r₀ is smaller.
+    ///
+    /// # Errors
+    /// As [`deflections`](Self::deflections).
+    pub(super) fn beside_head_on(
+        &self,
+        energy: &[f64],
+        b: &[f64],
+        found: &mut [Deflection],
+        ticker: &mut Ticker<'_>,
+    ) -> Result<()> {
+        let power = match self.profile.center() {
+            Center::Attractive(power) if power < 2.0 => power,
+            _ => return Ok(()),
+        };
+        let mut near: Vec<(usize, f64)> = Vec::new();
+        let mut critical = Critical::default();
+        for (place, (energy, b)) in energy.iter().zip(b).enumerate() {
+            let own = self.profile.take_energy(*energy);
+            let beside = self.profile.give_length(PARABOLIC * self.profile.grid().reach(own, power));
+            let mut bounces = || matches!(critical.way(self.profile, own, 0.0), Way::Bounces(_));
+            if *b < beside && found[place].status == Status::Scattered && bounces() {
+                near.push((place, beside));
+            }
+        }
+        if near.is_empty() {
+            return Ok(());
+        }
+        let energies: Vec<f64> = near.iter().flat_map(|(place, _)| [energy[*place]; 2]).collect();
+        let beside: Vec<f64> = near.iter().flat_map(|(_, beside)| [*beside, 0.5 * beside]).collect();
+        let angles = Self { all: false, ..*self }.deflections(&energies, &beside, ticker)?;
+        let (limit, order) = (-PI * power / (2.0 - power), left_out_power(power));
+        for ((place, beside), pair) in near.into_iter().zip(angles.chunks_exact(2)) {
+            let [outer, inner] = [(pair[0].angle - limit) / beside, (pair[1].angle - limit) / (0.5 * beside)];
+            let part = b[place] / (0.5 * beside);
+            found[place].derivative = if order == 1.0 {
+                (2.0 * inner - outer) + 2.0 * (outer - inner) * part
+            } else {
+                order
+                    * inner
+                    * if part > 0.0 { Exponential::exp((order - 1.0) * ln(part)) } else { f64::INFINITY }
+            };
+        }
+        Ok(())
     }
 
     /// Up to that impact parameter, found at a tiny one where the center is open: through it, or round a point that attracts.

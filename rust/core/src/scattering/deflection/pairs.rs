@@ -78,6 +78,9 @@ impl Quadrature<'_> {
                 found.derivative = profile.take_length(found.derivative);
             }
         }
+        if self.all {
+            self.beside_head_on(energy, b, &mut found, ticker)?;
+        }
         Ok(found)
     }
 
