@@ -21,11 +21,10 @@ thread_local! {
     static REGISTERS: Cell<Vec<Lanes>> = const { Cell::new(Vec::new()) };
 }
 
-/// A function of one number, its derivative, and all of them with the second, as codes.
+/// A function of one number with its first two derivatives, as one code: in codes of their own the same numbers would be
+/// found by other roundings, and differences of near values be lost.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    value: Code,
-    slope: Code,
     all: Code,
     /// From here on derivatives that are no numbers are nothing: e^x has left the range there, of which the function is
     /// a reciprocal.
@@ -51,12 +50,8 @@ impl Curve {
         let x = graph.variable(0);
         let slope = graph.gradient(root, &[x])[0];
         let second = graph.gradient(slope, &[x])[0];
-        let code = |ids: &[Id]| {
-            let outputs: Vec<Output> = ids.iter().copied().map(Output::Node).collect();
-            compile(&graph, (1, 0), &[], &outputs)
-        };
-        let (value, slope, all) = (code(&[root])?, code(&[slope])?, code(&[root, slope, second])?);
-        let mut curve = Self { value, slope, all, level_from: f64::INFINITY };
+        let outputs = [root, slope, second].map(Output::Node);
+        let mut curve = Self { all: compile(&graph, (1, 0), &[], &outputs)?, level_from: f64::INFINITY };
         curve.level_from = curve.becomes_level();
         Ok(curve)
     }
@@ -81,7 +76,7 @@ impl Curve {
 
     /// One that is no number anywhere.
     pub fn nowhere() -> Self {
-        let code = |outputs| Code {
+        let all = Code {
             variables: 1,
             parameters: 0,
             registers: 2,
@@ -89,10 +84,10 @@ impl Curve {
             constants: vec![f64::NAN],
             preamble: vec![word::END],
             body: vec![word::CONSTANT, 1, 0, word::END],
-            outputs: vec![1; outputs],
+            outputs: vec![1; 3],
             operations: 1,
         };
-        Self { value: code(1), slope: code(1), all: code(3), level_from: f64::INFINITY }
+        Self { all, level_from: f64::INFINITY }
     }
 }
 
@@ -113,20 +108,14 @@ impl Curve {
 
 /// Scalars of which a curve is a function.
 pub trait Argument: Sized {
-    /// The value of a curve.
-    #[must_use]
-    fn value_on(self, curve: &Curve) -> Self;
-    /// Its derivative.
-    #[must_use]
-    fn slope_on(self, curve: &Curve) -> Self;
-    /// Its value, its derivative and its second derivative, with the bits of the others.
+    /// The value of a curve, its derivative and its second one.
     #[must_use]
     fn all_on(self, curve: &Curve) -> [Self; 3];
 }
 
-/// Runs a code whose variable is the first register, and gives the first of its results.
+/// Runs a code whose variable is the first register, and gives its results.
 #[inline(always)]
-fn results<V: Vector8 + Scalar, const N: usize>(code: &Code, x: Lanes) -> [Lanes; N] {
+fn results<V: Vector8 + Scalar>(code: &Code, x: Lanes) -> [Lanes; 3] {
     // Taken, not borrowed: what is done within a closure would not be compiled for the tier.
     let mut kept = REGISTERS.take();
     let wanted = room::<1>(code);
@@ -139,7 +128,7 @@ fn results<V: Vector8 + Scalar, const N: usize>(code: &Code, x: Lanes) -> [Lanes
         execute::execute::<V, 1>(code, Part::Preamble, registers);
     }
     execute::execute::<V, 1>(code, Part::Body, registers);
-    let mut found = [Lanes([0.0; WIDTH]); N];
+    let mut found = [Lanes([0.0; WIDTH]); 3];
     for (found, &register) in found.iter_mut().zip(&code.outputs) {
         *found = registers[usize::from(register)].store();
     }
@@ -148,24 +137,13 @@ fn results<V: Vector8 + Scalar, const N: usize>(code: &Code, x: Lanes) -> [Lanes
 }
 
 tiered! {
-    fn results_tier[const N: usize][N](code: &Code, x: Lanes) -> [Lanes; N] = results;
+    fn results_tier[][](code: &Code, x: Lanes) -> [Lanes; 3] = results;
 }
 
 macro_rules! by_lanes {
     ($($(#[$meta:meta])* $type:ty: $load:expr, $store:expr;)+) => {$(
         $(#[$meta])*
         impl Argument for $type {
-            #[inline(always)]
-            fn value_on(self, curve: &Curve) -> Self {
-                let [value] = results_tier(&curve.value, $store(self));
-                $load(value)
-            }
-            #[inline(always)]
-            fn slope_on(self, curve: &Curve) -> Self {
-                let x = $store(self);
-                let [slope] = results_tier(&curve.slope, x);
-                $load(curve.level(x, slope))
-            }
             #[inline(always)]
             fn all_on(self, curve: &Curve) -> [Self; 3] {
                 let x = $store(self);
@@ -186,12 +164,6 @@ by_lanes! {
 
 /// To the rounding of the curve itself; what the rounded argument leaves out moves along its tangent.
 impl Argument for DoubleDouble {
-    fn value_on(self, curve: &Curve) -> Self {
-        self.all_on(curve)[0]
-    }
-    fn slope_on(self, curve: &Curve) -> Self {
-        self.all_on(curve)[1]
-    }
     fn all_on(self, curve: &Curve) -> [Self; 3] {
         let [value, slope, second] = self.high().all_on(curve);
         let rest = Self::from(self.low());

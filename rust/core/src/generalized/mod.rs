@@ -25,7 +25,6 @@ pub mod one_freedom;
 pub mod projection;
 pub mod run;
 mod sizes;
-mod smooth_integral;
 mod sticking;
 pub mod structure;
 pub mod variation;

@@ -6,10 +6,9 @@
 
 use super::gauss;
 use super::model::{Kind, Model};
-use super::smooth_integral::integral;
 use crate::error::{Error, Result};
 use crate::expressions::{Code, Machine};
-use core::f64::consts::PI;
+use core::f64::consts::{FRAC_PI_2, PI};
 use std::sync::Arc;
 
 use crate::numerics::angles;
@@ -23,6 +22,8 @@ const MOST_STEPS: u32 = 8000;
 const HALVINGS: u32 = 2200;
 /// The last digit of a place may be this part of a swing.
 const COARSEST: f64 = 2.3e-7;
+/// Nodes that are begun with, and the most there are.
+const NODES: (usize, usize) = (16, 1 << 20);
 /// Squared cosines below this are near a turning point.
 const NEAR_AN_END: f64 = 0.25;
 /// Where potentials differ by less than this part of them, they are not subtracted.
@@ -30,6 +31,8 @@ const CANCELLATION: f64 = 0.1;
 /// The most panels for the integral of a slope, and how well two of them agree that are exact.
 const PANELS: u32 = 32;
 const EXACT: f64 = 1e-15;
+/// Sums that agree to this are exact.
+const AGREEMENT: f64 = 4e-15;
 
 /// Energy at rest and mass: what a motion of one coordinate depends on.
 #[derive(Clone, Debug)]
@@ -96,47 +99,25 @@ impl OneFreedom {
             return self.kinetic + fallen;
         }
         // The difference of a short way would have few digits: the integral of the slope has all.
-        let (risen, doubt) = self.risen(self.start, q - self.start);
-        if doubt <= 4.0 * f64::EPSILON * (at_rest.abs() + self.at_rest.abs()) {
-            self.kinetic - risen
-        } else {
-            self.kinetic + fallen
-        }
-    }
-
-    /// What is left of the energy for motion at a place, by its way to an end where nothing is.
-    fn left_before(&mut self, place: f64, way: f64) -> f64 {
-        let (risen, doubt) = self.risen(place, way);
-        if doubt == 0.0 {
-            return risen;
-        }
-        let size = self.values(place, 0.0)[0].abs() + self.at_rest.abs() + self.kinetic;
-        if doubt <= 4.0 * f64::EPSILON * size { risen } else { self.left(place) }
-    }
-
-    /// By how much the energy at rest rises on a way from a place, as the integral of its slope, and how far that may be
-    /// off: 0 if two sums agree.
-    fn risen(&mut self, from: f64, way: f64) -> (f64, f64) {
         let (nodes, weights) = gauss::quadrature();
-        let (mut panels, mut last, mut doubt) = (1, f64::NAN, f64::INFINITY);
+        let (mut panels, mut last) = (1, f64::NAN);
         while panels <= PANELS {
-            let width = way / f64::from(panels);
+            let width = (q - self.start) / f64::from(panels);
             let (mut sum, mut size) = (0.0, 0.0);
             for panel in 0..panels {
                 for (x, w) in nodes.iter().zip(weights) {
-                    let slope = w * self.values(from + (f64::from(panel) + x) * width, 0.0)[2];
+                    let slope = w * self.values(self.start + (f64::from(panel) + x) * width, 0.0)[2];
                     sum += slope;
                     size += slope.abs();
                 }
             }
-            doubt = (sum * width - last).abs();
-            last = sum * width;
-            if doubt <= EXACT * size * width.abs() {
-                return (last, 0.0);
+            if (sum * width - last).abs() <= EXACT * size * width.abs() {
+                return self.kinetic - sum * width;
             }
+            last = sum * width;
             panels *= 2;
         }
-        (last, doubt)
+        self.kinetic + fallen
     }
 
     /// The first turning point on one side, `None` if there is none within reach.
@@ -203,6 +184,7 @@ impl OneFreedom {
         if digit.is_nan() || digit > COARSEST {
             return Err(stands_still());
         }
+        let (nodes, weights) = gauss::quadrature();
         let mut of = |phi: f64| {
             let (sine, cosine) = angles::sin_cos(phi);
             let square = cosine * cosine;
@@ -213,13 +195,16 @@ impl OneFreedom {
             } else {
                 // Next to an end the difference would have lost its digits: it is the slope's integral from there.
                 let far = half * square / (1.0 + sine.abs());
-                self.left_before(place, if sine > 0.0 { far } else { -far })
+                let to_the_end = if sine > 0.0 { far } else { -far };
+                let slopes =
+                    nodes.iter().zip(weights).map(|(x, w)| w * self.values(place + x * to_the_end, 0.0)[2]);
+                to_the_end * slopes.sum::<f64>()
             };
             // (E − U)/cos² has no zero at the ends.
             let speed = (2.0 * left / (mass * square)).sqrt();
             [half / speed, half * square * speed * mass]
         };
-        let [period, action] = integral(&mut of, digit)?;
+        let [period, action] = trapezoid(&mut of)?;
         Ok(Oscillation { turning: (low, high), period: 2.0 * period, action: action / PI })
     }
 
@@ -235,7 +220,41 @@ impl OneFreedom {
             let speed = (2.0 * self.left(place) / mass).sqrt();
             [turn.abs() / (PI * speed), turn.abs() / PI * speed * mass]
         };
-        let [period, action] = integral(&mut of, 0.0)?;
+        let [period, action] = trapezoid(&mut of)?;
         Ok([period, action / (2.0 * PI)])
     }
+}
+
+/// ∫ of two integrands from −π/2 to π/2 through the middles of equal steps, halved (by three) until nothing changes.
+fn trapezoid(of: &mut impl FnMut(f64) -> [f64; 2]) -> Result<[f64; 2]> {
+    let (mut nodes, mut last) = (NODES.0, [f64::NAN; 2]);
+    while nodes <= NODES.1 {
+        let h = PI / nodes as f64;
+        let (mut sums, mut rests) = ([0.0; 2], [0.0; 2]);
+        for k in 0..nodes {
+            let values = of(-FRAC_PI_2 + (k as f64 + 0.5) * h);
+            for index in 0..2 {
+                let change = values[index] + rests[index];
+                let sum = sums[index] + change;
+                rests[index] = change - (sum - sums[index]);
+                sums[index] = sum;
+            }
+        }
+        let found = sums.map(|sum| sum * h);
+        if found.iter().any(|x| !x.is_finite()) {
+            break;
+        }
+        if (0..2).all(|index| {
+            (found[index] - last[index]).abs()
+                <= AGREEMENT * found[index].abs() * (1.0 + (nodes as f64).sqrt() / 8.0)
+        }) {
+            return Ok(found);
+        }
+        last = found;
+        nodes *= 2;
+    }
+    Err(Error::invalid(
+        "position",
+        "the quadrature does not converge: the motion is next to a separatrix, or turns back",
+    ))
 }

@@ -70,7 +70,7 @@ fn first_bend(curve: &Curve) -> i32 {
     let mut power: Option<f64> = None;
     let mut one = 0;
     for k in -OCTAVES..=OCTAVES {
-        let value = scale(1.0, k).value_on(curve);
+        let [value, ..] = scale(1.0, k).all_on(curve);
         if !(LARGE.recip()..LARGE).contains(&value.abs()) {
             (before, power) = (None, None);
             continue;
@@ -134,9 +134,9 @@ impl Expressed {
             }
             let signs = [slope, second].map(|x| if x == 0.0 { 0.0 } else { x.signum() });
             let turns = signs.iter().zip(before).any(|(here, before)| here * before < 0.0);
-            let here = if slope == 0.0 { None } else { Some(r * second / slope) };
-            let first = *power.get_or_insert(here.unwrap_or(0.0));
-            let departs = here.is_some_and(|here| (here - first).abs() > 1.0);
+            // A second derivative of nothing may be but one that has left the range.
+            let here = if slope == 0.0 || second == 0.0 { None } else { Some(r * second / slope) };
+            let departs = here.is_some_and(|here| (here - *power.get_or_insert(here)).abs() > 1.0);
             if turns || departs {
                 found.push(r);
             }
@@ -180,7 +180,7 @@ impl Formula for Expressed {
         self.singular
     }
     fn size(&self) -> f64 {
-        let size = |r: &f64| (r * r.slope_on(&self.curve)).abs();
+        let size = |r: &f64| (r * r.all_on(&self.curve)[1]).abs();
         self.features().first().map(size).filter(|size| *size > 0.0 && size.is_finite()).unwrap_or(1.0)
     }
     fn lengths(&self) -> Option<Vec<f64>> {
@@ -190,11 +190,11 @@ impl Formula for Expressed {
 
     #[inline(always)]
     fn value<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
-        own[1] * (r * own[0]).value_on(&self.curve)
+        own[1] * (r * own[0]).all_on(&self.curve)[0]
     }
     #[inline(always)]
     fn force<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
-        own[2] * (r * own[0]).slope_on(&self.curve)
+        own[2] * (r * own[0]).all_on(&self.curve)[1]
     }
     #[inline(always)]
     fn curvature<S: Analytic>(&self, own: &Numbers<S>, r: S) -> S {
