@@ -133,7 +133,7 @@ def test_a_power_of_the_distance_needs_no_length(n: int, size: float, depth: flo
         places = size * np.geomspace(0.05, 300.0, 60)
         for what in ("value", "force", "curvature"):
             assert getattr(made, what)(places) == pytest.approx(getattr(named, what)(places), rel=2e-14), what
-        b = size * np.array([0.0, 1e-3, 0.4, 1.0, 1.7, 5.0, 40.0])
+        b = size * np.array([0.0, 1e-3, 0.4, 1.1, 1.7, 5.0, 40.0])
         found, expected = (vv.scattering.deflect(each, energy=depth, impact_parameter=b) for each in (made, named))
         assert (found.status == expected.status).all()
         bound = np.minimum(1e-12, 1e-10 * np.abs(expected.angle)) + 20.0 * 1.1e-16 * expected.conditioning
