@@ -63,7 +63,8 @@ fn formula(seeds: &[f64; 4]) -> Vec<Value> {
         [vec![operation, value, of.len() as f64], of].concat()
     });
     let table: Vec<f64> = [1.0, 9.0].into_iter().chain(rows).collect();
-    let values = vec![seeds[0], seeds[1], -seeds[2].abs(), seeds[3]];
+    // The last is nothing, as all of V is far away.
+    let values = vec![seeds[0], seeds[1], -seeds[2].abs(), 0.0];
     vec![Value::Table(table.into()), Value::Table(values.into()), Value::Number(1.0), Value::Number(1.0)]
 }
 
