@@ -314,8 +314,12 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     except InvalidInput as error:
         if error.argument.startswith("parameters"):
             raise
-        cure = "" if "free symbol" in str(error) else "; with r_min and r_max any function of arrays is sampled"
-        raise InvalidInput("function", f"{error.message}{cure}") from error
+        cure = "with r_min and r_max any function of arrays is sampled"
+        if "is called with" in error.message:
+            cure = "what else it takes are parameters="
+        elif "free symbol" in error.message:
+            raise
+        raise InvalidInput("function", f"{error.message}; {cure}") from error
     made: Potential = _BY_NAME["expressed"](nodes, values)
     return made
 

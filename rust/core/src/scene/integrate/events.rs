@@ -12,6 +12,7 @@ mod clear;
 mod contacts;
 mod inside;
 mod search;
+mod turns;
 
 use super::super::events::{Event, Moving, Sight, Surroundings, View, What};
 use super::super::frame::Moved;

@@ -4,6 +4,7 @@
 use super::super::super::events::{Sight, What, dot};
 use super::super::super::unit::Prepared;
 use super::clear::{cubic, cubic_at, is_straight};
+use super::turns::turns;
 use super::{Interpolant, Span, Watch};
 use crate::error::Result;
 use crate::numerics::power_of_two::scale;
@@ -12,10 +13,6 @@ use crate::parallel::Ticker;
 
 /// Where a step is sampled, as fractions of it: close to its ends to see which way the function leaves and comes.
 const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984375];
-
-/// Parts of a bracket in which a minimum lies come down by the golden section to 1e-8 of it, where a parabola has come
-/// down to round-off.
-const SECTIONS: usize = 40;
 
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
@@ -28,7 +25,7 @@ const POLISHES: usize = 3;
 const BEND: f64 = 0.0625;
 
 /// A part of a step at whose ends a function has different signs.
-type Bracket = [(f64, f64); 2];
+pub(super) type Bracket = [(f64, f64); 2];
 
 /// The search for the zeros of one event in one step.
 pub(super) struct Search<'s, 'a> {
@@ -257,57 +254,6 @@ impl Search<'_, '_> {
         Ok(theta)
     }
 
-    /// As [`turn`](Self::turn), from three points of the same sign and a fourth where the parabola through them is lowest.
-    fn turn_beside(
-        &mut self,
-        [left, middle, right]: [(f64, f64); 3],
-        lowest: (f64, f64),
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Bracket>> {
-        let (from, to) = if lowest.0 < middle.0 { (left, middle) } else { (middle, right) };
-        if lowest.1 * middle.1 <= 0.0 {
-            return Ok(vec![[from, lowest], [lowest, to]]);
-        }
-        if lowest.1.abs() <= from.1.abs().min(to.1.abs()) {
-            return self.turn(from, lowest, to, step, ticker);
-        }
-        // The parabola was none there: the lowest of the three may still be near a turn.
-        if middle.1.abs() <= left.1.abs().min(right.1.abs()) {
-            return self.turn(left, middle, right, step, ticker);
-        }
-        Ok(Vec::new())
-    }
-
-    /// Where a function that comes near zero between two points of the same sign passes it: two brackets, or none.
-    fn turn(
-        &mut self,
-        left: (f64, f64),
-        middle: (f64, f64),
-        right: (f64, f64),
-        step: &mut dyn Interpolant,
-        ticker: &mut Ticker<'_>,
-    ) -> Result<Vec<Bracket>> {
-        let part = 0.381_966_011_250_105_15; // (3 - √5)/2
-        let (mut left, mut best, mut right, sign) = (left, middle, right, middle.1.signum());
-        for _ in 0..SECTIONS {
-            let longer = if right.0 - best.0 > best.0 - left.0 { right.0 } else { left.0 };
-            let theta = best.0 + part * (longer - best.0);
-            let point = (theta, self.value_at(theta, step, ticker)?);
-            if point.1 * sign <= 0.0 {
-                return Ok(vec![[left, point], [point, right]]);
-            }
-            let (inner, outer) = if point.1 * sign < best.1 * sign { (point, best) } else { (best, point) };
-            if outer.0 < inner.0 {
-                left = outer
-            } else {
-                right = outer
-            }
-            best = inner;
-        }
-        Ok(Vec::new())
-    }
-
     /// A bracket with the values of the solution itself, where those of the cubic have led there; none if it has no
     /// zero after all.
     fn settled(
@@ -332,7 +278,12 @@ impl Search<'_, '_> {
     }
 
     /// On the polynomial, or on the solution where there is none.
-    fn value_at(&mut self, theta: f64, step: &mut dyn Interpolant, ticker: &mut Ticker<'_>) -> Result<f64> {
+    pub(super) fn value_at(
+        &mut self,
+        theta: f64,
+        step: &mut dyn Interpolant,
+        ticker: &mut Ticker<'_>,
+    ) -> Result<f64> {
         Ok(self.sight_at(theta, step, ticker)?.value)
     }
 
@@ -357,52 +308,5 @@ impl Search<'_, '_> {
         let mut sight = self.watch.sight(self.unit, self.event, bodies, ticker)?;
         sight.value += self.shift;
         Ok(sight)
-    }
-}
-
-/// Where a function of one sign is nearest to zero between three points, if it may come to zero there: the lowest place of
-/// the parabola through its sizes, if that is among them, and if it is as near zero as the parabola is bent along the
-/// longer of both parts (eight times as near as it would have to be if it were one, and the points evenly spaced).
-fn turns([(a, left), (b, middle), (c, right)]: [(f64, f64); 3]) -> Option<f64> {
-    let one_sign = (left > 0.0 && middle > 0.0 && right > 0.0) || (left < 0.0 && middle < 0.0 && right < 0.0);
-    let (left, middle, right) = (left.abs(), middle.abs(), right.abs());
-    let (before, after) = ((middle - left) / (b - a), (right - middle) / (c - b));
-    let bend = (after - before) / (c - a);
-    if !(one_sign && bend > 0.0) {
-        return None;
-    }
-    // The slope at the middle point, and where there is none.
-    let slope = before + bend * (b - a);
-    let theta = b - 0.5 * slope / bend;
-    let longer = (b - a).max(c - b);
-    let near = middle - 0.25 * slope * slope / bend <= 2.0 * bend * longer * longer;
-    (near && a < theta && theta < c).then_some(theta)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::turns;
-
-    #[test]
-    fn a_turn_is_seen_wherever_it_is_between_three_points() {
-        for places in
-            [[0.0, 0.015625, 0.125], [0.75, 0.875, 0.984375], [0.875, 0.984375, 1.0], [0.25, 0.375, 0.5]]
-        {
-            for part in 1..100 {
-                let at = places[0] + (places[2] - places[0]) * f64::from(part) / 100.0;
-                for sign in [1.0, -1.0] {
-                    let three = places.map(|x| (x, sign * ((x - at) * (x - at) + 1e-12)));
-                    let found = turns(three);
-                    assert!(
-                        found.is_some_and(|theta| (theta - at).abs() < 1e-9),
-                        "{places:?} {at} {found:?}"
-                    );
-                }
-            }
-        }
-        let line = [0.0, 0.5, 1.0].map(|x| (x, 1.0 + x));
-        assert_eq!(turns(line), None);
-        let far = [0.0, 0.5, 1.0].map(|x| (x, 10.0 + (x - 0.5) * (x - 0.5)));
-        assert_eq!(turns(far), None);
     }
 }
