@@ -101,3 +101,15 @@ def test_a_replaced_element_counts() -> None:
     again, velocity = dataclasses.replace(found, **alone).state()
     assert size(again - [1.0, 0.2, 0.0]) <= 8 * EPSILON
     assert size(velocity - [0.1, 0.9, 0.3]) <= 8 * EPSILON
+
+
+@pytest.mark.parametrize("a", [1e14, 1e17, 1e25])
+def test_a_replaced_size_counts_also_near_e_1(a: float) -> None:
+    """There q/a and b/a are as good as nothing, whatever they are: their ratio is not."""
+    found = vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, np.sqrt(2.0 - 1.0 / a), 0.0])
+    assert size(found.state()[1]) == pytest.approx(np.sqrt(2.0), rel=1e-15)
+    nearer = dataclasses.replace(found, pericenter=2.0 * found.pericenter)
+    # √(μ (1 + e)/q).
+    assert size(nearer.state()[1]) == pytest.approx(1.0, rel=1e-15)
+    wider = dataclasses.replace(found, semi_minor_axis=3.0 * found.semi_minor_axis)
+    assert size(wider.state()[1]) == pytest.approx(np.sqrt(2.0), rel=1e-15)

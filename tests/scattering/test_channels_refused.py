@@ -94,6 +94,25 @@ def test_what_is_no_channel_is_refused(values: tuple[object, ...], argument: str
     ],
 )  # fmt: skip
 def test_a_factor_below_the_threshold_is_refused(excitation_function: object, beam: dict[str, object]) -> None:
-    with pytest.raises(vv.errors.InvalidInput, match=r"threshold, 1\.25.* or no probability below it") as refused:
+    with pytest.raises(
+        vv.errors.InvalidInput, match=r"threshold, 1\.25.* or an excitation_function that is 0 below it"
+    ) as refused:
         run(channels=Channel(-1.0, 0.5, excitation_function=excitation_function), **beam)
     assert refused.value.argument == "channels"
+
+
+def test_a_threshold_found_by_hand_is_the_threshold() -> None:
+    """−Q (m₁ + m₂)/m₂ by another rounding than the core's: an ulp below it the channel may have a probability."""
+    rng = np.random.default_rng(4)
+    for first, second in rng.uniform(0.5, 9.0, (100, 2)):
+        threshold = 1.5 * (first + second) / second
+        opening = Channel(-1.5, 0.5, excitation_function=([threshold, 10.0 * threshold], [0.0, 1.0]))
+        beam = {"beam_energy": threshold, "energy_spread": Spread.uniform(0.2 * threshold)}
+        run(channels=opening, masses=(first, second), n_events=10, **beam)
+
+
+def test_tables_that_take_too_long_are_refused() -> None:
+    places, energies = np.linspace(0.0, 2.0, 2000), np.linspace(0.0, 9.0, 2000)
+    wide = Channel(1.0, (places, np.full(2000, 0.5)), excitation_function=(energies, np.ones(2000)))
+    with pytest.raises(vv.errors.InvalidInput, match="pairs of an impact parameter and an energy"):
+        run(channels=wide)

@@ -219,6 +219,23 @@ def test_derivatives_at_a_center_that_attracts(potential: V.Potential, v: object
         assert float(section) == pytest.approx(straight, rel=1e-6) or float(section) > straight
 
 
+@pytest.mark.parametrize(
+    "potential",
+    [*(V.PowerLaw(-1.0, n) for n in (0.3, 0.65, 0.8, 0.9)), V.Custom(lambda r: -1.0 / r - r**-0.75)],
+    ids=repr,
+)
+@pytest.mark.parametrize("b", [1e-8, 1e-7, 4e-6, 9.9e-6])
+def test_derivatives_where_the_angle_is_no_parabola(potential: V.Potential, b: float) -> None:
+    """At a center of a broken power below 1 they are differences of angles, not what a parabola would have."""
+    h = b / 8.0
+    places = [b - 2.0 * h, b - h, b + h, b + 2.0 * h]
+    angles = s.deflection_angle(potential, energy=1.0, impact_parameter=places)
+    slope = (angles[0] - 8.0 * angles[1] + 8.0 * angles[2] - angles[3]) / (12.0 * h)
+    found = s.deflect(potential, energy=1.0, impact_parameter=b)
+    # The rounding of angles over h, and of the integral, which goes as 1/b.
+    assert float(found.derivative) == pytest.approx(slope, rel=2e-3, abs=20.0 * 4e-16 / h)
+
+
 @pytest.mark.parametrize("share", [1.0, 1e-2, 1e-4, 1e-6, 1e-8])
 def test_transport_of_a_weak_square_well(share: float) -> None:
     """Its largest angles are at its rim, on a part `share` of it: that was cut off, 2e-4 of all at 1e-8."""

@@ -13,7 +13,6 @@ use crate::numerics::double_double::DoubleDouble;
 #[cfg(target_arch = "x86_64")]
 use crate::numerics::lanes::{Avx2, Avx512};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
-use crate::numerics::power_of_two::power_of_two;
 use crate::tiered;
 use std::cell::Cell;
 
@@ -26,13 +25,7 @@ thread_local! {
 #[derive(Clone, Debug)]
 pub struct Curve {
     all: Code,
-    /// From here on derivatives that are no numbers are nothing: e^x has left the range there, of which the function is
-    /// a reciprocal.
-    level_from: f64,
 }
-
-/// Octaves within which a function may become level.
-const OCTAVES: i32 = 400;
 
 impl Curve {
     /// Of a node, as a function of the first variable.
@@ -51,27 +44,7 @@ impl Curve {
         let slope = graph.gradient(root, &[x])[0];
         let second = graph.gradient(slope, &[x])[0];
         let outputs = [root, slope, second].map(Output::Node);
-        let mut curve = Self { all: compile(&graph, (1, 0), &[], &outputs)?, level_from: f64::INFINITY };
-        curve.level_from = curve.becomes_level();
-        Ok(curve)
-    }
-
-    /// The last octave in which a function that stays a number has derivatives; infinite if they do not end.
-    fn becomes_level(&self) -> f64 {
-        let mut last = f64::INFINITY;
-        for k in -OCTAVES..=OCTAVES {
-            let x = power_of_two(k);
-            let [value, slope, second] = x.all_on(self);
-            if !value.is_finite() {
-                continue;
-            }
-            if slope.is_finite() && second.is_finite() {
-                last = x;
-            } else if last.is_finite() && (slope.is_nan() || second.is_nan()) {
-                return last;
-            }
-        }
-        f64::INFINITY
+        Ok(Self { all: compile(&graph, (1, 0), &[], &outputs)? })
     }
 
     /// One that is no number anywhere.
@@ -87,22 +60,7 @@ impl Curve {
             outputs: vec![1; 3],
             operations: 1,
         };
-        Self { all, level_from: f64::INFINITY }
-    }
-}
-
-impl Curve {
-    /// A derivative, or nothing where the function is level.
-    #[inline(always)]
-    fn level(&self, x: Lanes, derivative: Lanes) -> Lanes {
-        if self.level_from == f64::INFINITY {
-            return derivative;
-        }
-        let of = |lane: usize| {
-            let level = x.0[lane] >= self.level_from && derivative.0[lane].is_nan();
-            if level { 0.0 } else { derivative.0[lane] }
-        };
-        Lanes(core::array::from_fn(of))
+        Self { all }
     }
 }
 
@@ -146,9 +104,8 @@ macro_rules! by_lanes {
         impl Argument for $type {
             #[inline(always)]
             fn all_on(self, curve: &Curve) -> [Self; 3] {
-                let x = $store(self);
-                let [value, slope, second] = results_tier(&curve.all, x);
-                [$load(value), $load(curve.level(x, slope)), $load(curve.level(x, second))]
+                let [value, slope, second] = results_tier(&curve.all, $store(self));
+                [$load(value), $load(slope), $load(second)]
             }
         }
     )+};

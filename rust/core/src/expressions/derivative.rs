@@ -22,8 +22,7 @@ impl Graph {
                 let mut factors = Vec::new();
                 self.factors(b, 1.0, kept, &mut factors);
                 for (factor, times) in factors {
-                    let ratio = self.divide(id, factor);
-                    partials.push((factor, self.scale(-times, ratio)));
+                    self.of_denominator(id, factor, -times, kept, &mut partials);
                 }
                 partials
             }
@@ -55,6 +54,73 @@ impl Graph {
                 None => into.push((id, times)),
             },
         }
+    }
+
+    /// What a quotient changes by with a factor of its denominator, f: by `times` itself times f′/f, which is a number
+    /// where f′ and f have left the range, as e^u has first.
+    fn of_denominator(
+        &mut self,
+        quotient: Id,
+        factor: Id,
+        times: f64,
+        kept: &dyn Fn(Id) -> bool,
+        partials: &mut Vec<(Id, Id)>,
+    ) {
+        match self.node(factor).clone() {
+            Node::Call(Function::Exp, u) if !kept(factor) => partials.push((u, self.scale(times, quotient))),
+            Node::Call(function @ (Function::Cosh | Function::Sinh), u) if !kept(factor) => {
+                let tangent = self.call(Function::Tanh, u);
+                let change = if function == Function::Cosh {
+                    self.multiply(quotient, tangent)
+                } else {
+                    self.divide(quotient, tangent)
+                };
+                partials.push((u, self.scale(times, change)));
+            }
+            Node::Sum(constant, terms)
+                if !kept(factor) && terms.iter().any(|(_, term)| self.is_exp(*term)) =>
+            {
+                for (coefficient, term) in &terms {
+                    let own = times * number(*coefficient);
+                    let (of, ratio) = match self.node(*term) {
+                        Node::Call(Function::Exp, u) if !kept(*term) => {
+                            let u = *u;
+                            (u, self.share(u, number(constant), &terms))
+                        }
+                        _ => (*term, self.divide(quotient, factor)),
+                    };
+                    let change = if of == *term { ratio } else { self.multiply(quotient, ratio) };
+                    partials.push((of, self.scale(own, change)));
+                }
+            }
+            _ => {
+                let ratio = self.divide(quotient, factor);
+                partials.push((factor, self.scale(times, ratio)));
+            }
+        }
+    }
+
+    fn is_exp(&self, id: Id) -> bool {
+        matches!(self.node(id), Node::Call(Function::Exp, _))
+    }
+
+    /// e^u over a sum, as 1 over the sum of its terms times e^(−u): neither end of the range leads out of it.
+    fn share(&mut self, u: Id, constant: f64, terms: &[(u64, Id)]) -> Id {
+        let negative = self.scale(-1.0, u);
+        let decay = self.call(Function::Exp, negative);
+        let mut all = vec![(constant, decay)];
+        for (coefficient, term) in terms {
+            let part = match *self.node(*term) {
+                Node::Call(Function::Exp, other) => {
+                    let difference = self.subtract(other, u);
+                    self.call(Function::Exp, difference)
+                }
+                _ => self.multiply(*term, decay),
+            };
+            all.push((number(*coefficient), part));
+        }
+        let (one, below) = (self.constant(1.0), self.sum(0.0, &all));
+        self.divide(one, below)
     }
 
     /// The derivative of a function at `a`, where its value is `value`.

@@ -88,10 +88,16 @@ impl AllElements {
         let bound = self.energy < 0.0;
         let kind = if bound { mu > 0.0 && e <= 1.0 } else { e >= 1.0 };
         let (departure, ratio) = (if mu > 0.0 { (1.0 - e).abs() } else { 1.0 + e }, self.semi_minor_axis / a);
+        // b² = a q (1 + e), without 1 − e, which has no digits near 1; of repulsion a q (e − 1), where it has none either.
+        let (square, size) = if mu > 0.0 {
+            (q / a * (1.0 + e), q / a * (1.0 + e))
+        } else {
+            (q / a * (e - 1.0), (1.0 + e) * (1.0 + e))
+        };
         kind && a > 0.0
             && a.is_finite()
             && (q / a - departure).abs() <= AGREEMENT * (1.0 + e)
-            && (ratio * ratio - (1.0 - e).abs() * (1.0 + e)).abs() <= AGREEMENT * (1.0 + e) * (1.0 + e)
+            && (ratio * ratio - square).abs() <= AGREEMENT * size
     }
 
     /// Whether the true anomaly is that of a place at the distance `r`, which may be off by what goes with `size`.

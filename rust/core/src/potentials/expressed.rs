@@ -144,7 +144,11 @@ impl Expressed {
                 // Once.
                 power = Some(f64::NAN);
             }
-            before = signs;
+            for (before, sign) in before.iter_mut().zip(signs) {
+                if sign != 0.0 {
+                    *before = sign;
+                }
+            }
         }
         if found.len() > 2 * MOST {
             drop(found.drain(MOST..found.len() - MOST));

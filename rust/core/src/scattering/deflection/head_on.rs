@@ -25,6 +25,10 @@ const STEPS: usize = 4;
 /// there is a part of 1e-10, and what its derivative loses to rounding, which goes as 1/b², is no more yet.
 const PARABOLIC: f64 = 1e-5;
 
+/// How well three angles agree that are a parabola's: some thousand of their roundings, and 1e-7 of what the last is from
+/// the limit.
+const SAME: f64 = 1e-12;
+
 impl Quadrature<'_> {
     /// The impact parameter up to which a pair is taken for one that comes head-on, and the one at which that is found.
     #[inline(always)]
@@ -44,7 +48,8 @@ impl Quadrature<'_> {
         (nothing, nothing)
     }
 
-    /// The derivatives of those that nearly meet a center which attracts: from the limit of b → 0 and two angles beside it.
+    /// The derivatives of those that nearly meet a center which attracts, from the limit of b → 0 and two angles beside it,
+    /// if ψ is a parabola there.
     /// The integral for them is the rest of two that are larger as r₀ is smaller.
     ///
     /// # Errors
@@ -73,20 +78,20 @@ impl Quadrature<'_> {
         if near.is_empty() {
             return Ok(());
         }
-        let energies: Vec<f64> = near.iter().flat_map(|(place, _)| [energy[*place]; 2]).collect();
-        let beside: Vec<f64> = near.iter().flat_map(|(_, beside)| [*beside, 0.5 * beside]).collect();
+        let energies: Vec<f64> = near.iter().flat_map(|(place, _)| [energy[*place]; 3]).collect();
+        let beside: Vec<f64> = near.iter().flat_map(|(_, b)| [*b, 0.5 * b, 0.25 * b]).collect();
         let angles = Self { all: false, ..*self }.deflections(&energies, &beside, ticker)?;
-        let (limit, order) = (-PI * power / (2.0 - power), left_out_power(power));
-        for ((place, beside), pair) in near.into_iter().zip(angles.chunks_exact(2)) {
-            let [outer, inner] = [(pair[0].angle - limit) / beside, (pair[1].angle - limit) / (0.5 * beside)];
-            let part = b[place] / (0.5 * beside);
-            found[place].derivative = if order == 1.0 {
-                (2.0 * inner - outer) + 2.0 * (outer - inner) * part
-            } else {
-                order
-                    * inner
-                    * if part > 0.0 { Exponential::exp((order - 1.0) * ln(part)) } else { f64::INFINITY }
-            };
+        let limit = -PI * power / (2.0 - power);
+        for ((place, beside), three) in near.into_iter().zip(angles.chunks_exact(3)) {
+            let secant = |k: usize, b: f64| (three[k].angle - limit) / b;
+            let [outer, inner] = [secant(0, beside), secant(1, 0.5 * beside)];
+            let (slope, bend) = (2.0 * inner - outer, (outer - inner) / (0.5 * beside));
+            // A third angle tells whether it is a parabola, and no broken power of b.
+            let near = 0.25 * beside;
+            let found_there = three[2].angle - limit;
+            if (found_there - near * (slope + bend * near)).abs() <= SAME {
+                found[place].derivative = slope + 2.0 * bend * b[place];
+            }
         }
         Ok(())
     }

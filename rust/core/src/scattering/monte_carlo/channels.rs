@@ -20,6 +20,10 @@ use std::sync::Arc;
 const MOST: usize = 64;
 /// How far the sum of probabilities may be above 1 by rounding.
 const ROUNDED: f64 = 1e-12;
+/// Thresholds that differ by a smaller part of them are one: users find them by other roundings.
+const SAME_ENERGY: f64 = 4.0 * f64::EPSILON;
+/// Pairs of an energy and an impact parameter at which sums of probabilities are looked at, at most: a second's work.
+const MOST_PAIRS: usize = 1 << 21;
 /// All draws.
 const DRAWS: u64 = 1 << DRAW_BITS;
 
@@ -82,7 +86,15 @@ impl Channels {
             [0.0].into_iter().chain(probabilities.iter().flat_map(|p| factor(p).bends()).copied()).collect()
         };
         let energies = bends(|probability| &probability.of_energy);
-        for b in bends(|probability| &probability.of_place) {
+        let places = bends(|probability| &probability.of_place);
+        if places.len().saturating_mul(energies.len()) > MOST_PAIRS {
+            return refused(format!(
+                "expected tables of at most 2**21 pairs of an impact parameter and an energy, got {} and {}",
+                places.len() - 1,
+                energies.len() - 1
+            ));
+        }
+        for b in places {
             for energy in &energies {
                 let sum: f64 = probabilities.iter().map(|probability| probability.at(b, *energy)).sum();
                 if sum > 1.0 + ROUNDED {
@@ -143,12 +155,14 @@ impl Channels {
         let mut made = Vec::with_capacity(self.reactions.len());
         for (index, (reaction, probability)) in self.reactions.iter().zip(&self.probabilities).enumerate() {
             let threshold = reaction.threshold();
-            if least < threshold && !probability.vanishes(least, threshold.min(greatest)) {
+            if least < threshold
+                && !probability.vanishes(least, (threshold * (1.0 - SAME_ENERGY)).min(greatest))
+            {
                 let (threshold, q, least) = (number(threshold), number(reaction.q_value()), number(least));
                 return Err(Error::invalid(
                     "channels",
                     format!(
-                        "expected beam energies of at least the threshold, {threshold}, that q_value = {q} of channel {index} sets, or no probability below it, got {least}"
+                        "expected beam energies of at least the threshold, {threshold}, that q_value = {q} of channel {index} sets, or an excitation_function that is 0 below it, got {least}"
                     ),
                 ));
             }

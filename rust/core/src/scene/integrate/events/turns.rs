@@ -22,7 +22,8 @@ impl Search<'_, '_> {
         ticker: &mut Ticker<'_>,
     ) -> Result<Vec<Bracket>> {
         let (from, to) = if lowest.0 < middle.0 { (left, middle) } else { (middle, right) };
-        if lowest.1 * middle.1 <= 0.0 {
+        // No product, which may have left the range.
+        if lowest.1 == 0.0 || (lowest.1 < 0.0) != (middle.1 < 0.0) {
             return Ok(vec![[from, lowest], [lowest, to]]);
         }
         if lowest.1.abs() <= from.1.abs().min(to.1.abs()) {
