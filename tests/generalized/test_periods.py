@@ -1,4 +1,4 @@
-"""Periods in units of any size, and what stands still."""
+"""Periods where the integrand is not smooth, has narrow features or great range, and in units of any size."""
 
 from typing import Any
 
@@ -41,3 +41,74 @@ def test_the_period_of_a_quartic_in_other_units() -> None:
 def test_what_stands_still_is_refused_as_that(potential: Any, place: float) -> None:
     with pytest.raises(vv.InvalidInput, match="stands still"):
         moving(potential, place).period()
+
+
+#: Potential, start, speed, period and how exactly it is known.
+HARD: list[tuple[Any, float, float, float, float]] = [
+    # 4 √(2 x₀); with slopes 3/2 and −1/2 the ends are 2 and −6, and times 2 √(2 V) / slope.
+    (sp.Abs(x), 2.0, 0.0, 8.0, 4 * EPSILON),
+    (sp.Abs(x) + x / 2, 2.0, 0.0, float(2 * np.sqrt(6.0) * (1 / 1.5 + 1 / 0.5)), 8 * EPSILON),
+    # 2π cos x₀: what the last digit of x₀ is of its distance from the wall.
+    (sp.tan(x) ** 2 / 2, 1.5, 0.0, 2 * np.pi * np.cos(1.5), 32 * EPSILON),
+    (sp.tan(x) ** 2 / 2, 1.5707, 0.0, 2 * np.pi * np.cos(1.5707), 2e4 * EPSILON),
+    # Small oscillations about x = 1, whose last digit is 2e-9 of them.
+    (x**4 / 4 - x**2 / 2, 1.0 + 1e-7, 0.0, 4.4428829381584, 2e-9),
+    # √(2/A) π / √(1 − E/D) of Morse with D = 1.
+    ((1 - sp.exp(-x)) ** 2, 0.0, 1.4, float(np.pi * np.sqrt(2) / np.sqrt(1 - 0.98)), 50 * 8 * EPSILON),
+    # Kepler's third law, 2π / (−2E)^(3/2), from 5e-7 to 1.9.
+    (-1 / x + 0.5e-6 / x**2, 1.9, 0.0, float(2 * np.pi * (2 * (1 / 1.9 - 0.5e-6 / 1.9**2)) ** -1.5), 16 * EPSILON),
+    # From the top of a barrier with a push of 1e-6, by mpmath's quadrature of 30 digits.
+    (x**4 / 4 - x**2 / 2, 0.0, 1e-6, 62.193514037435726, 8 * EPSILON),
+    # What is narrow: by Gauss's quadrature of 60 digits between places where it is divided.
+    (x**2 / 2 + 0.4 * sp.exp(-1e5 * x**2), 1.0, 0.0, 6.2925782503411, 1e-14),
+    (
+        x**2 / 2 + sp.Float(0.3) * sp.exp(-1e8 * (x - sp.Rational(37, 100)) ** 2),
+        1.0,
+        0.0,
+        6.2834191922034287,
+        16 * EPSILON,
+    ),
+    (x**2 / 2 + x**1000, 1.0, 0.0, 2.4658330655769355, 1000 * EPSILON),
+]
+
+
+@pytest.mark.parametrize(("potential", "place", "speed", "wanted", "exactly"), HARD)
+def test_kinks_narrow_features_and_great_range(
+    potential: Any, place: float, speed: float, wanted: float, exactly: float
+) -> None:
+    found = moving(potential, place, speed)
+    assert found.period() == pytest.approx(wanted, rel=exactly)
+    if not potential.has(sp.exp):
+        # As long as it says, the motion comes back: to first order in what the run has lost in time.
+        out = found.run(found.period(), method="dop853", rtol=1e-13)
+        assert out.position[-1, 0] == pytest.approx(place, rel=1e-6, abs=1e-6)
+
+
+@pytest.mark.parametrize("power", [4, 10, 32, 34, 100, 1000, 5000])
+def test_periods_of_powers(power: int) -> None:
+    """2 √(2π) Γ(1 + 1/n) / Γ(1/2 + 1/n) of xⁿ from 1, where the last digit of x is n times that of the energy."""
+    with mpmath.workdps(30):
+        wanted = 2 * mpmath.sqrt(2 * mpmath.pi) * mpmath.gamma(1 + 1 / mpmath.mpf(power))
+        wanted /= mpmath.gamma(0.5 + 1 / mpmath.mpf(power))
+    assert moving(x**power, 1.0).period() == pytest.approx(float(wanted), rel=(4 + power / 16) * EPSILON)
+
+
+def test_a_thin_barrier_holds_the_motion() -> None:
+    """x²/2 and a wall at 0.5, 1e-4 wide: the motion turns at it (and passes one that is too low)."""
+    wall = sp.exp(-1e8 * (x - 0.5) ** 2)
+    held = moving(x**2 / 2 + wall, -0.8)
+    # As an arc of the oscillation that ends at 0.4998, but for what the foot of the wall takes.
+    arc = 2 * (np.arcsin(0.4998 / 0.8) + np.pi / 2)
+    assert held.period() == pytest.approx(arc, rel=1e-4)
+    assert moving(x**2 / 2 + 0.1 * wall, -0.8).period() == pytest.approx(2 * np.pi, rel=1e-3)
+
+
+def test_what_is_infinite_is_refused_by_its_name() -> None:
+    with pytest.raises(vv.InvalidInput, match="separatrix"):
+        moving(x**4 / 4 - x**2 / 2, float(np.sqrt(2))).period()
+    with pytest.raises(vv.InvalidInput, match="no finite number"):
+        moving(-1 / x, 1.0).period()
+    with pytest.raises(vv.InvalidInput, match="does not turn back"):
+        moving((1 - sp.exp(-x)) ** 2, 0.0, 1.5).period()
+    with pytest.raises(vv.InvalidInput, match="separatrix"):
+        moving(-sp.cos(x), 0.0, 2.0).period(turn=2 * np.pi)

@@ -12,6 +12,7 @@ pub mod execute;
 pub mod function;
 pub mod graph;
 mod identity;
+pub mod intervals;
 mod linear;
 pub mod machine;
 pub mod nodes;
