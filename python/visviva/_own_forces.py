@@ -31,7 +31,7 @@ def forces_of_copies(
         raise InvalidInput("parameters", f"expected a dictionary {{force: {{name: values}}}}, got {parameters!r}")
     values: dict[int, dict[str, Sequence[Any]]] = {}
     for which, named in parameters.items():
-        place = _place(scene.forces, which)
+        place = _place(scene, which)
         if not hasattr(named, "items") or not named:
             raise InvalidInput("parameters", f"expected a dictionary {{name: values}} for {which!r}, got {named!r}")
         known = scene.forces[place]._values()
@@ -110,8 +110,9 @@ def _of_each(name: str, given: Any) -> Sequence[Any]:
     return values
 
 
-def _place(forces: tuple[Force, ...], which: Any) -> int:
+def _place(scene: Scene, which: Any) -> int:
     """The place of a force that is given itself, by its place, or by the name of its class."""
+    forces = scene.forces
     shown = ", ".join(map(repr, forces)) or "none"
     if isinstance(which, bool) or not isinstance(which, int | str | Force):
         raise InvalidInput("parameters", f"expected forces of the scene ({shown}), got {which!r}")
@@ -119,6 +120,9 @@ def _place(forces: tuple[Force, ...], which: Any) -> int:
         if not 0 <= which < len(forces):
             raise InvalidInput("parameters", f"expected the place of a force, below {len(forces)}, got {which}")
         return which
+    if isinstance(which, Force):
+        # The scene keeps indices where bodies were named.
+        which = which._resolved(scene.particles.names, len(scene.particles))
     found = [i for i, force in enumerate(forces) if which in (force, type(force).__name__)]
     if len(found) != 1:
         why = "it has none like that" if not found else "it has several like that: give the place of one"

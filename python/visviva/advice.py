@@ -75,6 +75,9 @@ class Advice(Shown):
     accuracy : float
     of : str
         What was asked for.
+    judges_massless : bool
+        Whether massless bodies, which have no energy, were judged by their positions, relative to the size of the
+        system.
     options : tuple of Option
         What holds it, the fastest first.
     tried : float
@@ -91,6 +94,7 @@ class Advice(Shown):
 
     accuracy: float
     of: str
+    judges_massless: bool
     options: tuple[Option, ...]
     tried: float
 
@@ -107,7 +111,25 @@ class Advice(Shown):
             name = option.how["method"] if by is not None else "auto: closed form"
             lines.append(f"{name:<20}{shown:>14}{option.error:>11.1e}{option.steps:>12}{option.seconds:>10.2g} s")
         part = "the whole of it" if self.tried == 1.0 else f"the first {self.tried:.2g} of it"
-        return "\n".join([f"{self.of} to {self.accuracy:g}, by a trial of {part}", *lines])
+        of = f"{self.of}, and positions of massless bodies," if self.judges_massless else self.of
+        return "\n".join([f"{of} to {self.accuracy:g}, by a trial of {part}", *lines])
+
+
+@dataclass(frozen=True, slots=True)
+class _Judged:
+    """What is judged: a column, of some bodies, over a scale; and what it was in the reference."""
+
+    column: str
+    bodies: Any
+    scale: float
+    reference: Any
+
+    def error(self, columns: dict[str, Any]) -> float:
+        return float(np.abs(_of(columns, self.column, self.bodies) - self.reference).max()) / self.scale
+
+    def growth(self, method: Method, whole: float) -> float:
+        """By how much the error of a run is more than that of its stretch, which it is `whole` times as long as."""
+        return float(whole ** ((0 if method.symplectic else 1) + (1 if self.column == "position" else 0)))
 
 
 @dataclass(frozen=True, slots=True)
@@ -116,23 +138,22 @@ class _Trial:
 
     asked: dict[str, Any]
     fraction: float
-    of: str
-    values: np.ndarray[Any, np.dtype[np.float64]]
-    scale: float
+    judged: tuple[_Judged, ...]
     seconds: float
     step: float
 
     def of_method(self, method: Method, **how: float) -> tuple[float, int, float] | None:
-        """Error, steps and seconds of a method on the stretch; None if it does not get through it."""
+        """Error of the whole, steps and seconds of the stretch; None if a method does not get through it."""
         asked = self.asked | {"method": method.name, "dt": None, "rtol": 1e-9} | how
         try:
-            found = _measured(asked, self.fraction, self.of)
+            found = _measured(asked, self.fraction, [judged.column for judged in self.judged])
         except InvalidInput:
             return None
         if found is None:
             return None
-        values, steps, seconds = found
-        return float(np.abs(values - self.values).max()) / self.scale, steps, seconds
+        columns, steps, seconds = found
+        whole = 1.0 / self.fraction
+        return max(judged.error(columns) * judged.growth(method, whole) for judged in self.judged), steps, seconds
 
 
 def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: str, closed: bool) -> Advice:
@@ -144,9 +165,10 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
         raise InvalidInput("of", f"expected 'energy' or 'position', got {of!r}")
     if prepared["rigid"] is not None:
         raise InvalidInput("rigid_bodies", "trials know points only: try steps of vv.rigid.methods() by themselves")
+    massless = of == "energy" and bool((prepared["mass"][0] == 0.0).any())
     if closed:
         # Closed forms are right to some ulps.
-        return Advice(wanted, of, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)
+        return Advice(wanted, of, massless, (Option({"method": "auto"}, 1e-14, 0, stretch(asked, 1.0)[1]),), 1.0)
     trial = _reference(prepared, dict(asked), of)
     options: list[Option] = []
     # The best are likely among those of high order: with their times known, others are soon given up.
@@ -160,26 +182,35 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
             f"no method holds {wanted:g} of {of} over this span, as far as a trial of its first {trial.fraction:.2g} "
             "tells; ask for less, or for a shorter span"
         )
-    return Advice(wanted, of, tuple(sorted(options, key=lambda option: option.seconds)), trial.fraction)
+    return Advice(wanted, of, massless, tuple(sorted(options, key=lambda option: option.seconds)), trial.fraction)
 
 
-def _measured(
-    asked: dict[str, Any], fraction: float, of: str
-) -> tuple[np.ndarray[Any, np.dtype[np.float64]], int, float] | None:
-    column = "position" if of == "position" else "energy"
-    result, seconds = stretch(cast("_core._Request", asked | {"record": [column]}), fraction, _OUTPUTS)
+def _of(columns: dict[str, Any], column: str, bodies: Any) -> Any:
+    return columns[column][0] if bodies is None else columns[column][0][:, bodies]
+
+
+def _measured(asked: dict[str, Any], fraction: float, columns: list[str]) -> tuple[dict[str, Any], int, float] | None:
+    """The columns of a stretch, its steps and seconds; None if it does not come to its end."""
+    result, seconds = stretch(cast("_core._Request", asked | {"record": columns}), fraction, _OUTPUTS)
     if result["error"] or result["status"].any():
         return None
-    return result["columns"][column][0], result["stats"]["steps"], seconds
+    return result["columns"], result["stats"]["steps"], seconds
 
 
 def _reference(prepared: _core._Scene, asked: dict[str, Any], of: str) -> _Trial:
     """A stretch that DOP853 does within a moment to the tightest tolerance, or the whole span."""
     asked |= {"events": [], "max_steps": None, "continuation": None, "atol": None, "max_step": None}
     tight = asked | {"method": "dop853", "dt": None, "rtol": _TIGHTEST}
+    massless = prepared["mass"][0] == 0.0
+    # A massless body has no energy by which it could be judged.
+    wanted = {"position": None} if of == "position" else {"energy": None, "position": massless}
+    if of == "energy" and not massless.any():
+        del wanted["position"]
+    elif massless.all():
+        wanted = {"position": None}
     fraction, done = 1.0 / 65536.0, None
     while True:
-        found = _measured(tight, fraction, of)
+        found = _measured(tight, fraction, list(wanted))
         if found is None:
             break
         done = (fraction, *found)
@@ -188,26 +219,35 @@ def _reference(prepared: _core._Scene, asked: dict[str, Any], of: str) -> _Trial
         fraction = min(1.0, 4.0 * fraction)
     if done is None or done[2] == 0:
         raise ConvergenceError("a trial of the first steps ended early, so there is nothing to advise on")
-    fraction, values, steps, seconds = done
+    fraction, columns, steps, seconds = done
     span = abs(float(asked["times"][-1]) - asked["t0"]) * fraction
-    p = prepared["position"][0], prepared["velocity"][0], prepared["mass"][0]
-    if of == "position":
-        center = p[0].mean(axis=0)
-        scale = float(max(np.abs(values - center).max(), np.abs(p[0] - center).max()))
-    else:
-        kinetic = 0.5 * float((p[2] * (p[1] ** 2).sum(axis=1)).sum())
-        start = float(values[0])
-        # Of an energy that is a small difference, the parts.
-        scale = abs(start) if abs(start) > 1e-3 * (kinetic + abs(start - kinetic)) else kinetic + abs(start - kinetic)
-    return _Trial(asked, fraction, of, values, scale or 1.0, seconds, span / steps)
+    judged = []
+    for column, bodies in wanted.items():
+        values = _of(columns, column, bodies)
+        scale = _size(prepared, values) if column == "position" else _energy_scale(prepared, float(values[0]))
+        judged.append(_Judged(column, bodies, scale or 1.0, values))
+    return _Trial(asked, fraction, tuple(judged), seconds, span / steps)
+
+
+def _size(prepared: _core._Scene, positions: Any) -> float:
+    """How far from the center of the bodies they are at first, or come."""
+    start = prepared["position"][0]
+    center = start.mean(axis=0)
+    return float(max(np.abs(positions - center).max(), np.abs(start - center).max()))
+
+
+def _energy_scale(prepared: _core._Scene, start: float) -> float:
+    """The energy; where that is a small difference, the parts."""
+    mass, velocity = prepared["mass"][0], prepared["velocity"][0]
+    kinetic = 0.5 * float((mass * (velocity**2).sum(axis=1)).sum())
+    parts = kinetic + abs(start - kinetic)
+    return abs(start) if abs(start) > 1e-3 * parts else parts
 
 
 def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> Option | None:
     """The largest step or tolerance with which a method holds the error over the whole, if it does in time."""
     whole = 1.0 / trial.fraction
-    growth = whole ** ((0 if method.symplectic else 1) + (1 if trial.of == "position" else 0))
-    allowed = accuracy / growth
-    if allowed < _FLOOR:
+    if any(accuracy < _FLOOR * judged.growth(method, whole) for judged in trial.judged):
         return None
     direction = 1.0 if float(trial.asked["times"][-1]) >= trial.asked["t0"] else -1.0
     # From a step that is too long on: of as many evaluations as a longest one of the reference.
@@ -222,7 +262,7 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
     held = None
     for k in range(0, len(sizes), stride):
         found = trial.of_method(method, **{name: sizes[k]})
-        if found is not None and found[0] <= allowed:
+        if found is not None and found[0] <= accuracy:
             held = k
             break
         # Too long a step may be refused or fail; one that takes too long is no better when it is shorter.
@@ -232,10 +272,10 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
         return None
     for k in [*range(max(0, held - stride + 1), held), held]:
         found = trial.of_method(method, **{name: sizes[k]})
-        if found is not None and found[0] <= allowed:
+        if found is not None and found[0] <= accuracy:
             error, steps, seconds = found
             how = {"method": method.name, name: sizes[k]}
-            return Option(how, error * growth, round(steps * whole), seconds * whole)
+            return Option(how, error, round(steps * whole), seconds * whole)
     return None
 
 

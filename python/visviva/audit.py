@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
@@ -49,8 +50,10 @@ __all__ = [
 
 _NEAR = 2.0**-10
 """The step of differences, of the size of what is looked at: fourth order errs by 1e-12 there, rounding by as much."""
+_STEPS = 6
+"""Steps that are tried, each an eighth of the one before: to 3e-8 of the size."""
 _ROUNDING = 1e-8
-"""What such differences err by at most, of fields that bend on the scale of the places."""
+"""What such differences err by at most, of fields that bend over a thousandth of the size or more."""
 
 
 def __dir__() -> list[str]:
@@ -86,19 +89,23 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     >>> vv.audit.field(vv.Harmonic(k=2.0))(np.array([[1.0, 0.0, 0.0]])).tolist()
     [[-2.0, 0.0, 0.0]]
     """
-    if not isinstance(force, Force):
-        raise InvalidInput("force", f"expected a force, got {type(force).__name__}")
+    _on_each(force)
     mass = positive("mass", mass)
 
     def at(places: NDArray[np.float64]) -> NDArray[np.float64]:
         bodies = Particles(np.full(len(places), mass), places)
         return mass * Scene(bodies, force, t0=t0).acceleration()
 
-    here = np.array([[1.0, 2.0, 3.0]])
-    # What acts between bodies feels another one far away, too; what acts on each for itself does not.
-    if np.any(at(np.vstack([here, here + 1.0]))[:1] != at(here)):
-        raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
     return at
+
+
+def _on_each(force: Force) -> None:
+    """Refuse what is no force, or acts between bodies."""
+    if not isinstance(force, Force):
+        raise InvalidInput("force", f"expected a force, got {type(force).__name__}")
+    # One that lists bodies acts between them, and what it calls them only a scene knows.
+    if any(parameter.kind == "indices" for parameter in force._parameters) or _core.acts_between(force._to_core()):
+        raise InvalidInput("force", f"expected a force on each body for itself, but {force!r} acts between bodies")
 
 
 @known_keywords
@@ -190,6 +197,7 @@ def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
     >>> vv.audit.work_along(ball.run(t=np.linspace(0, 1, 5)), pull)[-1].tolist()
     [0.0]
     """
+    _on_each(force)
     t, x, v = trajectory.t, trajectory.position, trajectory.velocity
     mass = trajectory.scene.particles.mass
     before, after = slice(None, -1), slice(1, None)
@@ -204,7 +212,6 @@ def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
 
 def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float64]:
     """F·v of every body at every time."""
-    _ = field(force)  # refuses one between bodies
     rows = [
         mass[:, None] * Scene(Particles(mass, *state), force, t0=float(now)).acceleration()
         for now, *state in zip(t, x, v, strict=True)
@@ -275,19 +282,35 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     x = float_array("places", places, (None, 3))
     if len(x) == 0:
         raise InvalidInput("places", "expected one place at least, got none")
-    # A step for each place: near a center a field changes over other lengths than far away.
-    sizes = np.abs(x).max(axis=1)
-    h = _NEAR * np.where(sizes > 0.0, sizes, max(float(sizes.max()), np.finfo(float).tiny))[:, None]
-    derivatives = np.zeros((len(x), 3, 3))  # of each component along each axis
-    for axis in range(3):
-        moved = [x + k * h * np.eye(3)[axis] for k in (-2, -1, 1, 2)]
-        f = [float_array("force", at(place), x.shape) for place in moved]
-        derivatives[:, :, axis] = (f[0] - 8.0 * f[1] + 8.0 * f[2] - f[3]) / (12.0 * h)
-    d = derivatives
+    d = _derivatives(at, x)
     value = np.stack([d[:, 2, 1] - d[:, 1, 2], d[:, 0, 2] - d[:, 2, 0], d[:, 1, 0] - d[:, 0, 1]], axis=-1)
     size = np.abs(d).max(axis=(1, 2))
     relative = float(np.max(np.abs(value).max(axis=1) / np.where(size > 0.0, size, 1.0)))
     return Curl(value, relative, relative <= _ROUNDING)
+
+
+def _derivatives(at: _Field, x: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Of each component along each axis at each place, by the step of which a shorter one says the same.
+
+    Over what length a field bends is not known: its center may be near a place that is far from the origin.
+    """
+    sizes = np.abs(x).max(axis=1)
+    sizes = np.where(sizes > 0.0, sizes, max(float(sizes.max()), np.finfo(float).tiny))[:, None, None]
+    best, least, before = np.zeros((len(x), 3, 3)), np.full(len(x), np.inf), None
+    for shorter in range(_STEPS):
+        h = _NEAR * 8.0**-shorter * sizes
+        now = np.zeros((len(x), 3, 3))
+        for axis in range(3):
+            moved = [x + k * h[:, 0] * np.eye(3)[axis] for k in (-2, -1, 1, 2)]
+            f = [float_array("force", at(place), x.shape) for place in moved]
+            now[:, :, axis] = (f[0] - 8.0 * f[1] + 8.0 * f[2] - f[3]) / (12.0 * h[:, 0])
+        if before is not None:
+            change = np.abs(now - before).max(axis=(1, 2))
+            better = (change < least) | ~np.isfinite(least)
+            # The longer of both has less rounding.
+            best[better], least[better] = before[better], change[better]
+        before = now
+    return best
 
 
 @known_keywords

@@ -48,7 +48,7 @@ class Drift:
         Least-squares growth of that distance per unit of time, over `scale`: near zero where the
         error is bounded.
     conserved : bool
-        Whether the scene's forces conserve it at all.
+        Whether the scene's forces, and the collisions of the run, conserve it at all.
 
     Examples
     --------
@@ -86,6 +86,9 @@ class Conservation(Shown):
         The reference point of the angular momentum.
     massless : int
         Bodies that carry nothing of all this: their motion is not judged by it.
+    collisions : int
+        Collisions of the run. Energy is not conserved by those that take some, nor by mergers, in which angular
+        momentum becomes spin that no body has here.
 
     Examples
     --------
@@ -102,11 +105,16 @@ class Conservation(Shown):
     virial: float
     about: str
     massless: int
+    collisions: int
 
     @property
     def rows(self) -> tuple[Drift, ...]:
         """The drifts, in the order of the table."""
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
+
+    @property
+    def _what_acts(self) -> str:
+        return "these forces and collisions" if self.collisions else "these forces"
 
     def __repr__(self) -> str:
         largest = ", ".join(f"{row.name} {row.max:.1e}" for row in self.rows if row.conserved)
@@ -116,7 +124,7 @@ class Conservation(Shown):
         rows = [
             (row.name, *(f"{v:.1e}" for v in (row.max, row.end, row.rms)), f"{row.scale:.6g}")
             if row.conserved
-            else (f"{row.name} (not conserved by these forces)", "", "", "", "")
+            else (f"{row.name} (not conserved by {self._what_acts})", "", "", "", "")
             for row in self.rows
         ]
         return Sheet("Conservation", rows, ("", "max", "end", "rms", "relative to"), f"virial {self.virial:.1e}")
@@ -126,7 +134,7 @@ class Conservation(Shown):
         for row in self.rows:
             name = row.name if row is not self.angular_momentum else f"{row.name} ({self.about})"
             values = "".join(f"{value:>10.1e}" for value in (row.max, row.end, row.rms))
-            note = "" if row.conserved else "  not conserved by these forces"
+            note = "" if row.conserved else f"  not conserved by {self._what_acts}"
             lines.append(f"{name:<34}{values}{row.scale:>14.6g}{note}")
         lines.append(f"{'virial ⟨2T + Σ r·F⟩ / ⟨2T⟩':<34}{self.virial:>10.1e}")
         if self.massless:
@@ -146,6 +154,9 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
     spread = float(_lengths(position - start.center_of_mass).max())
     kept = kept_by_forces(scene, origin)
     closed, steady = kept["momentum"], kept["spin" if point is None else "angular_momentum"]
+    collisions = trajectory.collisions if "collisions" in trajectory._result else None
+    merged = collisions is not None and bool((collisions.survivor >= 0).any())
+    lost = merged or (collisions is not None and bool(collisions.energy_lost.any()))
 
     t = trajectory.t
     cancelled = start.kinetic_energy + abs(start.potential_energy)
@@ -157,7 +168,9 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
         angular = trajectory.angular_momentum_about("center_of_mass" if point is None else point)
     uniform = start.center_of_mass + np.multiply.outer(t - scene.t0, start.center_of_mass_velocity)
     return Conservation(
-        energy=_drift("energy", t, trajectory.energy - start.energy, energy_scale, conserved=kept["energy"]),
+        energy=_drift(
+            "energy", t, trajectory.energy - start.energy, energy_scale, conserved=kept["energy"] and not lost
+        ),
         momentum=_drift(
             "momentum",
             t,
@@ -170,12 +183,13 @@ def of_trajectory(trajectory: Trajectory, about: ArrayLike | str | None) -> Cons
             t,
             angular - start.angular_momentum,
             fsum(mass * distances * speeds) + spin_scale(scene),
-            conserved=steady,
+            conserved=steady and not merged,
         ),
         center_of_mass=_drift("centre of mass", t, trajectory.center_of_mass - uniform, spread, conserved=closed),
         virial=_virial(trajectory, closed) if scene.rigid_bodies is None else np.nan,
         about="centre of mass" if point is None else "origin" if about_origin else "given point",
         massless=int(np.count_nonzero(mass == 0.0)),
+        collisions=0 if collisions is None else len(collisions),
     )
 
 

@@ -37,6 +37,7 @@ from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from os import PathLike
+    from typing import IO
 
     from visviva.recorded import Recorded
 
@@ -109,9 +110,16 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     try:
         with partial.open("xb") as file:
             np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
+            to_disk(file)
         partial.replace(target)
     finally:
         partial.unlink(missing_ok=True)
+
+
+def to_disk(file: IO[Any]) -> None:
+    """Wait until the disk has it: a file that takes its name before that is empty after a power cut."""
+    file.flush()
+    os.fsync(file.fileno())
 
 
 @known_keywords

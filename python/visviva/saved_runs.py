@@ -24,7 +24,7 @@ from visviva._paths import path_text
 from visviva._progress import callback
 from visviva._told_events import from_description
 from visviva.errors import InvalidInput
-from visviva.io import load
+from visviva.io import load, to_disk
 from visviva.plan import told
 from visviva.request import RunRequest, finished
 from visviva.status import Status
@@ -75,7 +75,8 @@ def resume(path: str | PathLike[str], *, threads: int | None = None, progress: P
     Raises
     ------
     visviva.InvalidInput
-        If the folder holds no such run, or a file in it is damaged.
+        If the folder holds no such run, what it began with is damaged, or a part is that of another run. A part that
+        is damaged is run again.
     FileNotFoundError
         If there is no such folder.
     visviva.CloseEncounter, visviva.ConvergenceError, visviva.Interrupted
@@ -136,7 +137,9 @@ def run_saved(scene: Scene, request: RunRequest) -> Trajectory:
     scene.run(t=[scene.t0], record=("position", "velocity")).save(folder / _START)
     written = {**_described(request, asked), "save_every": every}
     partial = folder / f"{_REQUEST}.part"
-    partial.write_text(json.dumps(written), encoding="utf-8")
+    with partial.open("w", encoding="utf-8") as file:
+        file.write(json.dumps(written))
+        to_disk(file)
     partial.replace(folder / _REQUEST)
     return _go_on(folder, scene, replace(request, save_every=every))
 
@@ -151,8 +154,8 @@ def _go_on(folder: Path, scene: Scene, request: RunRequest) -> Trajectory:
     with callback(request.progress) as report:
         for number, part in enumerate(parts):
             file = folder / f"part-{number:06}.npz"
-            if file.exists():
-                run = _loaded(file)
+            run = _whole(file)
+            if run is not None:
                 if not np.array_equal(run.t, part.times[: len(run.t)]):
                     raise InvalidInput("path", f"{str(file)!r} is not that part of this run")
             elif _steps_left(request, results) == 0:
@@ -293,6 +296,16 @@ def _loaded(file: Path) -> Trajectory:
         raise InvalidInput("path", f"expected one run in {str(file)!r}, got an ensemble")
     run._result["plan"] = told(run._result["plan"])
     return run
+
+
+def _whole(file: Path) -> Trajectory | None:
+    """A part that is there and was written to its end; one that was not is run again."""
+    if not file.exists():
+        return None
+    try:
+        return _loaded(file)
+    except InvalidInput:
+        return None
 
 
 def _scaled(report: Report | None, number: int, parts: int) -> Report | None:

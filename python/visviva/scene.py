@@ -319,7 +319,7 @@ class Scene(Runnable[Trajectory], Framed):
             The error that may be made, from 5e-13: of the energy, relative to it; of positions, relative to the size of
             the system.
         of : {"energy", "position"}, optional
-            Of what.
+            Of what. Massless bodies have no energy: beside it they are judged by their positions.
 
         Returns
         -------

@@ -104,6 +104,23 @@ def test_against_fifty_digits(e: float, place: str) -> None:
         assert off(bodies.velocity[1], v) < 2e-15, (e, place, value)
 
 
+@pytest.mark.parametrize("e", [1 - 1e-9, 1 - 1e-14, 1.0, 1 + 1e-12])
+@pytest.mark.parametrize("below", [1e-2, 1e-4, 3e-6])
+def test_far_out_on_a_narrow_orbit(e: float, below: float) -> None:
+    """Beside ν = π the velocity across is what e + cos ν leaves: its own digits, and with them the pericenter."""
+    nu = np.pi - below
+    with mp.workdps(50):
+        r, v = exact_state(1.0, 0.7, e, (0.0, 0.0, 0.0), mp.mpf(nu))
+    bodies = vv.Particles.from_elements(1.0, 0.0, G=1.0, pericenter=0.7, eccentricity=e, true_anomaly=nu)
+    assert off(bodies.position[1], r) < 2e-15
+    assert off(bodies.velocity[1], v) < 2e-15
+    across = mp.mpf(float(bodies.velocity[1, 1]))
+    assert abs(across / v[1] - 1) < 2e-15
+    # L² = μ p: r × v loses to rounding what the place along and the speed along are more than what they make.
+    found = vv.Scene(bodies, vv.Gravity(1.0)).elements(1).pericenter
+    assert found == pytest.approx(0.7, rel=1e-11)
+
+
 SIZES = ("semi_major_axis", "pericenter", "semi_latus_rectum", "period")
 
 

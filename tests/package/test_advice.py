@@ -84,3 +84,20 @@ def test_what_no_method_holds_is_said() -> None:
     falls = vv.Scene(vv.Particles([1.0, 1.0, 0.1], [[0, 0, 0], [1e-9, 0, 0], [1, 0, 0]]), vv.Gravity(1.0))
     with pytest.raises(vv.ConvergenceError):
         falls.advise(1e3, accuracy=1e-6)
+
+
+@pytest.mark.parametrize("accuracy", [1e-6, 1e-9])
+def test_massless_bodies_are_judged_by_where_they_are(accuracy: float) -> None:
+    """They have no share in the energy: a planet far out was held, and a comet of e = 0.97 ended 1610 away."""
+    bodies = vv.Particles.from_elements(1.0, [1e-3, 0.0], G=1.0, semi_major_axis=[5.0, 1.0], eccentricity=[0.0, 0.97])
+    scene = vv.Scene(bodies, vv.Gravity(1.0))
+    advice = scene.advise(60.0, accuracy=accuracy)
+    assert advice.judges_massless
+    assert "positions of massless bodies" in str(advice)
+    exact = scene.run(60.0, method="verner98", rtol=1e-13).position[-1]
+    for option in advice.options:
+        # As for positions above: to a factor of 3, of the size of the system, 5.
+        assert np.abs(scene.run(60.0, **option.how).position[-1] - exact).max() < 15.0 * accuracy, option
+    alone = vv.Scene(vv.Particles([0.0], [[1.0, 0, 0]], [[0, 1.0, 0]]), vv.RotatingFrame([0, 0, 0.3]))
+    assert alone.advise(10.0, accuracy=1e-9).options
+    assert not vv.problems.figure_eight().scene.advise(6.0, accuracy=1e-6).judges_massless

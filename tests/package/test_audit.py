@@ -102,6 +102,45 @@ def test_third_law_of_gravity_and_of_what_breaks_it() -> None:
     assert not vv.audit.third_law(x, forces).weak
 
 
+@pytest.mark.parametrize(
+    "force",
+    [
+        vv.UniformElectricField([1.0, 0, 0], [1.0, 2.0]),
+        vv.QuadraticDrag([1.0, 2.0]),
+        vv.Drag(1.0, 1.0, [0.1, 0.2]),
+        vv.UniformMagneticField([0, 0, 1.0], [1.0, 2.0]),
+    ],
+)
+def test_work_of_forces_that_each_body_feels_in_its_own_way(force: vv.forces.Force) -> None:
+    bodies = vv.Particles([1.0, 2.0], [[0, 0, 0], [1.0, 0, 0]], [[1.0, 0, 0], [0, 1.0, 0]])
+    out = vv.Scene(bodies, force).run(np.linspace(0, 1, 100), rtol=1e-13)
+    kinetic = 0.5 * bodies.mass * (out.velocity**2).sum(axis=2)
+    # The fourth power of a hundredth, and 6π times the rates of Stokes.
+    np.testing.assert_allclose(vv.audit.work_along(out, force), kinetic - kinetic[0], atol=1e-6)
+
+
+@pytest.mark.parametrize(
+    "force",
+    [
+        vv.PairPotential(vv.potentials.Yukawa(k=1.0, length=1e-3)),
+        vv.PairPotential(vv.potentials.SoftSphere(k=1.0, radius=0.5, n=2)),
+        vv.Spring(0, 1, k=1.0),
+        vv.Damper("a", "b", c=1.0),
+        vv.Coulomb([0.0, 0.0], k=1.0),
+    ],
+    ids=lambda force: type(force).__name__,
+)
+def test_what_acts_between_bodies_is_refused_however_short_it_reaches(force: vv.forces.Force) -> None:
+    out = vv.Scene(vv.Particles([1, 1.0], [[0, 0, 0], [1.0, 0, 0]])).run(np.linspace(0, 1, 5))
+    for asked in (
+        lambda: vv.audit.field(force),
+        lambda: vv.audit.curl(force, [[1.0, 0, 0]]),
+        lambda: vv.audit.work_along(out, force),
+    ):
+        with pytest.raises(vv.InvalidInput, match="acts between bodies"):
+            asked()
+
+
 def test_refusals() -> None:
     with pytest.raises(vv.InvalidInput, match="acts between bodies"):
         vv.audit.field(vv.Gravity(1.0))
@@ -120,6 +159,14 @@ def test_curl_at_places_of_all_sizes_together() -> None:
     field = vv.CentralField(vv.potentials.Coulomb(-1.0))
     places = np.array([[0.01, 0.02, 0.005], [1.0, 1.0, 1.0], [1e5, 3e5, 0.0], [0.0, 0.0, 1e-6]])
     assert vv.audit.curl(field, places).conservative
+
+
+def test_curl_near_a_center_that_is_far_from_the_origin() -> None:
+    """A step of the size of the place goes across the center: the field seemed to turn."""
+    field = vv.CentralField(vv.potentials.Coulomb(k=-1.0), center=[1000.0, 0, 0])
+    places = [[1000.5, 0.1, 0.2], [1001.5, 2.0, -7.0], [0.0, 0.0, 0.0]]
+    assert vv.audit.curl(field, places).conservative
+    assert not vv.audit.curl(lambda r: vv.audit.field(field)(r) + 1e-3 * turning(r), places).conservative
 
 
 def test_third_law_far_from_the_origin() -> None:

@@ -139,3 +139,19 @@ def test_an_energy_that_cancels_is_judged_against_what_cancels() -> None:
     table = scene.run(t=[0.0, 1.0]).conservation()
     assert table.energy.scale == 1.0
     assert table.energy.max < 1e-15
+
+
+@pytest.mark.parametrize(("collisions", "restitution"), [("merge", 1.0), ("bounce", 0.5), ("bounce", 1.0)])
+def test_what_collisions_take_is_not_an_error_of_the_run(collisions: str, restitution: float) -> None:
+    bodies = vv.Particles([1.0, 1.0], [[-2.0, 0.3, 0], [0, 0, 0]], [[1.0, 0, 0], [0, 0, 0]], radius=0.5)
+    how = {"restitution": restitution} if collisions == "bounce" else {}
+    out = vv.Scene(bodies).run(np.linspace(0, 4, 9), collisions=collisions, **how)
+    table = out.conservation()
+    elastic = collisions == "bounce" and restitution == 1.0
+    assert table.collisions == 1
+    assert table.energy.conserved == elastic
+    assert table.energy.max * table.energy.scale == pytest.approx(out.collisions.energy_lost.sum(), abs=1e-15)
+    assert table.momentum.conserved
+    assert table.momentum.max < 1e-15
+    assert table.angular_momentum.conserved == (collisions == "bounce")
+    assert ("energy" in str(table) and "not conserved by these forces and collisions" in str(table)) != elastic

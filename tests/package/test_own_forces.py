@@ -235,3 +235,21 @@ def test_what_makes_no_sense_is_refused(parameters: dict[Any, dict[str, Any]], m
     with pytest.raises(vv.InvalidInput, match=message) as refused:
         ensemble(parameters)
     assert refused.value.argument == "parameters"
+
+
+def test_a_force_that_names_its_bodies_is_known_as_itself() -> None:
+    """The scene keeps it with indices."""
+    bodies = vv.Particles([1.0, 1e-3], [[0, 0, 0], [1.0, 0, 0]], [[0, 0, 0], [0, 1.0, 0]], names=["S", "a"])
+    for force, name in (
+        (vv.Oblate("S", G=1.0, J2=1e-3, radius=0.1, axis=[0, 0, 1.0]), "J2"),
+        (vv.PostNewtonian("S", G=1.0, c=10.0), "G"),
+        (vv.Spring("S", "a", k=1e-3), "k"),
+        (vv.Damper("S", "a", c=1e-3), "c"),
+    ):
+        scene = vv.Scene(bodies, vv.Gravity(1.0), vv.Spring("a", "S", k=3e-3), force)
+        by_itself = scene.ensemble(parameters={force: {name: [1e-3, 2e-3]}}).run(1.0)
+        by_place = scene.ensemble(parameters={2: {name: [1e-3, 2e-3]}}).run(1.0)
+        assert not by_itself.status.any()
+        assert np.array_equal(by_itself.position, by_place.position)
+    with pytest.raises(vv.InvalidInput, match="'b'"):
+        scene.ensemble(parameters={vv.Spring("S", "b", k=1.0): {"k": [1.0, 2.0]}})

@@ -66,7 +66,7 @@ mod _core {
     };
     #[pymodule_export]
     use crate::registry::{
-        check_potential, dimensions, forces, methods, potential, potentials, screening_length,
+        acts_between, check_potential, dimensions, forces, methods, potential, potentials, screening_length,
     };
     #[pymodule_export]
     use crate::rigid::{

@@ -9,6 +9,7 @@ use pyo3::types::PyDict;
 use std::sync::Arc;
 use visviva_core::Error;
 use visviva_core::forces::ForceTerm;
+use visviva_core::forces::term::Coupling;
 use visviva_core::memory::reserved;
 use visviva_core::numerics::double_double::DoubleDouble;
 use visviva_core::potentials::parameters::{Declaration, Dimensions, Kind, Parameter, Sign, Value};
@@ -124,6 +125,12 @@ pub(crate) fn dimensions<'py>(
         _ => return Err(raised(py, Error::invalid("kind", format!("unknown: '{kind}'")))),
     };
     Ok(exponents.into_iter().map(|[length, mass, time]| (length, mass, time)).collect())
+}
+
+/// Whether a force acts between bodies, and not on each for itself.
+#[pyfunction]
+pub(crate) fn acts_between(description: &Bound<'_, PyDict>) -> PyResult<bool> {
+    Ok(force(description)?.coupling() != Coupling::None)
 }
 
 /// The force of a description.

@@ -143,6 +143,9 @@ fn from_true(mu: f64, pericenter: f64, e: f64, nu: f64) -> Result<Plane> {
     } else {
         ((e - 1.0) - 2.0 * e * half_sine * half_sine, e - 1.0)
     };
+    // e ± cos ν likewise: where the motion is nearly radial, this is what is left of it across.
+    let half = if mu > 0.0 { half_cosine } else { half_sine };
+    let across = (e - 1.0) + 2.0 * half * half;
     if shape <= 0.0 {
         return Err(Error::invalid(
             "true_anomaly",
@@ -167,7 +170,7 @@ fn from_true(mu: f64, pericenter: f64, e: f64, nu: f64) -> Result<Plane> {
     Ok(Plane {
         place: [cosine, sine],
         length: distance,
-        rate: [-sign * sine, sign * cosine + e],
+        rate: [-sign * sine, across],
         speed: hodograph,
     })
 }
