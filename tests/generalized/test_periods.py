@@ -48,6 +48,8 @@ HARD: list[tuple[Any, float, float, float, float]] = [
     # 4 √(2 x₀); with slopes 3/2 and −1/2 the ends are 2 and −6, and times 2 √(2 V) / slope.
     (sp.Abs(x), 2.0, 0.0, 8.0, 4 * EPSILON),
     (sp.Abs(x) + x / 2, 2.0, 0.0, float(2 * np.sqrt(6.0) * (1 / 1.5 + 1 / 0.5)), 8 * EPSILON),
+    # Where x + 0.3 is 0, its slope is 0/0.
+    (sp.Abs(x + sp.Float(0.3)), 1.7, 0.0, 8.0, 4 * EPSILON),
     # 2π cos x₀: what the last digit of x₀ is of its distance from the wall.
     (sp.tan(x) ** 2 / 2, 1.5, 0.0, 2 * np.pi * np.cos(1.5), 32 * EPSILON),
     (sp.tan(x) ** 2 / 2, 1.5707, 0.0, 2 * np.pi * np.cos(1.5707), 2e4 * EPSILON),

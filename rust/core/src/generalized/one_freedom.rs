@@ -22,6 +22,10 @@ use way::{Panel, Way};
 
 /// The last digit of a place may be this part of a swing.
 const COARSEST: f64 = 2.3e-7;
+/// The least part of a panel in which there have to be slopes.
+const FEWEST: f64 = 0.25;
+/// So much of a place are a few of its last digits.
+const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
 /// Where less than this part of the greatest kinetic energy is left, it is counted from the turning point.
 const NEAR_AN_END: f64 = 0.25;
 
@@ -98,12 +102,21 @@ impl OneFreedom {
     fn rise(&mut self, from: f64, width: f64) -> [f64; 2] {
         let (nodes, weights) = gauss::quadrature();
         let slopes = self.values(nodes.map(|x| from + x * width))[2];
-        let mut sums = [0.0; 2];
+        let (mut sums, mut counted) = ([0.0; 2], 1.0);
         for (weight, slope) in weights.iter().zip(slopes) {
-            sums[0] += weight * slope;
-            sums[1] += weight * slope.abs();
+            // On a kink there is none; the others tell what is beside it.
+            if slope.is_nan() {
+                counted -= weight;
+            } else {
+                sums[0] += weight * slope;
+                sums[1] += weight * slope.abs();
+            }
         }
-        [sums[0] * width, sums[1] * width.abs()]
+        if counted < FEWEST {
+            // Or all are on it, in what is too short to matter.
+            return [if width.abs() <= LAST_DIGITS * from.abs() { 0.0 } else { f64::NAN }; 2];
+        }
+        [sums[0] * width / counted, sums[1] * width.abs() / counted]
     }
 
     /// The panel between two places.

@@ -167,12 +167,7 @@ fn from_true(mu: f64, pericenter: f64, e: f64, nu: f64) -> Result<Plane> {
     let hodograph =
         scale((scale(mu.abs(), -near - 2 * unit) / scale(pericenter, -near) / focal).sqrt(), unit);
     let sign = mu.signum();
-    Ok(Plane {
-        place: [cosine, sine],
-        length: distance,
-        rate: [-sign * sine, across],
-        speed: hodograph,
-    })
+    Ok(Plane { place: [cosine, sine], length: distance, rate: [-sign * sine, across], speed: hodograph })
 }
 
 /// By E, H or D. In units of the pericenter distance q and of √(|μ|/q), with c = |1 − e| (repulsive: e + 1) = q/a and
