@@ -87,3 +87,10 @@ def test_events_want_a_step() -> None:
 
 def test_its_cost_is_not_guessed() -> None:
     assert top().plan(t=2.0).cost() is None
+
+
+def test_steps_that_never_agree_are_told_as_that() -> None:
+    """1e5 turns by chosen steps: not that anything became infinite, nor that an adaptive method may pass."""
+    body = vv.RigidBody(1.0, [1.0, 1.5, 2.0], angular_velocity=[0.3, 0.2, 1.0])
+    with pytest.raises(vv.ConvergenceError, match="did not agree to rtol; a larger rtol, a shorter run, or a step dt"):
+        vv.Scene(body, vv.RotationalDrag(1e-9)).run([0, 1e9])

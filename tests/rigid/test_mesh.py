@@ -26,11 +26,11 @@ def left_over(corners, faces):
 
 
 def is_closed(corners, faces):
-    """What the library says; flat meshes are told apart from open ones by the message."""
+    """What the library says; flat meshes, and such as no body fills, are told apart from open ones by the message."""
     try:
         vv.rigid.mesh(corners, faces)
     except vv.InvalidInput as error:
-        return "encloses a volume" in error.message
+        return "encloses a volume" in error.message or "which no body has" in error.message
     return True
 
 
@@ -176,3 +176,13 @@ def test_the_surface_of_an_ellipsoid_is_what_thin_meshes_have():
     sheet = vv.rigid.mesh(np.vstack([outer, inner]), np.vstack([faces, faces[:, ::-1] + len(corners)]), mass=3.0)
     # 5e-4: flat triangles of a side of 0.02.
     assert sheet.tensor == pytest.approx(vv.rigid.ellipsoid(3.0, *half, shell=True).tensor, rel=5e-4, abs=1e-5)
+
+
+def test_a_cavity_outside_of_the_body_is_refused():
+    """Two boxes that wind differently: mass 7 and a moment of −9.4 were told of them."""
+    corners, faces = box_mesh(1.0, 1.0, 1.0)
+    both = np.vstack([corners, 2.0 * corners + [3.0, 0, 0]])
+    with pytest.raises(vv.InvalidInput, match="which no body has"):
+        vv.rigid.mesh(both, np.vstack([faces, faces[:, ::-1] + len(corners)]))
+    together = vv.rigid.mesh(both, np.vstack([faces, faces + len(corners)]))
+    assert together.mass == pytest.approx(9.0)

@@ -321,3 +321,15 @@ def test_what_would_turn_a_rod_about_its_axis_is_refused() -> None:
             with pytest.raises(vv.InvalidInput, match="the axis of rod, a rod") as caught:
                 vv.Scene(ball, body, bad)
             assert caught.value.argument == argument
+
+
+def test_a_frame_that_turns_is_refused() -> None:
+    """It turns bodies, too, by torques that nobody computes: a rod stayed as it was, with status OK."""
+    rod = vv.RigidBody(1.0, [0.25, 0.25, 0.0])
+    turning = vv.RotatingFrame([0, 0, 1.0])
+    with pytest.raises(vv.InvalidInput, match="how it turns rigid bodies is not computed"):
+        vv.Scene(rod, turning).run(1.0)
+    still = vv.Scene(rod, vv.RotatingFrame([0, 0, 0.0]))
+    with pytest.raises(vv.InvalidInput, match="how it turns rigid bodies is not computed"):
+        still.ensemble(parameters={"RotatingFrame": {"omega": [[0, 0, 0.0], [0, 0, 1.0]]}}).run(1.0)
+    assert still.run(1.0).status == vv.Status.OK

@@ -181,7 +181,7 @@ class MassProperties:
         if not isinstance(other, MassProperties):
             return NotImplemented
         left = _together([self, other], [1.0, -1.0])
-        if not _is_a_body(left.tensor):
+        if not is_a_body(left.tensor):
             message = (
                 f"expected a part of the body that it is taken out of, but what is left has the tensor {left.tensor}"
             )
@@ -189,7 +189,8 @@ class MassProperties:
         return left
 
 
-def _is_a_body(tensor: NDArray[np.float64]) -> bool:
+def is_a_body(tensor: NDArray[np.float64]) -> bool:
+    """Whether some body has that tensor."""
     try:
         principal_axes(tensor)
     except InvalidInput:

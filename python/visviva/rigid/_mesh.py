@@ -11,7 +11,7 @@ from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva.errors import InvalidInput
-from visviva.rigid._mass import MassProperties
+from visviva.rigid._mass import MassProperties, is_a_body
 
 if TYPE_CHECKING:
     from os import PathLike
@@ -68,6 +68,12 @@ def mesh(
     if mass is not None and density is not None:
         raise InvalidInput("density", "expected mass or density, got both")
     volume, center, tensor = _core.mesh_enclosed(corners, triangles)
+    if not is_a_body(tensor):
+        raise InvalidInput(
+            "faces",
+            "expected parts that wind alike, a cavity inside of what it is in the other way: all together they have the "
+            f"tensor {tensor.tolist()}, which no body has; turn the faces of one part round (faces[:, ::-1])",
+        )
     if mass is not None:
         weight = positive("mass", mass, "mass")
         return MassProperties(weight, center, tensor * (weight / volume))

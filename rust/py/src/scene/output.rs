@@ -194,7 +194,9 @@ pub(super) fn output_dict<'py>(
         let step = output.plan.dt.or(output.plan.transformed.map(|(_, dt)| dt)).map(f64::abs);
         dict.set_item("energy_error", (copy, error, step, output.plan.method.order))?;
     }
-    let error = outcomes.first().filter(|_| !ensemble).and_then(failure);
+    // Steps that are chosen for rigid bodies end where no two lengths of them agree.
+    let chosen = output.plan.turning.steps() && output.plan.tolerance.is_some();
+    let error = outcomes.first().filter(|_| !ensemble).and_then(|outcome| failure(outcome, chosen));
     dict.set_item("error", error.map(|error| error_dict(py, &error)).transpose()?)?;
     dict.set_item("plan", Planned(output.plan))?;
     Ok(dict)
@@ -236,8 +238,8 @@ fn status(ending: &Ending) -> i8 {
     }
 }
 
-/// What an ending means, as the error that a single run raises.
-fn failure(outcome: &Outcome) -> Option<Error> {
+/// What an ending means, as the error that a single run raises; whether its steps were `chosen` for bodies that torques turn.
+fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
     let time = outcome.time;
     match &outcome.ending {
         Ending::Finished | Ending::Stopped => None,
@@ -248,6 +250,12 @@ fn failure(outcome: &Outcome) -> Option<Error> {
             message: "the step size fell to zero, and no bodies are close: the tolerances ask for more than a step can \
                       give (raise rtol or atol), or allow steps so long that forces on the way are beyond float64 (lower \
                       them, or set max_step); under a time transformation, that dt is too long"
+                .to_owned(),
+            time,
+        }),
+        Ending::NotFinite if chosen => Some(Error::Convergence {
+            message: "steps that turn the rigid bodies were made ever smaller and did not agree to rtol; a larger rtol, a \
+                      shorter run, or a step dt of your own may pass"
                 .to_owned(),
             time,
         }),

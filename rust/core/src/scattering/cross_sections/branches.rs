@@ -7,6 +7,9 @@ use crate::parallel::Ticker;
 use crate::scattering::kinematics::Collision;
 use core::f64::consts::PI;
 
+/// Each place of a tail is so many times as far as the one before.
+const FURTHER: f64 = 4.0;
+
 /// One way to an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Branch {
@@ -66,6 +69,11 @@ impl Structure<'_> {
                 }
             }
         }
+        for target in [angle, -angle] {
+            if let Some(beyond) = self.tail(target, ticker)? {
+                found.extend(self.solve(&beyond, target, ticker)?);
+            }
+        }
         found.sort_by(|a, b| a.b.total_cmp(&b.b));
         found.dedup_by(|a, b| a.b == b.b);
         let branch = |sample: &Sample| Branch {
@@ -86,7 +94,11 @@ impl Structure<'_> {
             let around = 2.0 * PI - angle;
             return Ok(0.25 * PI * square * (1.0 / (angle * angle) + 1.0 / (around * around)) / sine(angle));
         }
-        Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).sum())
+        if angle == 0.0 && self.outermost().is_some() {
+            return Ok(f64::INFINITY);
+        }
+        // From +0 on: an empty sum of floats is −0.
+        Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).fold(0.0, |sum, part| sum + part))
     }
     /// dσ/dΩ of the projectile in the laboratory, all branches of either kind together; 0 where none leads.
     ///
@@ -120,6 +132,9 @@ impl Structure<'_> {
     /// # Errors
     /// As [`branches`](Self::branches).
     pub fn beyond(&self, angle: f64, ticker: &mut Ticker<'_>) -> Result<f64> {
+        if angle == 0.0 && self.outermost().is_some() {
+            return Ok(f64::INFINITY);
+        }
         let branches = self.branches(angle, ticker)?;
         let mut places = vec![self.capture()];
         places.extend(self.edges.iter().map(|edge| edge.impact_parameter));
@@ -136,6 +151,34 @@ impl Structure<'_> {
             }
         }
         Ok(area)
+    }
+
+    /// The last sample before an infinite distance, up to where some deflection is left.
+    fn outermost(&self) -> Option<Sample> {
+        let last = *self.stretches.last()?.last()?;
+        (self.deflector.range() == f64::INFINITY && last.angle != 0.0).then_some(last)
+    }
+
+    /// From there on, up to less than that ψ; `None` if it is not beyond. Far out ψ falls to zero, whatever the potential.
+    fn tail(&self, target: f64, ticker: &mut Ticker<'_>) -> Result<Option<Vec<Sample>>> {
+        let Some(last) = self.outermost() else { return Ok(None) };
+        if target == 0.0 || target.signum() != last.angle.signum() || target.abs() >= last.angle.abs() {
+            return Ok(None);
+        }
+        let mut beyond = vec![last];
+        let mut b = last.b;
+        loop {
+            b *= FURTHER;
+            let next = self.sample(b, ticker)?;
+            beyond.push(next);
+            // A deflection that cannot be told is no bracket.
+            if !next.angle.is_finite() {
+                return Ok(None);
+            }
+            if next.angle.abs() <= target.abs() {
+                return Ok(Some(beyond));
+            }
+        }
     }
 
     /// The sample of a monotone stretch with that ψ, if it has one.

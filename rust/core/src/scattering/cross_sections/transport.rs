@@ -231,6 +231,9 @@ fn less_than_one(angle: f64, l: u32) -> f64 {
     less * powers
 }
 
+/// What a weight is to be less than, as a logarithm: 2e-12.
+const NEGLIGIBLE: f64 = 27.0;
+
 /// Ω^(l,s)*(T) = ∫ Q^(l)(E) e^(−E/T) E^(s+1) dE / ((s + 1)! T^(s+2) π d² (1 − (1 + (−1)^l)/(2(1 + l)))): in units of what
 /// hard spheres of diameter `d` have. T is k_B times the temperature, an energy.
 ///
@@ -245,9 +248,14 @@ pub fn collision_integral(
     ticker: &mut Ticker<'_>,
 ) -> Result<f64> {
     let (l, s) = orders;
-    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-11 of its largest outside of these.
+    // x = ln(E/T): the weight e^(−eˣ + (s+2)x) is below 1e-11 of its largest, at eˣ = s + 2, outside of these.
     let power = f64::from(s + 2);
-    let [least, most] = [-26.0 / power, 3.9];
+    let weight = |x: f64| power * x - Exponential::exp(x);
+    let least = -26.0 / power;
+    let mut most = 3.9;
+    while weight(most) > weight(ln(power)) - NEGLIGIBLE {
+        most += 0.1;
+    }
     let mut marks = vec![least, most];
     marks.extend(deflector.critical_energies().iter().map(|energy| ln(energy / temperature)));
     marks.retain(|x| (least..=most).contains(x));
