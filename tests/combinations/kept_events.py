@@ -156,4 +156,24 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             collisions="stop",
         ),
     ),
+    # A body without events that left the law of its drag inside a step was charged with all of it, if another body in its
+    # lanes had events.
+    (
+        "a_member_is_as_if_alone",
+        Recipe(
+            method="rk4",
+            bodies=3,
+            forces=(("Drag", 7), ("Drag", 30)),
+            seed=273,
+            tame=False,
+            drifting=True,
+            own=("numbers",),
+            steps=14,
+            decades=10,
+            outputs=3,
+            columns=("energy", "velocity", "momentum"),
+            events=(("apsis", 26),),
+            backward=True,
+        ),
+    ),
 ]

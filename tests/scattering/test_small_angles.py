@@ -88,6 +88,6 @@ def test_recoils_across_the_beam_and_rare_large_angles() -> None:
 
 @pytest.mark.parametrize("orders", [(1, 1), (2, 2), (1, 5), (1, 10), (2, 12), (1, 16), (2, 20)])
 def test_collision_integrals_of_hard_spheres_are_one(orders: tuple[int, int]) -> None:
-    """The greatest energies count the more the higher the order; a fixed end of the integral left out 4e-6 at s = 20."""
+    """The higher the order, the more great energies count; a fixed end of the integral left out 4e-6 at s = 20."""
     found = S.collision_integral(V.HardSphere(1.0), temperature=1.0, diameter=1.0, orders=orders)
     assert found == pytest.approx(1.0, rel=1e-10)

@@ -71,7 +71,7 @@ def mesh(
     if not is_a_body(tensor):
         raise InvalidInput(
             "faces",
-            "expected parts that wind alike, a cavity inside of what it is in the other way: all together they have the "
+            "expected parts that wind alike, a cavity inside of what it is in the other way: together they have the "
             f"tensor {tensor.tolist()}, which no body has; turn the faces of one part round (faces[:, ::-1])",
         )
     if mass is not None:

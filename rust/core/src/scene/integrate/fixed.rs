@@ -201,7 +201,8 @@ impl Recorder<Lanes> for Records<'_> {
         for (lane, unit) in self.units.iter().enumerate() {
             if self.failed[lane].is_none() && !unit.record(job.writer, index, state, lane, elapsed, ticker)? {
                 self.failed[lane] = Some(index);
-                if !self.watched {
+                // Whether others in its lanes have events is none of its business.
+                if self.watches.get(lane).is_none_or(Option::is_none) {
                     self.ended[lane] = true;
                     self.running -= 1;
                     self.asks = true;
