@@ -114,6 +114,12 @@ def _place(scene: Scene, which: Any) -> int:
     """The place of a force that is given itself, by its place, or by the name of its class."""
     forces = scene.forces
     shown = ", ".join(map(repr, forces)) or "none"
+    if any(which in (force, type(force).__name__) for force in scene.body_forces):
+        raise InvalidInput(
+            "parameters",
+            f"expected a force on points ({shown}), got {which!r}: what acts on rigid bodies is the same in all copies; run a "
+            "scene for each of its values",
+        )
     if isinstance(which, bool) or not isinstance(which, int | str | Force):
         raise InvalidInput("parameters", f"expected forces of the scene ({shown}), got {which!r}")
     if isinstance(which, int):

@@ -259,7 +259,7 @@ class Scene(Runnable[Trajectory], Framed):
             For some forces of the scene (each given itself, by its place among them or by the name of its class),
             values of some of their parameters with a leading axis over the copies: ``{force: {"k": values}}``. Copies
             share SIMD lanes and threads as those of one set of parameters do, unless more than numbers differs: a term
-            that a value of 0 leaves out, a softening, an exponent, a table.
+            that a value of 0 leaves out, a softening, an exponent, a table. Forces on rigid bodies are the same in all.
         orientation : array_like, shape (B, K, 4), optional
             Quaternions of the rigid bodies per copy; points that are held stay where they are.
         angular_velocity : array_like, shape (B, K, 3), optional

@@ -156,8 +156,8 @@ KEPT_EVENTS: list[tuple[str, Recipe]] = [
             collisions="stop",
         ),
     ),
-    # A body without events that left the law of its drag inside a step was charged with all of it, if another body in its
-    # lanes had events.
+    # A body without events that left the law of its drag inside a step was charged with all of it, if another body in
+    # its lanes had events.
     (
         "a_member_is_as_if_alone",
         Recipe(

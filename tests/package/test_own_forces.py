@@ -253,3 +253,11 @@ def test_a_force_that_names_its_bodies_is_known_as_itself() -> None:
         assert np.array_equal(by_itself.position, by_place.position)
     with pytest.raises(vv.InvalidInput, match="'b'"):
         scene.ensemble(parameters={vv.Spring("S", "b", k=1.0): {"k": [1.0, 2.0]}})
+
+
+def test_forces_on_rigid_bodies_are_those_of_the_scene() -> None:
+    rod = vv.RigidBody(1.0, [1.0, 1.0, 0.5])
+    torque = vv.AppliedTorque([0.0, 0.0, 1.0])
+    for which in (torque, "AppliedTorque"):
+        with pytest.raises(vv.InvalidInput, match="the same in all copies; run a scene for each"):
+            vv.Scene(rod, torque).ensemble(parameters={which: {"torque": [[0, 0, 1.0], [0, 0, 2.0]]}})
