@@ -117,8 +117,8 @@ def _place(scene: Scene, which: Any) -> int:
     if any(which in (force, type(force).__name__) for force in scene.body_forces):
         raise InvalidInput(
             "parameters",
-            f"expected a force on points ({shown}), got {which!r}: what acts on rigid bodies is the same in all copies; run a "
-            "scene for each of its values",
+            f"expected a force on points ({shown}), got {which!r}: what acts on rigid bodies is the same in all "
+            "copies; run a scene for each of its values",
         )
     if isinstance(which, bool) or not isinstance(which, int | str | Force):
         raise InvalidInput("parameters", f"expected forces of the scene ({shown}), got {which!r}")
