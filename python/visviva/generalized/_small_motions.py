@@ -103,7 +103,14 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For several coordinates, an equilibrium, or a motion that does not turn back (with ``turn``: that does).
+            For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does), one on
+            a separatrix, or one that comes to a place where its force is infinite.
+
+        Notes
+        -----
+        By Gauss's quadrature of the slope of the energy, over panels in which bounds of all that the Lagrangian is made of
+        let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up to it.
+        Landau & Lifshitz, Mechanics, 3rd ed., (11.5).
 
         Examples
         --------
