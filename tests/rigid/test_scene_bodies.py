@@ -329,6 +329,8 @@ def test_a_frame_that_turns_is_refused() -> None:
     turning = vv.RotatingFrame([0, 0, 1.0])
     with pytest.raises(vv.InvalidInput, match="how it turns rigid bodies is not computed"):
         vv.Scene(rod, turning).run(1.0)
+    with pytest.raises(vv.InvalidInput, match="how it turns rigid bodies is not computed"):
+        vv.Scene(rod, turning).invariants()
     still = vv.Scene(rod, vv.RotatingFrame([0, 0, 0.0]))
     with pytest.raises(vv.InvalidInput, match="how it turns rigid bodies is not computed"):
         still.ensemble(parameters={"RotatingFrame": {"omega": [[0, 0, 0.0], [0, 0, 1.0]]}}).run(1.0)

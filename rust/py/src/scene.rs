@@ -24,6 +24,7 @@ use visviva_core::forces::term::{About, conserved_by};
 use visviva_core::parallel::thread_count;
 use visviva_core::scene::Scene;
 use visviva_core::scene::acceleration::acceleration as acceleration_of;
+use visviva_core::scene::refuse_frames;
 use visviva_core::scene::run::{plan as plan_scene, run as run_scene};
 
 /// Plans a run without running it.
@@ -82,6 +83,9 @@ pub(crate) fn conserved<'py>(
         None => vec![0.0; position.len()],
     };
     let specs = described(&forces)?;
+    if turning.is_some() {
+        refuse_frames(&specs).map_err(|error| raised(py, error))?;
+    }
     let turning = turning.map(|given| Turning::prepared(given, times, &specs)).transpose()?;
     let about = point(&copied("about", &about, [Some(3)])?.0);
     let (position, velocity) = (points(&position), points(&velocity));

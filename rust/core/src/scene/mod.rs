@@ -83,6 +83,22 @@ pub struct Scene {
     pub continuation: Option<Continuation>,
 }
 
+/// Refuses frames that turn, for rigid bodies: they turn them, too, by torques that nobody computes.
+///
+/// # Errors
+/// `forces`.
+pub fn refuse_frames(forces: &[Arc<dyn ForceTerm>]) -> Result<()> {
+    let turns = |force: &Arc<dyn ForceTerm>| {
+        force.as_rotating().is_some_and(|(omega, _)| omega.iter().any(|part| *part != 0.0))
+    };
+    if !forces.iter().any(turns) {
+        return Ok(());
+    }
+    let message = "RotatingFrame moves points; how it turns rigid bodies is not computed: run them in a frame at rest, and \
+                   turn orientations and angular velocities by -omega t afterwards";
+    Err(Error::invalid("forces", message))
+}
+
 impl Scene {
     /// The masses of a copy.
     pub fn masses(&self, copy: usize) -> &[f64] {
@@ -218,9 +234,11 @@ impl Scene {
             return Err(Error::invalid("t0", format!("expected a finite time, got {}", number(self.t0))));
         }
         let check = |forces: &[Arc<dyn ForceTerm>], bodies: &Bodies<'_>| {
+            if self.rigid.is_some() {
+                refuse_frames(forces)?;
+            }
             forces.iter().try_for_each(|force| {
                 check_masses(&**force, bodies)?;
-                self.check_frame(&**force)?;
                 force.validate(bodies).map_err(|error| self.of_a_merger(error))
             })
         };
@@ -228,17 +246,6 @@ impl Scene {
             return check(&self.forces, &self.bodies());
         }
         (0..self.copies).try_for_each(|copy| check(self.forces_of(copy), &self.bodies_of(copy)))
-    }
-
-    /// Refuses a frame that turns beside rigid bodies: it turns them, too, by torques that nobody computes.
-    fn check_frame(&self, force: &dyn ForceTerm) -> Result<()> {
-        let turns = force.as_rotating().is_some_and(|(omega, _)| omega.iter().any(|part| *part != 0.0));
-        if self.rigid.is_none() || !turns {
-            return Ok(());
-        }
-        let message = "RotatingFrame moves points; how it turns rigid bodies is not computed: run them in a frame at rest, \
-                       and turn orientations and angular velocities by -omega t afterwards";
-        Err(Error::invalid("forces", message))
     }
 
     /// The refusal of places, with what to do about bodies that an earlier run has merged.
