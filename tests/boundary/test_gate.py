@@ -13,6 +13,7 @@ STUB = Path(__file__).parents[2] / "python" / "visviva" / "_core.pyi"
 
 # These hand out declarations, a copy, a word or a number of a few operations and compute nothing that takes time.
 PLAIN = {
+    "acts_between",
     "check_foil",
     "check_potential",
     "columns",
