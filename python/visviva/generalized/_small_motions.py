@@ -108,8 +108,9 @@ class SmallMotions:
 
         Notes
         -----
-        By Gauss's quadrature of the slope of the energy, over panels in which bounds of all that the Lagrangian is made of
-        let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up to it.
+        By Gauss's quadrature of the slope of the energy, over panels in which bounds of all that the Lagrangian is made
+        of let nothing narrow hide: a bump is seen however thin it is, and a kink (an absolute value) is integrated up
+        to it.
         Landau & Lifshitz, Mechanics, 3rd ed., (11.5).
 
         Examples
