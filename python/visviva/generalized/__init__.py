@@ -7,10 +7,11 @@ new derivation. The names here are those of `visviva` itself.
 
 from visviva.generalized._accessory import AccessoryProblem
 from visviva.generalized._action import PathIntegral
-from visviva.generalized._analysis import Equilibrium, Linearization, PoincareSection
+from visviva.generalized._analysis import Linearization, PoincareSection
 from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._discrete import DiscreteAction
 from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
+from visviva.generalized._equilibria import Equilibrium
 from visviva.generalized._events import GeneralizedEventTable
 from visviva.generalized._hamiltonian import Hamiltonian
 from visviva.generalized._lagrangian import Lagrangian

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["Equilibrium", "Linearization", "PoincareSection"]
+__all__ = ["Linearization", "PoincareSection", "linearization"]
 
 #: Eigenvalues whose real part is below this times the largest are on the imaginary axis, but for round-off.
 _ON_THE_AXIS = 1e-7
@@ -29,36 +29,6 @@ _LAST_DIGITS = 2.0**-51
 _NUDGES = 3
 #: Forces below this part of what they are made of are round-off, or that of the place.
 _BALANCED = 1e-8
-#: Places that differ by less than this part of their sizes are one.
-_SAME = 1e-8
-#: Starts of a search for equilibria, and of one of many coordinates.
-_MOST_STARTS = 2000
-_MOST_OF_MANY = 256
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True)
-class Equilibrium:
-    """A place where the system stays.
-
-    Attributes
-    ----------
-    position : ndarray, shape (n,)
-    stable : bool
-        Whether small motions about it stay small, as the linear equations tell.
-    frequencies : ndarray
-        Angular frequencies of small oscillations, ascending.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> [(round(float(e.position[0]), 6), e.stable) for e in vv.systems.pendulum().equilibria()]
-    [(-3.141593, False), (0.0, True), (3.141593, False)]
-    """
-
-    position: NDArray[np.float64]
-    stable: bool
-    frequencies: NDArray[np.float64]
 
 
 @known_keywords
@@ -286,55 +256,3 @@ def _sizes_of_forces(system: Lagrangian, place: NDArray[np.float64]) -> NDArray[
     values = np.abs(c.values(flat, np.array([system.t0]), state, system._values)[0])
     parts = np.split(values, np.cumsum([len(terms) for terms in several])[:-1])
     return np.array([np.where(np.isfinite(part), part, 0.0).sum() for part in parts])
-
-
-def _starts(n: int) -> NDArray[np.float64]:
-    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
-    side = max(2, int(_MOST_STARTS ** (1.0 / n)))
-    if 2**n <= _MOST_OF_MANY:
-        line = np.linspace(-np.pi, np.pi, min(side, 25))
-        # Not on the symmetry lines themselves, where Newton's method may be caught.
-        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
-        return np.stack([axis.ravel() for axis in grid], axis=1)
-    # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
-    root = 2.0
-    for _ in range(64):
-        root = (1.0 + root) ** (1.0 / (n + 1))
-    spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
-    places = np.pi * (2.0 * spread - 1.0)
-    # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
-    places[::2] = np.pi * np.rint(places[::2] / np.pi) + 1e-3 * np.arange(1, n + 1)
-    return places
-
-
-def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
-    """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
-    n = len(system.coordinates)
-    if near is None:
-        starts = _starts(n)
-    else:
-        starts = np.atleast_2d(float_array("near", near, None))
-        if starts.shape[1] != n:
-            raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
-    found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
-    reached = np.array([place for place in found if place is not None]).reshape(-1, n)
-    if near is None:
-        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
-    # Sizes of coordinates: those of the places that are looked at and found.
-    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
-    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
-    # What is 0 but for round-off is shown as such.
-    reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
-    places: list[NDArray[np.float64]] = []
-    while len(reached):
-        places.append(reached[0])
-        reached = reached[(np.abs(reached - reached[0]) > _SAME * size).any(axis=1)]
-    results = []
-    for place in sorted(places, key=tuple):
-        try:
-            small = linearization(system, place)
-        except InvalidInput:
-            # Where Newton's method has stopped, but forces are left.
-            continue
-        results.append(Equilibrium(place, small.stable, small.frequencies))
-    return results

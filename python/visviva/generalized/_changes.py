@@ -170,19 +170,17 @@ def lyapunov_exponents(system: GeneralizedSystem, t: float, *, interval: float, 
         }
         both = np.concatenate([state, frame.ravel()])
         result = model.run(asked, both[None, :], system._values[None, :], 1, None)
-        if result["failures"][0] is not None:
-            raise ConvergenceError(result["failures"][0], begin)
-        last = result["y"][-1]
-        if not np.isfinite(last).all():
-            stretch = np.zeros(n)
-        else:
+        failed, stretch = result["failures"][0], np.zeros(n)
+        if failed is None and np.isfinite(result["y"][-1]).all():
+            last = result["y"][-1]
             turned, sizes = np.linalg.qr(last[n:].reshape(n, n))
             stretch = np.abs(np.diag(sizes))
-        # What grows most drowns what grows least: the frame is made orthonormal again before that.
+        # What grows most drowns what grows least, or leaves the range of numbers: the frame is made orthonormal again
+        # before that.
         if stretch.min() <= _DROWNED * stretch.max():
             if abs(end - begin) <= shortest:
                 raise ConvergenceError(
-                    "what neighbors do differs too much in the shortest time to be told apart", begin
+                    failed or "what neighbors do differs too much in the shortest time to be told apart", begin
                 )
             middle = begin + 0.5 * (end - begin)
             pending += [(middle, end), (begin, middle)]
@@ -203,10 +201,12 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
     # Relative to the places themselves: systems may be of any size.
     scale = np.maximum(np.abs(goal), np.abs(system._start()[:n]))
 
-    def missed(other: GeneralizedSystem) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
+    def missed(
+        other: GeneralizedSystem, *may_fail: type[Exception]
+    ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         try:
             reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
-        except (ConvergenceError, InvalidInput):
+        except (ConvergenceError, *may_fail):
             return np.inf, np.full(n, np.nan), np.eye(2 * n)
         miss = reached[:n] - goal
         return relative(miss), miss, jacobian
@@ -215,6 +215,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
         sizes = np.where(scale > 0.0, scale, scale.max(initial=0.0))
         return float((np.abs(miss) / np.where(sizes > 0.0, sizes, 1.0)).max())
 
+    # What cannot be run from the start is refused by its name; a velocity that is tried may be none of the system's.
     other, (size, miss, jacobian) = system, missed(system)
     if np.isfinite(size):
         scale = np.maximum(scale, np.abs(miss + goal))
@@ -229,7 +230,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
         # Newton's step, halved until it leads nearer.
         for _ in range(12):
             trial = other._at(None, other._second - change)
-            new_size, new_miss, new_jacobian = missed(trial)
+            new_size, new_miss, new_jacobian = missed(trial, InvalidInput)
             if new_size < size:
                 break
             change = 0.5 * change

@@ -225,6 +225,8 @@ class Flow:
 
         Raises
         ------
+        InvalidInput
+            For constraints, absolute values, or more than 16 coordinates.
         ConvergenceError
             If Newton's method finds no such motion from the present velocity.
 

@@ -9,7 +9,8 @@ import numpy as np
 from visviva._arrays import number
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._analysis import Equilibrium, Linearization, equilibria, linearization
+from visviva.generalized._analysis import Linearization, linearization
+from visviva.generalized._equilibria import Equilibrium, equilibria
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -34,7 +35,7 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For a place that is none.
+            For a place that is none; where equations depend on the time.
 
         Examples
         --------
@@ -47,6 +48,9 @@ class SmallMotions:
     def equilibria(self: Any, near: ArrayLike | None = None) -> list[Equilibrium]:
         """Places where the system stays, their stability and their frequencies.
 
+        Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in others, the
+        places that the search comes to are told.
+
         Parameters
         ----------
         near : array_like, shape (S, n), optional
@@ -55,7 +59,8 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For constraints: eliminate them.
+            For constraints: eliminate them; where equations depend on the time; if the only ones are places where the mass
+            matrix is singular.
 
         Examples
         --------
@@ -76,7 +81,7 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            If it finds no equilibrium.
+            If it finds no equilibrium; where equations depend on the time.
 
         Examples
         --------
@@ -103,7 +108,8 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does), one on
+            For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does, or whose
+            energy does not repeat after it), one on
             a separatrix, or one that comes to a place where its force is infinite.
 
         Notes

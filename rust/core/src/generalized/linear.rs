@@ -1,11 +1,12 @@
 //! Near a state: equilibria, and the linear equations of small motions about them.
 //!
 //! The one idea: at rest nothing is left of the equations but F(q) = 0, whose zeros Newton's method finds; where K is singular,
-//! as where a system may be moved as a whole, its least step is taken. The derivatives there, M, C and K of M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
+//! as where a system may be moved as a whole, its least step is taken. The derivatives there, M, C and K of
+//! M ξ̈ + C ξ̇ + K ξ = 0, say all about small motions. Derivatives are sweeps on the graph.
 
 use super::model::{Kind, Model};
 use crate::error::{Error, Result};
-use crate::expressions::{Code, Id, Machine};
+use crate::expressions::{Code, Graph, Id, Machine, Node};
 use nalgebra::{DMatrix, DVector};
 use std::collections::HashMap;
 use std::sync::Arc;
@@ -17,6 +18,8 @@ const FOUND: f64 = 1e-13;
 /// Below this part of the places on the way, corrections may be round-off: they are, if they do not shrink to less than that.
 const NOISE: f64 = 1e-9;
 const SHRINKS: f64 = 0.9;
+/// Factors of corrections that differ by less than this part are one.
+const STEADY: f64 = 1e-2;
 /// Forces that no step does away with are round-off below this part of the stiffest one times the place.
 const UNBALANCED: f64 = 1e-10;
 /// Singular values of K, its rows and columns measured by masses, below this part of the largest are zero.
@@ -47,7 +50,7 @@ impl Linear {
     /// Of a Lagrangian without constraints.
     ///
     /// # Errors
-    /// Another system; expressions that are too large.
+    /// Another system, or one whose small motions depend on the time; expressions that are too large.
     pub fn new(model: &mut Model) -> Result<Self> {
         if model.source.kind != Kind::Lagrangian || !model.multipliers.is_empty() {
             return Err(Error::invalid(
@@ -70,7 +73,25 @@ impl Linear {
             }
         }
         outputs.extend(model.mass.iter().flatten());
+        Self::refuse_time(&mut model.source.graph, &outputs, &v)?;
         Ok(Self { n, code: Arc::new(model.function(&outputs)?) })
+    }
+
+    /// Matrices of one moment say nothing of others. A time that leaves the equations, as that of a pivot that is
+    /// accelerated evenly, does no harm.
+    fn refuse_time(graph: &mut Graph, outputs: &[Id], velocities: &[Id]) -> Result<()> {
+        let zero = graph.constant(0.0);
+        let rest = velocities.iter().map(|&v| (v, zero)).collect();
+        let at_rest = graph.substitute(outputs, &rest);
+        if graph.any(&at_rest, |node| matches!(node, Node::Time)) {
+            return Err(Error::invalid(
+                "L",
+                "equilibria and small motions are those of equations that do not depend on the time, and these do; \
+                 run the system, or take flow_jacobian() over a period of what drives it: a motion is stable where no \
+                 eigenvalue is larger than 1 (Floquet)",
+            ));
+        }
+        Ok(())
     }
 
     /// The matrices at a place, at rest.
@@ -97,21 +118,26 @@ impl Linear {
         let n = self.n;
         let mut q = start.to_vec();
         // Sizes are those of the places on the way, times the roots of masses: systems may be of any size.
-        let (mut visited, mut last) = (0.0_f64, f64::INFINITY);
+        let (mut visited, mut last, mut shrunk) = (0.0_f64, f64::INFINITY, f64::NAN);
         for step in 1..=MOST_STEPS {
             let at = self.matrices(t, &q, parameters);
             let units = units(&at.mass, n);
             let Step { correction, remains, stiffest } = newton_step(&at, &units)?;
-            let (mut most, mut moved, mut close) = (0.0_f64, false, true);
+            let most = (0..n).map(|i| correction[i].abs() / units[i]).fold(0.0_f64, f64::max);
+            // To a zero of higher order all corrections shrink by one factor: what is left is a geometric series.
+            let shrinks = most / last;
+            let steady = (shrinks - shrunk).abs() <= STEADY * shrinks && shrinks < 1.0 - STEADY;
+            let whole = if steady { 1.0 / (1.0 - shrinks) } else { 1.0 };
+            shrunk = if steady { f64::NAN } else { shrinks };
+            let (mut moved, mut close) = (false, true);
             for i in 0..n {
                 if !correction[i].is_finite() {
                     return None;
                 }
-                let next = q[i] + correction[i];
+                let next = q[i] + whole * correction[i];
                 moved |= next != q[i];
                 close &= correction[i].abs() <= FOUND * next.abs();
                 visited = visited.max(q[i].abs() / units[i]).max(next.abs() / units[i]);
-                most = most.max(correction[i].abs() / units[i]);
                 q[i] = next;
             }
             // Next to zero a place has no digits of its own: it is found when steps are round-off, and no longer shrink.

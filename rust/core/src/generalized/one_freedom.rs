@@ -26,6 +26,9 @@ const COARSEST: f64 = 2.3e-7;
 const FEWEST: f64 = 0.25;
 /// So much of a place are a few of its last digits.
 const LAST_DIGITS: f64 = 8.0 * f64::EPSILON;
+/// What differs by less than this part of its size after a turn is the same: turns as 2π have fifteen digits, and places may
+/// have lost some.
+const REPEATS: f64 = 1e-9;
 /// Where less than this part of the greatest kinetic energy is left, it is counted from the turning point.
 const NEAR_AN_END: f64 = 0.25;
 
@@ -141,7 +144,8 @@ impl OneFreedom {
         let endless = || {
             Error::invalid(
                 "position",
-                "the motion does not turn back; the period of a rotation is period(turn=2π)",
+                "the motion does not turn back, and has no period, unless its energy repeats after some way: that of a \
+                 rotation is period(turn=2π)",
             )
         };
         let down = way::outward(self, -1.0, None)?;
@@ -194,8 +198,9 @@ impl OneFreedom {
     /// The time in which the coordinate goes on by `turn`, and ∫ p dq / 2π over it, of a motion that never turns back.
     ///
     /// # Errors
-    /// A motion that turns back on the way.
+    /// A motion that turns back on the way; an energy that does not repeat after it.
     pub fn rotation(&mut self, turn: f64) -> Result<[f64; 2]> {
+        self.refuse_unless_it_repeats(turn)?;
         let way = way::outward(self, turn.signum(), Some(turn.abs()))?;
         if way.turns || self.kinetic == 0.0 {
             return Err(Error::invalid(
@@ -212,5 +217,26 @@ impl OneFreedom {
             .collect();
         let [time, action] = quadrature::integral(self, &pieces)?;
         Ok([time, action / (2.0 * PI)])
+    }
+
+    /// Whether energy, mass and slope are the same a turn further, at eight places.
+    fn refuse_unless_it_repeats(&mut self, turn: f64) -> Result<()> {
+        let places = core::array::from_fn(|k| self.start + turn * k as f64 / WIDTH as f64);
+        let (here, there) = (self.values(places), self.values(places.map(|place| place + turn)));
+        let greatest = |values: [f64; WIDTH]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        // An energy has no zero of its own: what is swung through, and what moves, are its sizes.
+        let depth = self.kinetic + greatest(here[0].map(|energy| energy - self.at_rest));
+        let sizes = [depth, greatest(here[1]), greatest(here[2])];
+        for ((here, there), size) in here.iter().zip(there).zip(sizes) {
+            // On a kink there is no slope.
+            let differs = |(x, y): (&f64, f64)| !((x - y).abs() <= REPEATS * size || x.is_nan() && y.is_nan());
+            if here.iter().zip(there).any(differs) {
+                return Err(Error::invalid(
+                    "turn",
+                    format!("the energy does not repeat where the coordinate has gone on by {turn}: no period"),
+                ));
+            }
+        }
+        Ok(())
     }
 }

@@ -1,0 +1,135 @@
+"""Equilibria: where a system stays, found from many starts, each told once.
+
+The one idea: Newton's method runs from places all over a turn. What it reaches is kept where a force is balanced, and two
+places are one where they differ by round-off, or along a coordinate that nothing depends on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from visviva._arrays import float_array
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+from visviva.generalized._analysis import linearization
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized._lagrangian import Lagrangian
+
+__all__ = ["Equilibrium", "equilibria"]
+
+#: Places that differ by less than this part of their sizes are one.
+_SAME = 1e-8
+#: Starts of a search for equilibria, and of one of many coordinates.
+_MOST_STARTS = 2000
+_MOST_OF_MANY = 256
+#: How far a place is moved to see whether its last digits make its mass matrix, and what part of it they make there.
+_LAST_DIGITS = 2.0**-51
+_MADE_OF_THEM = 0.1
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True)
+class Equilibrium:
+    """A place where the system stays.
+
+    Attributes
+    ----------
+    position : ndarray, shape (n,)
+    stable : bool
+        Whether small motions about it stay small, as the linear equations tell.
+    frequencies : ndarray
+        Angular frequencies of small oscillations, ascending.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> [(round(float(e.position[0]), 6), e.stable) for e in vv.systems.pendulum().equilibria()]
+    [(-3.141593, False), (0.0, True), (3.141593, False)]
+    """
+
+    position: NDArray[np.float64]
+    stable: bool
+    frequencies: NDArray[np.float64]
+
+
+def _starts(n: int) -> NDArray[np.float64]:
+    """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
+    side = max(2, int(_MOST_STARTS ** (1.0 / n)))
+    if 2**n <= _MOST_OF_MANY:
+        line = np.linspace(-np.pi, np.pi, min(side, 25))
+        # Not on the symmetry lines themselves, where Newton's method may be caught.
+        grid = np.meshgrid(*[line + 1e-3 * (k + 1) for k in range(n)], indexing="ij")
+        return np.stack([axis.ravel() for axis in grid], axis=1)
+    # Evenly spread without a grid: multiples of powers of the root of x^(n+1) = x + 1 (M. Roberts).
+    root = 2.0
+    for _ in range(64):
+        root = (1.0 + root) ** (1.0 / (n + 1))
+    spread = (0.5 + np.arange(1, _MOST_OF_MANY + 1)[:, None] * root ** -np.arange(1.0, n + 1.0)) % 1.0
+    places = np.pi * (2.0 * spread - 1.0)
+    # Every other one next to the middle or the ends of each coordinate, where symmetric systems stay.
+    places[::2] = np.pi * np.rint(places[::2] / np.pi) + 1e-3 * np.arange(1, n + 1)
+    return places
+
+
+def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
+    """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
+    n = len(system.coordinates)
+    if near is None:
+        starts = _starts(n)
+    else:
+        starts = np.atleast_2d(float_array("near", near, None))
+        if starts.shape[1] != n:
+            raise InvalidInput("near", f"expected places of {n} coordinates, got an array of shape {starts.shape}")
+    found = system._model.equilibria(system.t0, np.ascontiguousarray(starts), system._values)
+    reached = np.array([place for place in found if place is not None]).reshape(-1, n)
+    told = np.ones(n, dtype=bool)
+    told[system._structure["cyclic"]] = False
+    if near is None:
+        # All places along a cyclic coordinate are alike.
+        reached[:, ~told] = 0.0
+        reached = reached[np.abs(reached).max(axis=1, initial=0.0) <= np.pi + 1e-6]
+    # Sizes of coordinates: those of the places that are looked at and found.
+    size = np.abs(np.concatenate([starts, reached])).max(axis=0, initial=0.0)
+    size[size == 0.0] = size.max() if size.max() > 0.0 else 1.0
+    # What is 0 but for round-off is shown as such.
+    reached = np.where(np.abs(reached) < 1e-14 * size, 0.0, reached)
+    places: list[NDArray[np.float64]] = []
+    while len(reached):
+        places.append(reached[0])
+        reached = reached[((np.abs(reached - reached[0]) > _SAME * size) & told).any(axis=1)]
+    results, without_mass = [], []
+    for place in sorted(places, key=tuple):
+        if _mass_is_singular(system, place):
+            without_mass.append(place)
+            continue
+        try:
+            small = linearization(system, place)
+        except InvalidInput:
+            # Where Newton's method has stopped, but forces are left.
+            continue
+        results.append(Equilibrium(place, small.stable, small.frequencies))
+    if without_mass and not results:
+        raise InvalidInput(
+            "L",
+            f"the forces vanish at {without_mass[0].round(6).tolist()}, where the mass matrix is singular, as at the "
+            "pole of spherical coordinates: no small motions are told in these; take others there, as x and y",
+        )
+    return results
+
+
+def _mass_is_singular(system: Lagrangian, place: NDArray[np.float64]) -> bool:
+    """Tell whether a coordinate has no mass at a place, but for what the last digits of the place make of it."""
+    try:
+        mass, nudged = (
+            np.abs(system._model.linearized(system.t0, where, system._values)["mass"]).max(axis=1)
+            for where in (place, place * (1.0 + _LAST_DIGITS))
+        )
+    except InvalidInput:
+        return True
+    return bool((np.abs(nudged - mass) > _MADE_OF_THEM * mass).any())
