@@ -56,10 +56,11 @@ def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
         return
     copy, (body, about), steps, fewest = result["too_long"]
     whose = f"in copy {copy}, " if ensemble else ""
+    # A turn may take no time beside a step.
+    shorter = f"a step that is {fewest / steps:.2g} times shorter or less, or " if steps > 0.0 else ""
     message = (
         f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of "
-        f"orbits with fewer than {fewest:g}: take a step that is {fewest / steps:.2g} times shorter or less, or an "
-        "adaptive method (taylor, dop853)"
+        f"orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, dop853)"
     )
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 

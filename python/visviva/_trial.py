@@ -22,6 +22,8 @@ __all__ = ["cost", "stretch"]
 
 # A trial is long enough to tell how fast it goes after this time and so many steps, or after the longest time.
 _SECONDS, _STEPS, _LONGEST = 4e-3, 50, 5e-2
+# The most steps of a first stretch, beyond which nothing is told, and how many times those of the last the next takes.
+_MOST_STEPS, _FASTER = 10_000, 64
 # Copies of an ensemble that are tried, and pairs in a step beyond which none is tried: it would take too long.
 _COPIES = 32
 _PAIRS = 10**8
@@ -58,9 +60,12 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     span = abs(float(asked["times"][-1]) - asked["t0"])
     step = None if asked["time_transformation"] else asked["dt"]
     fraction = min(1.0, abs(step) / span if step is not None and span > 0.0 else 1.0 / 4096.0)
+    tried["max_steps"] = _MOST_STEPS
     while True:
         result, seconds = stretch(tried, fraction)
         stats = result["stats"]
+        # What comes next may be another motion, as of an orbit that decays: of that nothing is told.
+        tried["max_steps"] = _MOST_STEPS + _FASTER * stats["steps"]
         if result["error"] or result["status"].any():
             return None
         few_steps = stats["steps"] < _STEPS * len(few[0])

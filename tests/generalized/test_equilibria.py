@@ -121,7 +121,7 @@ def test_neighbors_that_leave_the_range_of_numbers_are_told_in_shorter_parts() -
     """L = v²/2 + 25 q²: neighbors grow as exp(7.07 t), past the range within an interval of 100."""
     growing = vv.Lagrangian(vx**2 / 2 + 25 * x**2, [x], position=[0.0], velocity=[0.0])
     exponents = growing.lyapunov_exponents(100.0, interval=100.0)
-    # The frame turns to the growing direction once: a constant of the order of ln ω over the time, alike in whole parts.
+    # The frame turns to the growing direction once: some ln ω over the time, alike for all intervals.
     np.testing.assert_allclose(exponents, growing.lyapunov_exponents(100.0), rtol=1e-10)
     np.testing.assert_allclose(exponents, [np.sqrt(50.0), -np.sqrt(50.0)], atol=0.02)
     # Each of some hundreds of e-foldings is known to rtol.

@@ -2,6 +2,7 @@
 
 import pickle
 import warnings
+from time import perf_counter
 
 import numpy as np
 import pytest
@@ -83,3 +84,15 @@ def test_what_cannot_be_tried_says_nothing() -> None:
     falls = vv.Scene(vv.Particles([1.0, 1.0], [[0, 0, 0], [1e-3, 0, 0]]), vv.Gravity(1.0))
     assert falls.plan(1e3, method="dop853").cost() is None
     assert vv.Scene(vv.Particles([], np.zeros((0, 3)))).plan(1.0, method="leapfrog", dt=0.1).cost() is None
+
+
+def test_a_stretch_that_takes_far_more_steps_than_the_last_is_not_told_of() -> None:
+    """A quiet beginning, and a spring a million times as fast from the middle on: the trial ends, and tells nothing."""
+    fast = vv.ExpressionForce(
+        force=lambda r, v, t: (-r[0] * (1.0 + 1e16 * (1.0 + np.tanh(100.0 * (t - 0.6)))), 0.0, 0.0)
+    )
+    scene = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]]), fast)
+    begun = perf_counter()
+    assert scene.plan(1.0, method="dop853").cost() is None
+    # The whole run takes 10⁸ steps: minutes.
+    assert perf_counter() - begun < 10.0

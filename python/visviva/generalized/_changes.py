@@ -202,11 +202,11 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
     scale = np.maximum(np.abs(goal), np.abs(system._start()[:n]))
 
     def missed(
-        other: GeneralizedSystem, *may_fail: type[Exception]
+        other: GeneralizedSystem, may_fail: tuple[type[Exception], ...] = (ConvergenceError,)
     ) -> tuple[float, NDArray[np.float64], NDArray[np.float64]]:
         try:
             reached, jacobian = flow_jacobian(other, t, rtol=rtol, most_steps=_MOST_STEPS_OF_A_TRIAL)
-        except (ConvergenceError, *may_fail):
+        except may_fail:
             return np.inf, np.full(n, np.nan), np.eye(2 * n)
         miss = reached[:n] - goal
         return relative(miss), miss, jacobian
@@ -230,7 +230,7 @@ def boundary_value(system: GeneralizedSystem, t: float, position: ArrayLike, *, 
         # Newton's step, halved until it leads nearer.
         for _ in range(12):
             trial = other._at(None, other._second - change)
-            new_size, new_miss, new_jacobian = missed(trial, InvalidInput)
+            new_size, new_miss, new_jacobian = missed(trial, (ConvergenceError, InvalidInput))
             if new_size < size:
                 break
             change = 0.5 * change

@@ -1,7 +1,7 @@
 """Equilibria: where a system stays, found from many starts, each told once.
 
-The one idea: Newton's method runs from places all over a turn. What it reaches is kept where a force is balanced, and two
-places are one where they differ by round-off, or along a coordinate that nothing depends on.
+The one idea: Newton's method runs from places all over a turn. What it reaches is kept where forces are balanced, and
+two places are one where they differ by round-off, or along a coordinate that nothing depends on.
 """
 
 from __future__ import annotations

@@ -48,8 +48,8 @@ class SmallMotions:
     def equilibria(self: Any, near: ArrayLike | None = None) -> list[Equilibrium]:
         """Places where the system stays, their stability and their frequencies.
 
-        Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in others, the
-        places that the search comes to are told.
+        Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
+        others, the places that the search comes to are told.
 
         Parameters
         ----------
@@ -59,8 +59,8 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For constraints: eliminate them; where equations depend on the time; if the only ones are places where the mass
-            matrix is singular.
+            For constraints: eliminate them; where equations depend on the time; if the only ones are places where the
+            mass matrix is singular.
 
         Examples
         --------
@@ -108,9 +108,9 @@ class SmallMotions:
         Raises
         ------
         InvalidInput
-            For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does, or whose
-            energy does not repeat after it), one on
-            a separatrix, or one that comes to a place where its force is infinite.
+            For several coordinates, an equilibrium, a motion that does not turn back (with ``turn``: that does, or
+            whose energy does not repeat after it), one on a separatrix, or one that comes to a place where its force is
+            infinite.
 
         Notes
         -----

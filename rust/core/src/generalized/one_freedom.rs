@@ -223,17 +223,21 @@ impl OneFreedom {
     fn refuse_unless_it_repeats(&mut self, turn: f64) -> Result<()> {
         let places = core::array::from_fn(|k| self.start + turn * k as f64 / WIDTH as f64);
         let (here, there) = (self.values(places), self.values(places.map(|place| place + turn)));
-        let greatest = |values: [f64; WIDTH]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
+        let greatest =
+            |values: [f64; WIDTH]| values.iter().fold(0.0_f64, |most, value| most.max(value.abs()));
         // An energy has no zero of its own: what is swung through, and what moves, are its sizes.
         let depth = self.kinetic + greatest(here[0].map(|energy| energy - self.at_rest));
         let sizes = [depth, greatest(here[1]), greatest(here[2])];
         for ((here, there), size) in here.iter().zip(there).zip(sizes) {
             // On a kink there is no slope.
-            let differs = |(x, y): (&f64, f64)| !((x - y).abs() <= REPEATS * size || x.is_nan() && y.is_nan());
+            let differs =
+                |(x, y): (&f64, f64)| !((x - y).abs() <= REPEATS * size || x.is_nan() && y.is_nan());
             if here.iter().zip(there).any(differs) {
                 return Err(Error::invalid(
                     "turn",
-                    format!("the energy does not repeat where the coordinate has gone on by {turn}: no period"),
+                    format!(
+                        "the energy does not repeat where the coordinate has gone on by {turn}: no period"
+                    ),
                 ));
             }
         }

@@ -33,6 +33,10 @@ impl Form {
     pub const fn is_empty(self) -> bool {
         self.len() == 0
     }
+    /// Of a state the numbers whose derivatives have to be evaluated: velocities, of the second order.
+    pub fn measured<N>(self, state: &[N]) -> &[N] {
+        &state[self.len() - self.evaluated()..]
+    }
     /// Numbers of a derivative that has to be evaluated: the velocities of the second order are known.
     pub const fn evaluated(self) -> usize {
         match self {

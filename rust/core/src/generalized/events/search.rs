@@ -37,6 +37,9 @@ const UNITS_OF_ROUNDING: f64 = 16.0;
 /// Where a function without a rate is looked at: close to the ends to see which way it leaves and comes.
 const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, INSIDE, 0.625, 0.75, 0.875, 0.984375];
 
+/// What is more than this part of a function beside it, where its sign changes, is no zero: a jump, or a pole.
+const JUMPS: f64 = 1e-6;
+
 /// Parts of a bracket in which a minimum lies come down by the golden section to 1e-8 of it, where a parabola has come
 /// down to round-off.
 const SECTIONS: usize = 40;
@@ -198,8 +201,23 @@ impl<'s> Search<'s> {
     /// The zero between points of different signs.
     fn cross(&mut self, a: Point, b: Point) -> Result<()> {
         let theta = zero([(a.theta, a.value), (b.theta, b.value)], |theta| self.value(theta))?;
-        self.zeros.push((theta, a.value < 0.0));
+        if self.vanishes(theta, a.value.abs().max(b.value.abs()))? {
+            self.zeros.push((theta, a.value < 0.0));
+        }
         Ok(())
+    }
+
+    /// Whether a function of that size beside it is zero where it changes its sign, and does not jump, as an angle from π to −π,
+    /// and has no pole.
+    fn vanishes(&mut self, theta: f64, size: f64) -> Result<bool> {
+        let value = self.value(theta)?.abs();
+        if value <= JUMPS * size {
+            return Ok(true);
+        }
+        // Close to a tangent all values beside it are round-off.
+        let (from, to) = self.step.span();
+        let y = self.step.at(theta)?.to_vec();
+        Ok(value <= rounding(self.function, from + theta * (to - from), &y)?)
     }
 
     /// The zeros of a function without a rate: it is looked at in some places, and followed down where it turns between them.

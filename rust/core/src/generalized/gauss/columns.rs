@@ -40,6 +40,8 @@ pub(super) struct Columns {
     pub(super) sizes: Vec<Lanes>,
     /// The same with the steps that are tried.
     pub(super) tried: Vec<Lanes>,
+    /// What no size is less than, of motions from rest.
+    pub(super) least: Vec<Lanes>,
 }
 
 impl Columns {
@@ -52,7 +54,8 @@ impl Columns {
             places: rows,
             scales: row.clone(),
             sizes: row.clone(),
-            tried: row,
+            tried: row.clone(),
+            least: row,
         }
     }
 
@@ -140,9 +143,10 @@ fn set_scales<V: Vector8>(
     running: Bits,
 ) {
     let mut most = V::zero();
-    let sizes = columns.tried.iter_mut().zip(&columns.sizes);
-    for (((size, known), rates), y) in sizes.zip(&columns.rates).zip(y) {
-        let after = size_of(V::load(*y), &rates[..count], h, fading * V::load(*known));
+    let sizes = columns.tried.iter_mut().zip(&columns.sizes).zip(&columns.least);
+    for ((((size, known), least), rates), y) in sizes.zip(&columns.rates).zip(y) {
+        let known = (fading * V::load(*known)).max(V::load(*least));
+        let after = size_of(V::load(*y), &rates[..count], h, known);
         *size = V::select(running, after, V::load(*size)).store();
         most = after.max(most);
     }
@@ -254,13 +258,13 @@ fn weighted<V: Vector8>(weights: &[Lanes; 2], row: &Row, last: usize) -> V {
 #[inline(always)]
 fn began_wildly_body<V: Vector8>(work: &Work<'_>) -> Bits {
     let Work { table, form, state, columns, h, fading, running, .. } = work;
-    let y =
-        if matches!(form, Form::SecondOrder(_)) { &state.all().0[form.evaluated()..] } else { state.all().0 };
+    let y = form.measured(state.all().0);
     let (h, fading) = (V::load(*h), V::load(*fading));
     let mut wild = Bits(0);
-    let sizes = columns.tried.iter().zip(&columns.sizes);
-    for (((&tried, &known), rates), &y) in sizes.zip(&columns.rates).zip(y) {
-        let size = size_of(V::load(y), &rates[..table.columns()], h, fading * V::load(known));
+    let sizes = columns.tried.iter().zip(&columns.sizes).zip(&columns.least);
+    for ((((&tried, &known), &least), rates), &y) in sizes.zip(&columns.rates).zip(y) {
+        let known = (fading * V::load(known)).max(V::load(least));
+        let size = size_of(V::load(y), &rates[..table.columns()], h, known);
         wild = wild.or(size.less(V::splat(WILD) * V::load(tried)));
     }
     wild.and(*running)
@@ -362,6 +366,20 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
     most.store()
 }
 
+/// By how much the step changes numbers beside what it would without a force, as parts of sizes, in every lane: velocities; of
+/// the first order, by how much their rates differ between stages.
+#[inline(always)]
+fn felt_body<V: Vector8>(form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes {
+    let mut most = V::zero();
+    for (row, &scale) in columns.rates.iter().zip(&columns.scales) {
+        let beside = if matches!(form, Form::SecondOrder(_)) { V::zero() } else { V::load(row[0]) };
+        for &rate in row.iter().take(stages) {
+            most = larger((V::load(rate) - beside).abs() * V::load(h).abs() * V::load(scale), most);
+        }
+    }
+    most.store()
+}
+
 /// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes.
 #[inline(always)]
 fn missed_body<V: Vector8>(
@@ -386,5 +404,6 @@ tiered! {
     pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
     pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
     pub(super) fn missed[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
+    pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
     pub(super) fn astray[][](rates: &Row, guess: &Row, stages: usize) -> Lanes = astray_body;
 }

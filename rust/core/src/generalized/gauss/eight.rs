@@ -4,9 +4,10 @@
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns::{advance, astray, found, led, led_to, missed};
+use super::columns::{advance, astray, felt, found, led, led_to, missed};
 use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
+use super::rest;
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
 use crate::error::Result;
@@ -138,6 +139,23 @@ impl GaussEight {
         missed(&self.ending.weights, self.table.stages, &self.columns, &self.ends, h)
     }
 
+    /// Looks for what motions from rest are measured by, in the lanes of the mask, over the spans of their runs.
+    fn look_ahead(&mut self, y: &[Lanes], lanes: Bits, (begin, span): (Lanes, Lanes)) {
+        for look in 0..rest::LOOKS {
+            let times = core::array::from_fn(|lane| rest::time(look, (begin.0[lane], span.0[lane])));
+            self.machine.run(Lanes(times), y);
+            for (i, least) in self.columns.least.iter_mut().enumerate() {
+                let rates = self.machine.output(i);
+                for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
+                    least.0[lane] = rest::size(least.0[lane], rates.0[lane], span.0[lane]);
+                }
+            }
+        }
+        for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
+            self.taken[lane] += (rest::LOOKS / WIDTH) as u64;
+        }
+    }
+
     fn count(&mut self, iterated: &Iterated, lanes: Bits) {
         for lane in (0..WIDTH).filter(|&lane| lanes.lane(lane)) {
             self.taken[lane] += u64::from(iterated.evaluations[lane]);
@@ -169,16 +187,16 @@ impl Trial<Lanes> for GaussEight {
         _: &Norm<Lanes>,
         _: &mut Ticker<'_>,
     ) -> Result<()> {
-        for size in &mut self.columns.sizes {
+        for size in self.columns.sizes.iter_mut().chain(&mut self.columns.least) {
             *size = Lanes::select(fresh, Lanes::zero(), *size);
         }
         if matches!(self.steps, Steps::Chosen { .. }) {
             self.machine.run(Lanes::splat(self.t0) + clock.elapsed, state.all().0);
         }
         for lane in (0..WIDTH).filter(|&lane| fresh.lane(lane)) {
-            self.paces[lane] = Pace::default();
             (self.taken[lane], self.lost[lane]) = (0, None);
             let span = clock.end.0[lane] - clock.elapsed.0[lane];
+            self.paces[lane] = Pace::over(span);
             clock.h.0[lane] = match self.steps {
                 Steps::Equal(h) => h.copysign(span),
                 Steps::Chosen { .. } => {
@@ -188,6 +206,15 @@ impl Trial<Lanes> for GaussEight {
                     first_step(self.form, (y, rate), (span, self.longest))
                 }
             };
+        }
+        if matches!(self.steps, Steps::Chosen { held: false, .. }) {
+            let y = state.all().0;
+            let rests = |lane: usize| self.form.measured(y).iter().all(|y| y.0[lane] == 0.0);
+            let at_rest = self.lanes(|lane, _| rests(lane)).and(fresh);
+            if at_rest.any() {
+                let begin = Lanes::splat(self.t0) + clock.elapsed;
+                self.look_ahead(y, at_rest, (begin, clock.end - clock.elapsed));
+            }
         }
         Ok(())
     }
@@ -213,10 +240,12 @@ impl Trial<Lanes> for GaussEight {
         advance(&work, &mut self.next);
         self.count(&iterated, running);
         let smoothness = self.smoothness(h, running);
+        let felt = felt(self.form, self.table.stages, &self.columns, h);
         for lane in (0..WIDTH).filter(|&lane| running.lane(lane)) {
             let (pace, converged) = (&mut self.paces[lane], iterated.converged.lane(lane));
             pace.converged = converged;
             pace.delta = if converged { smoothness.0[lane] } else { f64::INFINITY };
+            pace.felt = if converged { felt.0[lane] } else { f64::INFINITY };
         }
         let missed = self.missed(t + h, h, running);
         let mut errors = Lanes::zero();

@@ -29,6 +29,11 @@ const STEPS_BEFORE_HOLDING: u64 = 10;
 /// The first step, as a fraction of the time in which numbers change by as much as they are.
 const FIRST: f64 = 0.05;
 
+/// Where a step changes velocities by less than this part of them, nothing of what lies ahead is felt …
+const FREE: f64 = 1e-3;
+/// … and it is as long as this part of the run at most: forces that are short beside a step are between its stages.
+const LONGEST_FREE: f64 = 1.0 / 128.0;
+
 /// What is left of a size a step later: a motion that stops at its turning points is no slow one.
 pub(super) const FADING: f64 = 0.95;
 
@@ -59,6 +64,10 @@ pub(super) struct Pace {
     pub(super) converged: bool,
     /// By how much the rates at its end are not what the stages lead to.
     pub(super) missed: f64,
+    /// By how much it changed velocities, as a part of them.
+    pub(super) felt: f64,
+    /// The longest step that feels nothing.
+    pub(super) longest_free: f64,
     /// δ of the steps before it that were kept, the older the less.
     lately: f64,
     /// Whether steps are held.
@@ -66,6 +75,11 @@ pub(super) struct Pace {
 }
 
 impl Pace {
+    /// At the beginning of a span.
+    pub(super) fn over(span: f64) -> Self {
+        Self { longest_free: LONGEST_FREE * span.abs(), ..Self::default() }
+    }
+
     /// Whether the step that was tried is taken again.
     pub(super) fn refuses(&self, steps: Steps, ending: &Ending) -> bool {
         match steps {
@@ -122,6 +136,7 @@ impl Pace {
             h * Real::min(Real::max(factor, 0.3), fast)
         };
         self.holding = held && self.kept == STEPS_BEFORE_HOLDING;
+        let longest = if self.felt < FREE { Real::min(longest, self.longest_free) } else { longest };
         if next.abs() > longest { longest.copysign(next) } else { next }
     }
 
@@ -159,7 +174,7 @@ pub(super) fn first_step(
             least = time;
         }
     }
-    let first = Real::min(Real::min(FIRST * least, span.abs()), longest);
+    let first = Real::min(Real::min(FIRST * least, LONGEST_FREE * span.abs()), longest);
     (if first > 0.0 { first } else { Real::min(1e-3, span.abs()) }).copysign(span)
 }
 

@@ -10,6 +10,7 @@ use super::pace::FADING;
 use crate::expressions::Machine;
 use crate::expressions::execute::{self, Part, Scalar};
 use crate::numerics::lanes::{Lanes, Vector8, WIDTH};
+use crate::numerics::real::Real;
 use crate::ode::state::State;
 use crate::ode::system::Form;
 use crate::tiered;
@@ -44,6 +45,8 @@ pub(super) struct Stages {
     pub(super) sizes: Vec<f64>,
     /// The same with the step that is tried.
     pub(super) tried: Vec<f64>,
+    /// What no size is less than, of a motion from rest.
+    pub(super) least: Vec<f64>,
 }
 
 impl Stages {
@@ -56,14 +59,17 @@ impl Stages {
             scales: vec![0.0; evaluated],
             sizes: vec![0.0; evaluated],
             tried: vec![0.0; evaluated],
+            least: vec![0.0; evaluated],
         }
     }
 
     /// Whether what stages were found by is far more than they came to: they began with wild rates, as of a way into a steep
     /// wall, and beside those anything has converged.
     fn began_wildly(&self, y: &[f64], h: f64, fading: f64) -> bool {
-        let mut sizes = self.tried.iter().zip(&self.sizes).zip(&self.rates).zip(y);
-        sizes.any(|(((&tried, &known), rates), &y)| size(y, rates, h, fading * known) < WILD * tried)
+        let mut sizes = self.tried.iter().zip(&self.sizes).zip(&self.least).zip(&self.rates).zip(y);
+        sizes.any(|((((&tried, &known), &least), rates), &y)| {
+            size(y, rates, h, Real::max(fading * known, least)) < WILD * tried
+        })
     }
 
     /// Remembers how large numbers were in the step that was tried. One that was not kept leaves what it met beside what was
@@ -168,9 +174,9 @@ fn size(y: f64, rates: &Lanes, h: f64, before: f64) -> f64 {
 #[inline(always)]
 fn set_scales(stages: &mut Stages, y: &[f64], h: f64, fading: f64) {
     let mut most = 0.0;
-    let sizes = stages.tried.iter_mut().zip(&stages.sizes);
-    for (((tried, known), rates), y) in sizes.zip(&stages.rates).zip(y) {
-        *tried = size(*y, rates, h, fading * *known);
+    let sizes = stages.tried.iter_mut().zip(&stages.sizes).zip(&stages.least);
+    for ((((tried, known), least), rates), y) in sizes.zip(&stages.rates).zip(y) {
+        *tried = size(*y, rates, h, Real::max(fading * *known, *least));
         most = if *tried > most { *tried } else { most };
     }
     for (scale, &size) in stages.scales.iter_mut().zip(&stages.tried) {
@@ -229,9 +235,7 @@ fn iterate_body<V: Vector8 + Scalar>(work: &mut Work<'_>) -> Iterated {
 /// Finds the stages from `stages.rates` on, measured by what they come to.
 pub(super) fn found(work: &mut Work<'_>) -> Iterated {
     let mut all = iterate(work);
-    let evaluated = work.form.evaluated();
-    let y = work.state.all().0;
-    let y = if matches!(work.form, Form::SecondOrder(_)) { &y[evaluated..] } else { y };
+    let y = work.form.measured(work.state.all().0);
     let wild = |work: &Work<'_>| work.stages.began_wildly(y, work.h, work.fading);
     for _ in 0..AGAIN {
         if !all.converged || !wild(work) {

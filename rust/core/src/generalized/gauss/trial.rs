@@ -6,6 +6,7 @@
 
 use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
+use super::rest;
 use super::step::{Iterated, Stages, Work, advance, found, largest, led};
 use super::{Method, Table};
 use crate::error::{Error, Result};
@@ -129,6 +130,38 @@ impl GaussStep {
         most
     }
 
+    /// By how much the step changes numbers beside what it would without a force, as parts of sizes: velocities; of the first
+    /// order, by how much their rates differ between stages.
+    fn felt(&self, h: f64) -> f64 {
+        let second_order = matches!(self.form, Form::SecondOrder(_));
+        let mut most = 0.0;
+        for (rates, scale) in self.stages.rates.iter().zip(&self.stages.scales) {
+            let beside = if second_order { 0.0 } else { rates.0[0] };
+            for rate in &rates.0[..self.table.stages] {
+                let felt = (rate - beside).abs() * h.abs() * scale;
+                most = if felt <= most { most } else { felt };
+            }
+        }
+        most
+    }
+
+    /// Looks for what a motion from rest is measured by.
+    fn look_ahead(&mut self, y: &[f64], (begin, span): (f64, f64)) {
+        for (register, &y) in self.machine.state().iter_mut().zip(y) {
+            *register = Lanes([y; WIDTH]);
+        }
+        for first in (0..rest::LOOKS).step_by(WIDTH) {
+            let times = core::array::from_fn(|lane| rest::time(first + lane, (begin, span)));
+            self.machine.run(Lanes(times));
+            self.evaluations += 1;
+            for (i, least) in self.stages.least.iter_mut().enumerate() {
+                for rate in self.machine.output(i).0 {
+                    *least = rest::size(*least, rate, span);
+                }
+            }
+        }
+    }
+
     /// By how much the rates at the end of the step are not those that the stages lead to, as a part of a size.
     fn missed(&mut self, t: f64, h: f64) -> f64 {
         led(&self.ending.weights, &self.stages.rates, &mut self.led);
@@ -158,6 +191,7 @@ impl Trial<f64> for GaussStep {
         _: &mut Ticker<'_>,
     ) -> Result<()> {
         let span = clock.end - clock.elapsed;
+        self.pace = Pace::over(span);
         if let Steps::Equal(h) = self.steps {
             clock.h = h.copysign(span);
         } else if clock.h == 0.0 {
@@ -170,6 +204,11 @@ impl Trial<f64> for GaussStep {
             self.evaluations += 1;
             let rate = |i: usize| self.machine.output(i).0[0];
             clock.h = first_step(self.form, (|i: usize| y[i], rate), (span, self.max_step));
+            let moves = |y: &f64| *y != 0.0;
+            let is_driven = matches!(self.steps, Steps::Chosen { held: false, .. });
+            if is_driven && !self.form.measured(y).iter().any(moves) {
+                self.look_ahead(y, (self.t0 + clock.elapsed, span));
+            }
         }
         Ok(())
     }
@@ -190,6 +229,7 @@ impl Trial<f64> for GaussStep {
         let iterated = self.iterated(t, h, state);
         self.pace.converged = iterated.converged;
         self.pace.delta = if iterated.converged { self.smoothness(h) } else { f64::INFINITY };
+        self.pace.felt = if iterated.converged { self.felt(h) } else { f64::INFINITY };
         self.pace.missed = if self.pace.missable(self.steps) { self.missed(t + h, h) } else { 0.0 };
         if !iterated.converged && matches!(self.steps, Steps::Equal(_)) {
             return Err(Error::Convergence { message: no_convergence(h), time: t });
