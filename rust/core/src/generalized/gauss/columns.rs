@@ -366,18 +366,19 @@ fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
     most.store()
 }
 
-/// By how much the step changes numbers beside what it would without a force, as parts of sizes, in every lane: velocities; of
-/// the first order, by how much their rates differ between stages.
+/// By how much the step changes velocities, as parts of them, in every lane; of the first order, where rates that differ between
+/// stages change numbers with the square of the step, the root of that.
 #[inline(always)]
 fn felt_body<V: Vector8>(form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes {
+    let second_order = matches!(form, Form::SecondOrder(_));
     let mut most = V::zero();
     for (row, &scale) in columns.rates.iter().zip(&columns.scales) {
-        let beside = if matches!(form, Form::SecondOrder(_)) { V::zero() } else { V::load(row[0]) };
+        let beside = if second_order { V::zero() } else { V::load(row[0]) };
         for &rate in row.iter().take(stages) {
             most = larger((V::load(rate) - beside).abs() * V::load(h).abs() * V::load(scale), most);
         }
     }
-    most.store()
+    if second_order { most.store() } else { Lanes(most.store().0.map(f64::sqrt)) }
 }
 
 /// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes.

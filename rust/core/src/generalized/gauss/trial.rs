@@ -130,8 +130,8 @@ impl GaussStep {
         most
     }
 
-    /// By how much the step changes numbers beside what it would without a force, as parts of sizes: velocities; of the first
-    /// order, by how much their rates differ between stages.
+    /// By how much the step changes velocities, as parts of them; of the first order, where rates that differ between stages
+    /// change numbers with the square of the step, the root of that.
     fn felt(&self, h: f64) -> f64 {
         let second_order = matches!(self.form, Form::SecondOrder(_));
         let mut most = 0.0;
@@ -142,7 +142,7 @@ impl GaussStep {
                 most = if felt <= most { most } else { felt };
             }
         }
-        most
+        if second_order { most } else { most.sqrt() }
     }
 
     /// Looks for what a motion from rest is measured by.
