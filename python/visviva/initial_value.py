@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -26,6 +26,8 @@ __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
 Function: TypeAlias = Callable[..., Any]
 
 _SMALLEST_RTOL = 100 * 2.0**-52
+#: Roundings of the time in the shortest step, as in SciPy.
+_ROUNDINGS = 10.0
 
 
 @known_keywords
@@ -136,6 +138,48 @@ class OdeResult:
         True
         """
         return [field.name for field in fields(self)]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.keys())
+
+    def __len__(self) -> int:
+        return len(self.keys())
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.keys()
+
+    def get(self, name: str, default: Any = None) -> Any:
+        """Give a field by name, or something else where there is none of that name.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).get("status")
+        0
+        """
+        return self[name] if name in self else default
+
+    def values(self) -> list[Any]:
+        """All fields, in the order of their names.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> len(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).values())
+        11
+        """
+        return [self[name] for name in self]
+
+    def items(self) -> list[tuple[str, Any]]:
+        """Names and fields.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> dict(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).items())["success"]
+        True
+        """
+        return [(name, self[name]) for name in self]
 
     def __repr__(self) -> str:
         return (
@@ -258,15 +302,20 @@ def solve_ivp(
         raise InvalidInput("fun", f"expected a function f(t, y) or a compiled one, got {type(fun).__name__}")
     if native is not None and vectorized:
         raise InvalidInput("vectorized", "expected False for a compiled function, got True; leave vectorized out")
+    span = _span(t_span)
+    first = None if first_step is None else number("first_step", first_step)
+    longest = None if max_step is None or max_step == math.inf else number("max_step", max_step)
+    if first is not None and longest is not None and 0.0 < longest < first <= abs(span[1] - span[0]):
+        first = longest
     asked: _core._Problem = {
         "method": _method(method),
-        "span": _span(t_span),
+        "span": span,
         "y0": _state(y0),
         "rtol": _relative(rtol),
         "atol": None if atol is None else _tolerance("atol", atol),
-        "first_step": None if first_step is None else number("first_step", first_step),
-        "max_step": None if max_step is None or max_step == math.inf else number("max_step", max_step),
-        "dt": None if dt is None else number("dt", dt),
+        "first_step": first,
+        "max_step": longest,
+        "dt": None if dt is None else _fixed_step(dt, span),
         "t_eval": None if t_eval is None else float_array("t_eval", t_eval, (None,)),
         "dense_output": bool(dense_output),
         "events": _events(events),
@@ -312,8 +361,15 @@ def _warn_of_what_has_no_effect(given: dict[str, object]) -> None:
 
 
 def _method(method: object) -> str:
-    # SciPy takes its classes too; they have the names.
-    name = method.__name__ if isinstance(method, type) else method
+    if isinstance(method, type):
+        # SciPy takes its classes too; they have the names. What others do is theirs alone.
+        if not method.__module__.startswith("scipy.integrate."):
+            raise InvalidInput(
+                "method",
+                f"expected a name, got the class {method.__qualname__}; scipy.integrate.solve_ivp runs solvers",
+            )
+        return method.__name__
+    name = method
     if not isinstance(name, str):
         raise InvalidInput("method", f"expected a name, got {type(method).__name__}")
     return name if name.isascii() else name.encode(errors="replace").decode()
@@ -325,7 +381,23 @@ def _span(t_span: object) -> tuple[float, float]:
         raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}")
     t0, end = times
     endless = isinstance(end, float | np.floating) and math.isinf(end)
-    return number("t_span", t0), float(end) if endless else number("t_span", end)
+    start, last = number("t_span", t0), float(end) if endless else number("t_span", end)
+    if not endless and math.isinf(last - start):
+        raise InvalidInput("t_span", f"expected times that are less than 1.8e308 apart, got {start:g} and {last:g}")
+    return start, last
+
+
+def _fixed_step(dt: object, span: tuple[float, float]) -> float:
+    """Give a step, of ten roundings of the time at least: shorter ones would be others than was asked."""
+    step = number("dt", dt)
+    farthest = max((time for time in span if math.isfinite(time)), key=abs)
+    if farthest + step != farthest and 0.0 < step < _ROUNDINGS * math.ulp(farthest):
+        raise InvalidInput(
+            "dt",
+            f"expected a step of at least {_ROUNDINGS * math.ulp(farthest):.3g}, ten roundings of the time "
+            f"{farthest:g}, got {step:g}; count time from the start of the run",
+        )
+    return step
 
 
 def _state(y0: object) -> NDArray[np.float64]:
