@@ -157,7 +157,7 @@ class OdeResult:
         >>> vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).get("status")
         0
         """
-        return self[name] if name in self else default
+        return getattr(self, name) if name in self.keys() else default
 
     def values(self) -> list[Any]:
         """All fields, in the order of their names.

@@ -173,11 +173,12 @@ def the_work_of_the_forces_is_the_kinetic_energy_gained(recipe: Recipe) -> None:
         signs = rng.choice([-1.0, 1.0], (2, *x[node].shape))
         moved = power(x[node] + error_x * signs[0], v[node] + error_v * signs[1], t[node])
         off = max(off, abs(moved - powers[node]))
-    # One node that stands out is a fiftieth of the largest power over the span, for one rule and not for the other.
-    if abs(work - coarse) > 1e-2 * span * float(np.abs(powers).max()):
-        raise Refused("powers that are felt at single nodes only, of which the rule tells nothing")
     momentum = float((mass[:, None] * np.abs(v)).sum(axis=(1, 2)).max())
-    size = span * float(np.abs(powers).max()) + float(kinetic.max())
+    most = span * float(np.abs(powers).max())
+    size = most + float(kinetic.max())
+    # One node that stands out is a fiftieth of the largest power over the span, for one rule and not for the other.
+    if abs(work - coarse) > max(1e-2 * most, 1e-10 * size):
+        raise Refused("powers that are felt at single nodes only, of which the rule tells nothing")
     # Powers are smooth on the scale of the span; the rule then errs by 1e-12 of them, and of those that change faster
     # by less than an eighth of what twice the interval does.
     allowed = 4 * (span * off + momentum * error_v) + 1e-10 * size + abs(work - coarse) / 8.0

@@ -28,7 +28,7 @@ def test_no_step_is_longer_than_the_longest_also_the_first() -> None:
 @pytest.mark.parametrize(("span", "dt"), [((1.7e9, 1.7e9 + 1e-3), 1e-6), ((1e15, 1e15 + 1.0), 0.13)])
 def test_a_step_that_the_time_rounds_is_refused(span: tuple[float, float], dt: float) -> None:
     """Steps of ten roundings were taken in its place: 420 for 1000."""
-    with pytest.raises(vv.InvalidInput, match="roundings of the time|moves the time"):
+    with pytest.raises(vv.InvalidInput, match=r"roundings of the time|moves the time"):
         vv.solve_ivp(lambda t, y: -y, span, [1.0], "euler", dt=dt)
 
 
@@ -60,3 +60,30 @@ def test_a_solver_of_the_users_own_is_refused() -> None:
     with pytest.raises(vv.InvalidInput, match=r"the class .*RK45; scipy.integrate.solve_ivp runs"):
         vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], RK45)
     assert vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], integrate.RK45).success
+
+
+@pytest.mark.parametrize("t0", [0.0, 2.46e6, -7.5e8, 1.7e9])
+@pytest.mark.parametrize("method", ["DOP853", "RK45"])
+def test_times_far_from_zero_cost_no_digits(t0: float, method: str) -> None:
+    """In seconds since 1970 half a rounding is 1e-7: nodes, outputs, events and the solution are at their own times."""
+    rate = 2 * np.pi
+    outputs = t0 + np.arange(41) * 0.25
+
+    def turns(t: float, y: np.ndarray) -> list[float]:
+        return [rate * y[1], -rate * y[0]]
+
+    def asked(**more: object) -> vv.OdeResult:
+        return vv.solve_ivp(turns, (t0, t0 + 10.0), [0.0, 1.0], method, rtol=1e-10, atol=1e-11, **more)
+
+    # What a turn of rtol 1e-10 comes to after ten turns, with what RK45's interpolant adds.
+    off = 2e-8
+    at_times, nodes = asked(t_eval=outputs), asked(dense_output=True, events=lambda t, y: y[0] - 0.3)
+    assert np.abs(at_times.y[0] - np.sin(rate * (outputs - t0))).max() < off
+    assert np.abs(nodes.y[0] - np.sin(rate * (nodes.t - t0))).max() < off
+    assert nodes.sol is not None
+    assert np.abs(nodes.sol(outputs)[0] - np.sin(rate * (outputs - t0))).max() < off
+    assert nodes.t_events is not None
+    assert nodes.y_events is not None
+    # An event's time is a number; what moves in half its rounding is the state's.
+    assert np.abs(nodes.y_events[0][:, 0] - 0.3).max() < rate * np.spacing(abs(t0)) + off
+    assert len(nodes.t_events[0]) == 20

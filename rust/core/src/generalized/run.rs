@@ -19,7 +19,7 @@ use crate::numerics::lanes::{Lanes, WIDTH};
 use crate::ode::embedded::EmbeddedStep;
 use crate::ode::events::Watch as Unwatched;
 use crate::ode::norm::{Norm, RootMeanSquare};
-use crate::ode::run::{Ending, Recorder, Step, run};
+use crate::ode::run::{Ending, Recorder, Step, Times, run};
 use crate::ode::state::State;
 use crate::ode::step_control::{Controlled, Rule};
 use crate::ode::system::{Form, System};
@@ -329,14 +329,14 @@ impl Drive<'_, '_, '_> {
         recorder: &mut dyn Recorder,
         mut seen: impl FnMut(&T),
     ) -> Result<Ending> {
-        let span = (self.request.span, None);
+        let times = Times { span: self.request.span, first_step: None, nodes_are_numbers: false };
         let Some(projector) = projector else {
-            let ending = run(&mut trial, self.system, self.state, self.norm, span, recorder, self.ticker);
+            let ending = run(&mut trial, self.system, self.state, self.norm, times, recorder, self.ticker);
             seen(&trial);
             return ending;
         };
         let mut trial = Projected::new(trial, projector, self.state, self.request.span.0);
-        let ending = run(&mut trial, self.system, self.state, self.norm, span, recorder, self.ticker);
+        let ending = run(&mut trial, self.system, self.state, self.norm, times, recorder, self.ticker);
         seen(&trial.inner);
         ending
     }

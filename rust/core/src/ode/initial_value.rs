@@ -9,7 +9,7 @@ use super::equal_steps::EqualSteps;
 use super::events::{Condition, Events, Watch, Zeros};
 use super::extension::Extension;
 use super::norm::{Norm, RootMeanSquare};
-use super::run::{Ending, run};
+use super::run::{Ending, Times, run};
 use super::state::State;
 use super::step_control::Rule;
 use super::system::{Form, System};
@@ -276,13 +276,17 @@ pub fn solve<'a>(
             outcome => outcome.map(|()| Ending::Finished)?,
         }
     } else {
-        let start = (request.span, request.first_step);
+        let times = |nodes_are_numbers: bool| Times {
+            span: request.span,
+            first_step: request.first_step,
+            nodes_are_numbers,
+        };
         match &mut trial {
             Work::Embedded(trial) => {
-                run(&mut **trial, &mut system, &mut state, &norm, start, &mut table, ticker)?
+                run(&mut **trial, &mut system, &mut state, &norm, times(true), &mut table, ticker)?
             }
             Work::Equal(trial) => {
-                run(&mut **trial, &mut system, &mut state, &norm, start, &mut table, ticker)?
+                run(&mut **trial, &mut system, &mut state, &norm, times(false), &mut table, ticker)?
             }
         }
     };

@@ -134,6 +134,18 @@ impl Step<'_, '_> {
     }
 }
 
+/// When a run begins and ends, and where its nodes are.
+#[derive(Clone, Copy, Debug)]
+pub struct Times {
+    /// From the first time to the second.
+    pub span: (f64, f64),
+    /// The first step, if it is not chosen.
+    pub first_step: Option<f64>,
+    /// Whether steps end at times that are numbers: far from zero the time of a node that is told is else another than its own,
+    /// by half a rounding, in which a fast motion goes farther than it errs. Of steps that have to be equal it is not asked.
+    pub nodes_are_numbers: bool,
+}
+
 /// Runs a system from one time to another, neither of which need be smaller. The clock and the system count time from the
 /// first; the first step is chosen unless it is given. The state is that of the last kept step.
 ///
@@ -144,11 +156,11 @@ pub fn run<T: Trial<f64>>(
     system: &mut dyn System<f64>,
     state: &mut State<f64>,
     norm: &Norm<f64>,
-    ((t0, end), first_step): ((f64, f64), Option<f64>),
+    times: Times,
     recorder: &mut dyn Recorder,
     ticker: &mut Ticker<'_>,
 ) -> Result<Ending> {
-    let ending = steps(trial, system, state, norm, ((t0, end), first_step), recorder, ticker);
+    let ending = steps(trial, system, state, norm, times, recorder, ticker);
     if ending == Err(Error::Interrupted) { Ok(Ending::Interrupted) } else { ending }
 }
 
@@ -157,7 +169,7 @@ fn steps<T: Trial<f64>>(
     system: &mut dyn System<f64>,
     state: &mut State<f64>,
     norm: &Norm<f64>,
-    ((t0, end), first_step): ((f64, f64), Option<f64>),
+    Times { span: (t0, end), first_step, nodes_are_numbers }: Times,
     recorder: &mut dyn Recorder,
     ticker: &mut Ticker<'_>,
 ) -> Result<Ending> {
@@ -175,6 +187,10 @@ fn steps<T: Trial<f64>>(
         }
         let outcome = loop {
             ticker.tick()?;
+            if nodes_are_numbers && t0 != 0.0 {
+                let node = t0 + (clock.elapsed + clock.h);
+                clock.h = (node - t0) - clock.elapsed;
+            }
             let outcome = trial.attempt(true, system, state, &mut clock, norm, ticker)?;
             if outcome.accepted {
                 break outcome;
