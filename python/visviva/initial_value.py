@@ -151,6 +151,17 @@ class OdeResult:
     def get(self, name: str, default: Any = None) -> Any:
         """Give a field by name, or something else where there is none of that name.
 
+        Parameters
+        ----------
+        name : str
+            The name.
+        default : object, optional
+            What is given in its place.
+
+        Returns
+        -------
+        object
+
         Examples
         --------
         >>> import visviva as vv
