@@ -62,7 +62,7 @@ NO_EXAMPLE = {f"CompiledTorque.{name}" for name in ("core_arguments", "rotated",
 #: They do what they say with whatever they are given: turn, put together, look up.
 REFUSE_NOTHING = {
     *NO_EXAMPLE, "AppliedTorque.rotated", "AttachedSpring.rotated", "RigidBodies.rotated", "WorkPrecision.joined",
-    "forces.Force.rotated", "generalized.Expression.arctan2",
+    "forces.Force.rotated", "generalized.Expression.arctan2", "OdeResult.get",
 }  # fmt: skip
 
 
