@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import math
 import warnings
-from collections.abc import Callable, Iterable, Iterator, Sequence
-from dataclasses import dataclass, fields
+from collections.abc import Callable, Iterable, Sequence
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
@@ -14,6 +13,7 @@ from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._compiled import compiled
 from visviva._keywords import known_keywords
+from visviva._ode_result import OdeResult, OdeSolution
 from visviva.errors import Interrupted, InvalidInput
 
 if TYPE_CHECKING:
@@ -28,175 +28,6 @@ Function: TypeAlias = Callable[..., Any]
 _SMALLEST_RTOL = 100 * 2.0**-52
 #: Roundings of the time in the shortest step, as in SciPy.
 _ROUNDINGS = 10.0
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeSolution:
-    """The solution between its nodes: a polynomial for each step.
-
-    Attributes
-    ----------
-    ts : (S + 1,) ndarray
-        The nodes.
-    t_min, t_max : float
-        The ends of the span that it is good for; beyond them it is what the outermost steps say.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> solution = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0], rtol=1e-10, atol=1e-12, dense_output=True).sol
-    >>> abs(float(solution(1.0)[0]) - 0.36787944117) < 1e-9
-    True
-    """
-
-    ts: NDArray[np.float64]
-    _extension: tuple[NDArray[np.float64], ...]
-
-    @property
-    def t_min(self) -> float:
-        """The smaller end of the span."""
-        return float(min(self.ts[0], self.ts[-1]))
-
-    @property
-    def t_max(self) -> float:
-        """The larger end of the span."""
-        return float(max(self.ts[0], self.ts[-1]))
-
-    def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate the solution: shape (n,) at one time, (n, T) at T times."""
-        times = float_array("t", t, None)
-        if times.ndim > 1:
-            raise InvalidInput("t", f"expected one time or an array of times, got shape {times.shape}")
-        states = _core.interpolate(self._extension, times.reshape(-1))
-        return states[0] if times.ndim == 0 else states.T
-
-    def __repr__(self) -> str:
-        return f"<OdeSolution of {len(self.ts) - 1} steps from t = {self.ts[0]} to {self.ts[-1]}>"
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeResult:
-    """What `solve_ivp` gives, with the fields of SciPy's result.
-
-    Attributes
-    ----------
-    t : (T,) ndarray
-        Times: the nodes, or `t_eval` as far as the run came.
-    y : (n, T) ndarray
-        States there.
-    sol : OdeSolution or None
-        The solution as a function of time, if `dense_output`.
-    t_events : list of ndarray or None
-        For each event the times of its zeros.
-    y_events : list of ndarray or None
-        The states there, one in a row.
-    nfev : int
-        Evaluations of the right-hand side.
-    njev, nlu : int
-        Always 0: no method here takes Jacobians.
-    status : int
-        0 at the end of the span, 1 at an event that ends the run, -1 if the run could not go on.
-    message : str
-        The same in words.
-    success : bool
-        Whether `status` is not -1.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> found = vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], rtol=1e-10, atol=1e-12)
-    >>> found.status, found.success, found["y"][:, -1].round(9)
-    (0, True, array([0.36787944]))
-    """
-
-    t: NDArray[np.float64]
-    y: NDArray[np.float64]
-    sol: OdeSolution | None
-    t_events: list[NDArray[np.float64]] | None
-    y_events: list[NDArray[np.float64]] | None
-    nfev: int
-    njev: int
-    nlu: int
-    status: int
-    message: str
-    success: bool
-
-    def __getitem__(self, name: str) -> Any:
-        if name not in self.keys():
-            raise KeyError(name)
-        return getattr(self, name)
-
-    def keys(self) -> list[str]:
-        """Names of the fields, so that ``dict(result)`` works.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> "y" in vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).keys()
-        True
-        """
-        return [field.name for field in fields(self)]
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self.keys())
-
-    def __len__(self) -> int:
-        return len(self.keys())
-
-    def __contains__(self, name: object) -> bool:
-        return name in self.keys()
-
-    def get(self, name: str, default: Any = None) -> Any:
-        """Give a field by name, or something else where there is none of that name.
-
-        Parameters
-        ----------
-        name : str
-            The name.
-        default : object, optional
-            What is given in its place.
-
-        Returns
-        -------
-        object
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).get("status")
-        0
-        """
-        return getattr(self, name) if name in self.keys() else default
-
-    def values(self) -> list[Any]:
-        """All fields, in the order of their names.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> len(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).values())
-        11
-        """
-        return [self[name] for name in self]
-
-    def items(self) -> list[tuple[str, Any]]:
-        """Names and fields.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> dict(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).items())["success"]
-        True
-        """
-        return [(name, self[name]) for name in self]
-
-    def __repr__(self) -> str:
-        return (
-            f"OdeResult(status={self.status}, message={self.message!r}, nfev={self.nfev}, t of {len(self.t)}, "
-            f"y of shape {np.shape(self.y)})"
-        )
 
 
 @known_keywords

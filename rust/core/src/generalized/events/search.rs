@@ -201,7 +201,7 @@ impl<'s> Search<'s> {
     /// The zero between points of different signs.
     fn cross(&mut self, a: Point, b: Point) -> Result<()> {
         let theta = zero([(a.theta, a.value), (b.theta, b.value)], |theta| self.value(theta))?;
-        if self.vanishes(theta, a.value.abs().max(b.value.abs()))? {
+        if self.vanishes(theta, a.value.abs().max(b.value.abs()))? || self.switches(theta, [a, b])? {
             self.zeros.push((theta, a.value < 0.0));
         }
         Ok(())
@@ -218,6 +218,16 @@ impl<'s> Search<'s> {
         let (from, to) = self.step.span();
         let y = self.step.at(theta)?.to_vec();
         Ok(value <= rounding(self.function, from + theta * (to - from), &y)?)
+    }
+
+    /// Whether a function has one value on either side of a place: a switch, of which the jump is the event.
+    fn switches(&mut self, theta: f64, sides: [Point; 2]) -> Result<bool> {
+        for side in sides {
+            if self.value(0.5 * (side.theta + theta))? != side.value {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// The zeros of a function without a rate: it is looked at in some places, and followed down where it turns between them.

@@ -146,8 +146,9 @@ fn a_function_that_is_called_is_followed_down() {
     let found = called(|q| (q - 0.3) * (q - 0.300_1));
     assert_eq!(found.len(), 2);
     assert!((found[0].0 - 0.3).abs() < 1e-14 && (found[1].0 - 0.300_1).abs() < 1e-14);
-    // A leap is a change of sign; what is no number is none.
+    // The jump of a switch is its event; that of what goes on beside it is none, and neither is what is no number.
     assert_eq!(called(|q| if q < 0.7 { -1.0 } else { 2.0 }).len(), 1);
+    assert!(called(|q| if q < 0.7 { q - 1.0 } else { 2.0 * q }).is_empty());
     assert!(called(|_| f64::NAN).is_empty());
     assert!(called(|_| 0.0).is_empty());
     // A zero at the start was told of before; one at the end counts.

@@ -4,10 +4,11 @@
 //! decides, as it does for one trajectory ([`trial`](super::trial)).
 
 use super::columns::{AT_ONCE, Columns, NOTHING, Row, Settled as Iterated, Work};
-use super::columns::{advance, astray, felt, found, led, led_to, missed};
+use super::columns::{advance, found};
 use super::ending::Ending;
 use super::pace::{Pace, Steps, first_step};
 use super::rest;
+use super::told::{astray, felt, led, led_to, missed};
 use super::trial::{NO_SHADOW, no_convergence};
 use super::{Method, Table};
 use crate::error::Result;

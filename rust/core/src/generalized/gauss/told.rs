@@ -1,0 +1,90 @@
+//! What eight steps tell: where the polynomials through their stages lead, how far they lead astray, what they miss and feel.
+//!
+//! The one idea: lanes are trajectories, as in [`columns`](super::columns), and every lane has what [`trial`](super::trial) asks
+//! of one.
+
+use super::Table;
+use super::columns::{Columns, Row, combined, larger};
+use crate::numerics::lanes::{Bits, Lanes, Vector8, WIDTH};
+use crate::ode::system::Form;
+use crate::tiered;
+
+/// Where the polynomial through the stages leads, to the stages of the next steps.
+#[inline(always)]
+fn led_body<V: Vector8>(weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) {
+    for (to, row) in to.iter_mut().zip(rates) {
+        for place in 0..stages {
+            to[place] = combined!(stages, row, j => V::splat(weights[j].0[place])).store();
+        }
+    }
+}
+
+/// Where the polynomial through the stages leads, to these fractions of the step, in the lanes of the mask.
+#[inline(always)]
+fn led_to_body<V: Vector8>(table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) {
+    let stages = table.stages;
+    for place in 0..stages {
+        let x = V::load(fractions[place]);
+        let mut weights = [V::zero(); WIDTH];
+        for (k, weight) in weights.iter_mut().enumerate().take(stages) {
+            *weight = V::splat(table.weights.0[k]);
+            for j in (0..stages).filter(|&j| j != k) {
+                *weight = *weight * (x - V::splat(table.c.0[j]));
+            }
+        }
+        for (to, row) in to.iter_mut().zip(rates) {
+            let led = combined!(stages, row, j => weights[j]);
+            to[place] = V::select(lanes, led, V::load(to[place])).store();
+        }
+    }
+}
+
+/// The farthest that the stages are from where they began, in every lane.
+#[inline(always)]
+fn astray_body<V: Vector8>(rates: &Row, guess: &Row, stages: usize) -> Lanes {
+    let mut most = V::zero();
+    for (&rate, &guess) in rates.iter().zip(guess).take(stages) {
+        most = larger((V::load(rate) - V::load(guess)).abs(), most);
+    }
+    most.store()
+}
+
+/// By how much the step changes velocities, as parts of them, in every lane; of the first order, where rates that differ between
+/// stages change numbers with the square of the step, the root of that.
+#[inline(always)]
+fn felt_body<V: Vector8>(form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes {
+    let second_order = matches!(form, Form::SecondOrder(_));
+    let mut most = V::zero();
+    for (row, &scale) in columns.rates.iter().zip(&columns.scales) {
+        let beside = if second_order { V::zero() } else { V::load(row[0]) };
+        for &rate in row.iter().take(stages) {
+            most = larger((V::load(rate) - beside).abs() * V::load(h).abs() * V::load(scale), most);
+        }
+    }
+    if second_order { most.store() } else { Lanes(most.store().0.map(f64::sqrt)) }
+}
+
+/// By how much rates that were found at the ends of steps are not those that the stages lead to, as parts of sizes.
+#[inline(always)]
+fn missed_body<V: Vector8>(
+    weights: &[Lanes; WIDTH],
+    stages: usize,
+    columns: &Columns,
+    found: &[Lanes],
+    h: Lanes,
+) -> Lanes {
+    let mut most = V::zero();
+    for ((row, &found), &scale) in columns.rates.iter().zip(found).zip(&columns.scales) {
+        let led = combined!(stages, row, j => V::load(weights[j]));
+        most = larger((V::load(found) - led).abs() * V::load(h).abs() * V::load(scale), most);
+    }
+    most.store()
+}
+
+tiered! {
+    pub(super) fn led[][](weights: &[Lanes; WIDTH], stages: usize, rates: &[Row], to: &mut [Row]) -> () = led_body;
+    pub(super) fn led_to[][](table: &Table, fractions: &Row, lanes: Bits, rates: &[Row], to: &mut [Row]) -> () = led_to_body;
+    pub(super) fn missed[][](weights: &[Lanes; WIDTH], stages: usize, columns: &Columns, found: &[Lanes], h: Lanes) -> Lanes = missed_body;
+    pub(super) fn felt[][](form: Form, stages: usize, columns: &Columns, h: Lanes) -> Lanes = felt_body;
+    pub(super) fn astray[][](rates: &Row, guess: &Row, stages: usize) -> Lanes = astray_body;
+}
