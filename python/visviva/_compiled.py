@@ -38,7 +38,7 @@ class Compiled:
     """
 
     def __init__(self, address: int | None, data: int | None, *keep: object) -> None:
-        if not address:
+        if address is None or not 0 < address < 1 << 8 * ctypes.sizeof(ctypes.c_void_p):
             raise InvalidInput("fun", f"expected the address of {_SIGNATURE}, got {address}")
         self.where = (address, data)
         self._keep = keep

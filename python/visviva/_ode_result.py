@@ -43,6 +43,10 @@ class OdeSolution:
     ts: NDArray[np.float64]
     _extension: tuple[NDArray[np.float64], ...]
 
+    def __post_init__(self) -> None:
+        # The solution is evaluated with them.
+        self.ts.setflags(write=False)
+
     @property
     def t_min(self) -> float:
         """The smaller end of the span."""

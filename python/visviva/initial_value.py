@@ -26,6 +26,8 @@ __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
 Function: TypeAlias = Callable[..., Any]
 
 _SMALLEST_RTOL = 100 * 2.0**-52
+#: Zeros of an event that are counted.
+_COUNTABLE = 2**63
 #: Roundings of the time in the shortest step, as in SciPy.
 _ROUNDINGS = 10.0
 
@@ -61,8 +63,8 @@ def solve_ivp(
     Parameters
     ----------
     fun : callable, int or LowLevelCallable
-        The right-hand side: a function of Python ``fun(t, y, *args)`` that returns n numbers, or a compiled function
-        ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of
+        The right-hand side: a function of Python ``fun(t, y, *args)`` of a float and an array of n numbers that
+        returns n numbers, or a compiled function ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of
         numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A compiled function runs without the
         GIL, and must be what it says: a wrong signature or address ends the process.
     t_span : (t0, tf)
@@ -149,10 +151,16 @@ def solve_ivp(
     longest = None if max_step is None or max_step == math.inf else number("max_step", max_step)
     if first is not None and longest is not None and 0.0 < longest < first <= abs(span[1] - span[0]):
         first = longest
+    watched = _events(events)
+    state = _state(y0)
+    if state.size and math.isinf(span[1]) and all(last is None for _, _, last in watched):
+        raise InvalidInput(
+            "t_span", f"expected an end, got {span[1]:g} without an event that ends the run; give one, or set terminal"
+        )
     asked: _core._Problem = {
         "method": _method(method),
         "span": span,
-        "y0": _state(y0),
+        "y0": state,
         "rtol": _relative(rtol),
         "atol": None if atol is None else _tolerance("atol", atol),
         "first_step": first,
@@ -160,7 +168,7 @@ def solve_ivp(
         "dt": None if dt is None else _fixed_step(dt, span),
         "t_eval": None if t_eval is None else float_array("t_eval", t_eval, (None,)),
         "dense_output": bool(dense_output),
-        "events": _events(events),
+        "events": watched,
         "args": [] if native is not None or args is None else _unpacked(args),
         "vectorized": bool(vectorized),
         "compiled": None if native is None else native.where,
@@ -260,7 +268,10 @@ def _state(y0: object) -> NDArray[np.float64]:
 def _tolerance(name: str, value: object) -> list[float]:
     if type(value) is float and math.isfinite(value):
         return [value]
-    values: list[float] = np.atleast_1d(float_array(name, value, None)).tolist()
+    array = float_array(name, value, None)
+    if array.ndim > 1:
+        raise InvalidInput(name, f"expected a number, or one for each of y0, got an array of shape {array.shape}")
+    values: list[float] = np.atleast_1d(array).tolist()
     return values
 
 
@@ -309,7 +320,8 @@ def _last(event: Function) -> int | None:
         return None
     if isinstance(terminal, bool | np.bool_):
         return 1
-    if isinstance(terminal, int | float | np.integer | np.floating) and int(terminal) == terminal and terminal > 0:
+    numeric = isinstance(terminal, int | float | np.integer | np.floating)
+    if numeric and 0 < terminal < _COUNTABLE and int(terminal) == terminal:
         return int(terminal)
     raise InvalidInput(
         "events", f"The `terminal` attribute must be a bool or a positive whole number, got {terminal!r}"

@@ -7,6 +7,44 @@ from recipe import Recipe
 KEPT_FOUND: list[tuple[str, Recipe]] = [
     # A warning of an orbit that takes no time beside a step divided by zero.
     ("a_member_is_as_if_alone", Recipe(method="stormer13", tame=False, units=(330, 76, -28), members=9, steps=4)),
+    # "No limit" of the steps towards a force with a length was 1e75 units of time.
+    (
+        "units_of_powers_of_two_change_no_bit",
+        Recipe(
+            method="bogacki_shampine32",
+            bodies=1,
+            forces=(("PairPotential", 13),),
+            seed=485,
+            tame=False,
+            at_origin=True,
+            drifting=True,
+            units=(329, -78, 300),
+        ),
+    ),
+    (
+        "two_methods_agree",
+        Recipe(
+            bodies=1, forces=(("CentralField", 7),), at_origin=True, drifting=True, units=(318, 0, 173), members=2
+        ),
+    ),
+    (
+        "two_methods_agree",
+        Recipe(
+            method="bogacki_shampine32",
+            bodies=1,
+            forces=(("PairPotential", 13),),
+            seed=485,
+            tame=False,
+            planar=True,
+            at_origin=True,
+            drifting=True,
+            units=(329, -78, 300),
+            steps=39,
+            terminal=1,
+            t0=-83.73922700102771,
+            backward=True,
+        ),
+    ),
     # A body at rest where a force that changes in time was zero at t = 0 had the unit of the plan for its size: steps
     # of another accuracy in other units, in another frame, at another time.
     (

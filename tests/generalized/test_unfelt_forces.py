@@ -11,7 +11,7 @@ import visviva as vv
 x, y = vv.coordinate("x"), vv.coordinate("y")
 vx, vy = x.diff(vv.time), y.diff(vv.time)
 # What each follows of the default rtol through a wall, measured by what it is off: a low order by more.
-METHODS = [("auto", 1e-9), ("gauss16", 1e-9), ("gauss8", 1e-6), ("gauss4", 1e-5)]
+METHODS = [("auto", 1e-9), ("gauss16", 1e-9), ("gauss8", 1e-6), ("gauss4", 1e-5), ("taylor", 1e-9)]
 
 
 @pytest.mark.parametrize(("method", "off"), METHODS)

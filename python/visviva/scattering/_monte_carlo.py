@@ -69,7 +69,7 @@ def monte_carlo(
         Any of `visviva.potentials` that goes to 0 far out. The angles of V = k/r are exact; of any other a table is
         built, refined to 1e-9 of the angles and certified against direct quadrature to 4e-6 in sin²(ψ/2) (the run is
         refused otherwise): its hash is in ``result.beam.tables``. Where the deflection passes through π, or through a
-        rainbow, every branch is counted; captured events are counted apart, as ``.captured``.
+        rainbow, every branch is counted; captured events are counted apart, as ``result["cm_angle"].captured``.
     beam_energy : float or Spectrum
         Energy of the projectile in the laboratory; the target is at rest. Several energies: a `Spectrum`; which of them
         an event has is its draw number 1.

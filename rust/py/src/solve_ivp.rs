@@ -102,17 +102,28 @@ fn converted(value: &Bound<'_, PyAny>, rate: &mut [f64]) -> PyResult<()> {
         "f" | "i" | "u" | "b" if size == rate.len() => {}
         "f" | "i" | "u" | "b" => return Err(refused(format!("{size}"))),
         "c" => return Err(refused("complex ones".to_owned())),
+        // Objects may be numbers, as those of SymPy.
+        "O" if size == rate.len() => {}
         _ => return Err(refused(value.get_type().name()?.to_string())),
     }
-    let flat = array.call_method1("astype", ("float64",))?.call_method0("ravel")?;
+    let numbers = array.call_method1("astype", ("float64",));
+    let numbers = numbers.or_else(|_| Err(refused(value.get_type().name()?.to_string())))?;
+    let flat = numbers.call_method0("ravel")?;
     let flat = flat.cast::<PyArray1<f64>>()?.readonly();
     rate.copy_from_slice(flat.as_slice()?);
     Ok(())
 }
 
-/// A number that a function gives, be it in an array of one.
+/// The number that an event gives, be it in an array of one.
 fn single(value: &Bound<'_, PyAny>) -> PyResult<f64> {
-    value.extract().or_else(|_| value.call_method0("item")?.extract())
+    let number = value.extract().or_else(|_| value.call_method0("item")?.extract());
+    number.or_else(|_: PyErr| {
+        let got = value.get_type().name()?;
+        Err(raised(
+            value.py(),
+            Error::invalid("events", format!("expected one real number from an event, got {got}")),
+        ))
+    })
 }
 
 struct PythonEvents<'a> {

@@ -13,8 +13,8 @@ use std::sync::Arc;
 
 /// The part of a distance over which a step may lead.
 const PART: f64 = 0.5;
-/// Longer than any step.
-const LONG: f64 = 1e300;
+/// Longer than any step, in whatever unit of time, and so are its roots.
+const LONG: f64 = f64::INFINITY;
 
 /// The squares of the shortest lengths of the potentials on the systems in the lanes; nothing of those that have none. A
 /// steep power of the distance acts abruptly though it has no length: any distance may be where.

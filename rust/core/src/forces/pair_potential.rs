@@ -168,7 +168,8 @@ impl ForceTerm for PairPotential {
         for (at, &(_, mass, position)) in bodies.iter().enumerate() {
             // The nearest in the list is enough for an estimate.
             let others = bodies.iter().enumerate().filter(|(other, _)| *other != at);
-            let nearest = others.map(|(_, other)| distance(position, other.2)).fold(f64::MAX, f64::min);
+            let distances = others.map(|(_, other)| distance(position, other.2));
+            let Some(nearest) = distances.reduce(f64::min) else { continue };
             let [_, force, _] = potential.evaluate(&[nearest]);
             strongest = force.iter().fold(strongest, |m, force| m.max(force.abs() / mass));
             ticker.tick()?;

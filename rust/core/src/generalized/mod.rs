@@ -5,6 +5,7 @@
 //! matrix is inverted but with numbers.
 
 pub mod abreast;
+mod ahead_of_forces;
 mod christoffel;
 mod constraints;
 pub mod dependence;

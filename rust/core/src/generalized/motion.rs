@@ -1,5 +1,6 @@
 //! A model at work as a [`System`]: what every method of the registry takes.
 
+use super::ahead_of_forces::{LONGEST_FREE, longest_step};
 use super::model::Model;
 use super::run::{Integrator, Request};
 use crate::error::{Error, Result};
@@ -25,6 +26,8 @@ pub struct Motion<S> {
     flat: bool,
     /// The equations as recurrences of Taylor coefficients.
     series: Option<Expansion<S>>,
+    /// The longest step on which nothing is felt.
+    longest_free: S,
 }
 
 impl<S: Width + Coefficient> Motion<S> {
@@ -38,6 +41,7 @@ impl<S: Width + Coefficient> Motion<S> {
             evaluations: 0,
             flat: false,
             series: None,
+            longest_free: S::splat(f64::INFINITY),
         }
     }
 
@@ -45,7 +49,9 @@ impl<S: Width + Coefficient> Motion<S> {
     pub fn of(model: &Model, request: &Request, parameters: &[S], t0: S) -> Self {
         let motion = Self::new(model, parameters, t0);
         let series = request.series.as_ref();
+        let (start, end) = request.span;
         Self {
+            longest_free: S::splat(LONGEST_FREE * (end - start).abs()),
             flat: matches!(request.integrator, Integrator::Table(Method { scheme: Scheme::Embedded(_), .. })),
             series: series.map(|series| Expansion::new(series.clone(), parameters)),
             ..motion
@@ -122,7 +128,8 @@ impl<S: Width + Coefficient + Element> System<S> for Motion<S> {
     }
 
     fn smooth_until(&self, jet: &Jet<S>, h: S) -> Option<S> {
-        let series = self.series.as_ref().filter(|series| series.may_turn_sharply())?;
-        Some(series.smooth_until(jet.order, h / jet.unit) * jet.unit)
+        let h = longest_step(self.form, jet, h / jet.unit, self.longest_free / jet.unit);
+        let sharp = self.series.as_ref().filter(|series| series.may_turn_sharply());
+        Some(sharp.map_or(h, |series| series.smooth_until(jet.order, h)) * jet.unit)
     }
 }

@@ -3,7 +3,8 @@
 //! between two nodes is seen, too: its turning point is such a zero.
 
 use super::run::Step;
-use crate::error::Result;
+use crate::error::{Error, Result};
+use crate::words::number;
 
 /// When a zero counts, and when it ends the run.
 #[derive(Clone, Copy, Debug, Default)]
@@ -99,10 +100,7 @@ impl Watch {
                 continue;
             }
             let ends = [(step.from, before), (step.to, after)];
-            let zero = zero(ends, |t| {
-                let y = step.at(t)?;
-                events.value(which, t, y)
-            })?;
+            let zero = zero(ends, |t| known(events, which, t, step.at(t)?))?;
             found.push((zero, which));
         }
         let forward = step.from <= step.to;
@@ -117,6 +115,17 @@ impl Watch {
         }
         Ok(None)
     }
+}
+
+/// The value of a function between two places where its signs differ: what is no number there has no zero to be found.
+fn known(events: &mut dyn Events, which: usize, t: f64, y: &[f64]) -> Result<f64> {
+    let value = events.value(which, t, y)?;
+    if value.is_nan() {
+        let told =
+            format!("event {which} is not a number at t = {}, and has different signs around it", number(t));
+        return Err(Error::invalid("events", format!("expected numbers, but {told}; give it a value there")));
+    }
+    Ok(value)
 }
 
 /// The zeros on either side of the place where a function turns back, and whether it passes them upwards; none if it does not
@@ -141,12 +150,7 @@ fn turned(
         return Ok([Some((turn, up)), None]);
     }
     let (from, to) = (step.from, step.to);
-    let mut side = |ends| {
-        zero(ends, |t| {
-            let y = step.at(t)?;
-            events.value(which, t, y)
-        })
-    };
+    let mut side = |ends| zero(ends, |t| known(events, which, t, step.at(t)?));
     let first = side([(from, values[0]), (turn, there)])?;
     let second = side([(turn, there), (to, values[1])])?;
     Ok([Some((first, up)), Some((second, !up))])

@@ -11,6 +11,7 @@ pub use crate::units::Units;
 
 use super::Scene;
 use crate::forces::ForceTerm;
+use crate::forces::term::Coupling;
 use crate::numerics::double_double::{DoubleDouble, two_sum};
 use crate::numerics::power_of_two::exponent;
 use crate::numerics::real::Real;
@@ -49,7 +50,9 @@ impl Units {
         let mass = exponent(masses.iter().copied().fold(0.0, f64::max));
         // The time in which a force moves the largest mass over that length, else the crossing time.
         let massive = masses.iter().any(|&mass| mass > 0.0);
-        let given = forces.iter().filter(|_| massive).find_map(|force| force.unit_of_time(length, mass));
+        let pairs = massive && masses.len() > 1;
+        let felt = |force: &&Arc<dyn ForceTerm>| pairs || (massive && force.coupling() != Coupling::AllPairs);
+        let given = forces.iter().filter(felt).find_map(|force| force.unit_of_time(length, mass));
         let crossing = (speed > 0.0).then(|| length - exponent(speed));
         let time = given.or(crossing).unwrap_or(0);
         // In a run that is much shorter an acceleration that matters is beyond measure in that time: the run's own is taken.

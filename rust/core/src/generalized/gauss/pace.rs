@@ -5,6 +5,7 @@
 //! energy is conserved, the step that the first few agree on is held, since equal steps are what keeps energies; it is given
 //! up where δ leaves a wide band. One trajectory alone and each of eight side by side have a pace of their own.
 
+use super::super::ahead_of_forces::{FREE, LONGEST_FREE};
 use super::Table;
 use super::ending::Ending;
 use crate::numerics::elementary::{self, Exponential};
@@ -28,11 +29,6 @@ const LONGER: f64 = 1.2;
 const STEPS_BEFORE_HOLDING: u64 = 10;
 /// The first step, as a fraction of the time in which numbers change by as much as they are.
 const FIRST: f64 = 0.05;
-
-/// Where a step changes velocities by less than this part of them, nothing of what lies ahead is felt …
-const FREE: f64 = 1e-3;
-/// … and it is as long as this part of the run at most: forces that are short beside a step are between its stages.
-const LONGEST_FREE: f64 = 1.0 / 128.0;
 
 /// What is left of a size a step later: a motion that stops at its turning points is no slow one.
 pub(super) const FADING: f64 = 0.95;
