@@ -44,7 +44,7 @@ _Check = TypeVar("_Check")
 
 
 # What is called so elsewhere, and what does here what it is for.
-_EXACT = "for digits that leave nothing, 'taylor' or 'dop853' with rtol=1e-14"
+_EXACT = "for digits that leave nothing, 'taylor' or 'dop853' with rtol=1e-13"
 _PLANETS = "for planets and many turns, 'kahan_li8' or 'stormer13' with dt"
 _STIFF = "it is implicit, which scipy.integrate.solve_ivp has for stiff equations and visviva has not"
 _OF_OTHERS = {

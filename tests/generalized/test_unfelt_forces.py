@@ -11,10 +11,12 @@ import visviva as vv
 x, y = vv.coordinate("x"), vv.coordinate("y")
 vx, vy = x.diff(vv.time), y.diff(vv.time)
 # What each follows of the default rtol through a wall, measured by what it is off: a low order by more.
-METHODS = [("auto", 1e-9), ("gauss16", 1e-9), ("gauss8", 1e-6), ("gauss4", 1e-5), ("taylor", 1e-9)]
+METHODS = [("auto", 1e-9), ("gauss16", 1e-9), ("gauss8", 1e-6), ("gauss4", 1e-5)]
+# A series tells of a force ahead no more than the stages of a step do.
+AHEAD = [*METHODS, ("taylor", 1e-9)]
 
 
-@pytest.mark.parametrize(("method", "off"), METHODS)
+@pytest.mark.parametrize(("method", "off"), AHEAD)
 @pytest.mark.parametrize(("far", "width"), [(5.3, 0.1), (10.0, 0.3), (20.0, 0.5), (40.0, 1.0)])
 def test_a_barrier_far_ahead_throws_back(method: str, off: float, far: float, width: float) -> None:
     """H = p²/2 + exp(−((q − L)/w)²) at energy 1/2, from where the force is below 1e-300: one step was the whole run."""
@@ -24,7 +26,7 @@ def test_a_barrier_far_ahead_throws_back(method: str, off: float, far: float, wi
     assert thrown.momentum[-1, 0] == pytest.approx(-1.0, abs=off)
 
 
-@pytest.mark.parametrize(("method", "off"), METHODS)
+@pytest.mark.parametrize(("method", "off"), AHEAD)
 @pytest.mark.parametrize("start", [30.0, 100.0, 300.0])
 def test_a_hard_core_far_ahead_throws_back(method: str, off: float, start: float) -> None:
     """Lennard-Jones's core is 1 wide, and tells little from 300 away; dop853 at rtol 1e-13 is another method."""
