@@ -299,6 +299,8 @@ def expression(expression: Any, *, direction: int = 0, terminal: bool | int = Fa
 def energy(value: float, *, direction: int = 0, terminal: bool | int = False) -> Event:
     """The energy of all bodies passes a value: of use where a force takes or gives energy.
 
+    Where all forces keep the energy, what changes of it are errors of the steps, told from node to node.
+
     In generalized coordinates it is that of the run: Jacobi's integral, or H.
 
     Parameters

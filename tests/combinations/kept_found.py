@@ -23,9 +23,7 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
     ),
     (
         "two_methods_agree",
-        Recipe(
-            bodies=1, forces=(("CentralField", 7),), at_origin=True, drifting=True, units=(318, 0, 173), members=2
-        ),
+        Recipe(bodies=1, forces=(("CentralField", 7),), at_origin=True, drifting=True, units=(318, 0, 173), members=2),
     ),
     (
         "two_methods_agree",

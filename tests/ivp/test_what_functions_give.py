@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
 import sympy
 
 import visviva as vv
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def decay(t: float, y: np.ndarray) -> np.ndarray:

@@ -232,7 +232,12 @@ impl Graph {
                 return self.scale(factor, quotient);
             }
         }
-        let product = self.put(Node::Product(a.min(b), a.max(b)));
+        // √s √s
+        let root_of = match *self.node(a) {
+            Node::Call(Function::Sqrt, of) if a == b => Some(of),
+            _ => None,
+        };
+        let product = root_of.unwrap_or_else(|| self.put(Node::Product(a.min(b), a.max(b))));
         if factor == 1.0 { product } else { self.scale(factor, product) }
     }
 
@@ -263,6 +268,9 @@ impl Graph {
         if a == b {
             return self.constant(factor_a / factor_b);
         }
+        if let Some(root) = self.over_its_root(a, b) {
+            return self.scale(factor_a / factor_b, root);
+        }
         if let Some(value) = self.as_constant(a) {
             let one = self.constant(1.0);
             let reciprocal = self.put(Node::Quotient(one, b));
@@ -270,6 +278,35 @@ impl Graph {
         }
         let quotient = self.put(Node::Quotient(a, b));
         self.scale(factor_a / factor_b, quotient)
+    }
+
+    /// s/√s and p·s/√s, which are 0 at s = 0 and not 0/0: the force of |x|³ is, and the power of what brakes by |v|³.
+    fn over_its_root(&mut self, a: Id, b: Id) -> Option<Id> {
+        let Node::Call(Function::Sqrt, of) = *self.node(b) else { return None };
+        if a == of {
+            return Some(b);
+        }
+        if self.are_opposite(a, of) {
+            return Some(self.scale(-1.0, b));
+        }
+        let Node::Product(p, q) = *self.node(a) else { return None };
+        if let Some(root) = self.over_its_root(p, b) {
+            return Some(self.multiply(q, root));
+        }
+        let root = if p == q { None } else { self.over_its_root(q, b) };
+        root.map(|root| self.multiply(p, root))
+    }
+
+    /// Whether two sums have the same terms with the other sign.
+    fn are_opposite(&self, a: Id, b: Id) -> bool {
+        let (Node::Sum(first, terms), Node::Sum(second, others)) = (self.node(a), self.node(b)) else {
+            return false;
+        };
+        let opposite = |one: u64, other: u64| number(one) == -number(other);
+        let both = terms.iter().zip(others);
+        terms.len() == others.len()
+            && opposite(*first, *second)
+            && both.into_iter().all(|(one, other)| one.1 == other.1 && opposite(one.0, other.0))
     }
 
     /// The angle of the point (x, y) from the positive x-axis.

@@ -90,6 +90,8 @@ pub(super) struct Watch<'a> {
     contacts: Option<Contacts>,
     pairs: Vec<Pair>,
     massive: bool,
+    /// Whether the forces leave energy as it is: what changes of it are errors of steps, told from node to node.
+    keeps_energy: bool,
     /// Bodies and what the events see of them at the last node, and room for those at the next one and inside a step.
     before: Vec<Moving>,
     after: Vec<Moving>,
@@ -155,6 +157,8 @@ impl<'a> Watch<'a> {
             contacts: None,
             pairs: Vec::new(),
             massive: unit.unit.bodies.len() < scene.particles,
+            keeps_energy: scene.rigid.is_none()
+                && plan.forces_of(unit.unit.copy).iter().all(|force| force.conserves().energy),
             before: at_rest.clone(),
             after: at_rest.clone(),
             inside: at_rest,
@@ -190,6 +194,11 @@ impl<'a> Watch<'a> {
                 (&pair.event, &pair.places)
             }
         }
+    }
+
+    /// Whether the value of an event is what the motion keeps.
+    fn is_kept(&self, event: usize) -> bool {
+        self.keeps_energy && matches!(self.event(event).0.what, What::Energy(_))
     }
 
     /// What is added to the value of an event.
@@ -269,7 +278,8 @@ impl<'a> Watch<'a> {
         for event in 0..self.events.len() {
             let sight = self.sight(unit, event, (&self.after, span.to), ticker)?;
             let ends = [&self.sights[event], &sight];
-            let clear = self.event(event).0.rates(ends, h).is_some_and(|rates| {
+            let rates = if self.is_kept(event) { Some([0.0; 2]) } else { self.event(event).0.rates(ends, h) };
+            let clear = rates.is_some_and(|rates| {
                 let cubic = cubic(ends.map(|end| end.value), rates, h);
                 keeps_clear(cubic) || keeps_clear_after_all(cubic)
             });

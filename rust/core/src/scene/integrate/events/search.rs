@@ -49,6 +49,13 @@ impl Search<'_, '_> {
         // Upwards along the run backwards is downwards in time.
         let direction = self.watch.event(self.event).0.direction * (self.span.to - self.span.from);
         let counts = |start: f64| direction * if start < 0.0 { 1.0 } else { -1.0 } >= 0.0;
+        if self.watch.is_kept(self.event) {
+            if !crosses(self.ends[0], self.ends[1]) || !counts(self.ends[0]) {
+                return Ok(vec![]);
+            }
+            let ends = [(0.0, self.ends[0]), (1.0, self.ends[1])];
+            return Ok(vec![zero(ends, |theta| self.value_at(theta, step, ticker))?]);
+        }
         if crosses(self.ends[0], self.ends[1])
             && let Some((theta, slope)) = self.straight(ticker)?
         {
