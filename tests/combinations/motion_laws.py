@@ -12,7 +12,7 @@ import numpy as np
 from drawing import METHODS
 from law_book import EPSILON, law
 from recipe import Case, Recipe, Refused
-from solutions import change, sizes, solution, states, tame
+from solutions import change, rough, sizes, solution, states, tame
 
 import visviva as vv
 
@@ -144,10 +144,13 @@ def a_turned_scene_moves_alike(recipe: Recipe) -> None:
     case = _here(recipe)
     matrix = _orthogonal(recipe.seed + 5, planar=recipe.planar)
     how = _how(case, recipe.method)
-    here, there = (states(each, **how) for each in (case, _changed(case, _scene(case).rotated(matrix))))
+    turned = _changed(case, _scene(case).rotated(matrix))
+    here, there = (states(each, **how) for each in (case, turned))
     x, v = (part @ matrix.T for part in here)
-    # The matrix itself is rounded.
+    # The matrix itself is rounded. Across a jump a step errs by where it begins: there by another error than here.
     allowed = _sum(_again(case, how, here), _rounding(case))
+    if rough(case):
+        allowed = _sum(allowed, _again(turned, how, there))
     _alike(f"{recipe.method}, turned", (x, v), there, allowed, (case, how))
 
 
