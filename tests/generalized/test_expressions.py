@@ -222,3 +222,8 @@ def test_whole_powers_are_known_below_zero(power: int) -> None:
     system = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2 - q[0] ** power, ["x"], position=[-0.999])
     exact = (-0.999) ** power
     assert abs(system.energy - exact) <= power * np.finfo(float).eps * abs(exact)
+
+
+def test_the_time_is_compared_as_its_symbol_is() -> None:
+    t = sp.Symbol("t")
+    assert ((vv.time > 1), (vv.time >= 1), (vv.time < 1), (vv.time <= 1)) == ((t > 1), (t >= 1), (t < 1), (t <= 1))

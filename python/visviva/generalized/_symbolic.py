@@ -82,6 +82,18 @@ class _Time:
     def __neg__(self) -> Any:
         return -self._sympy_()
 
+    def __lt__(self, other: object) -> Any:
+        return self._sympy_() < other
+
+    def __le__(self, other: object) -> Any:
+        return self._sympy_() <= other
+
+    def __gt__(self, other: object) -> Any:
+        return self._sympy_() > other
+
+    def __ge__(self, other: object) -> Any:
+        return self._sympy_() >= other
+
 
 time: Any = _Time()
 

@@ -37,7 +37,9 @@ impl Ending {
             Self::StepTooSmall => {
                 "the step fell below what can be told from the time: a singularity, or a rtol too small"
             }
-            Self::NotFinite => "a number became infinite, or none: a singularity of the expressions",
+            Self::NotFinite => {
+                "a number became infinite, or none: a singularity of the expressions, or growth beyond 1.8e308"
+            }
             Self::Finished | Self::Stopped | Self::Interrupted => return None,
         };
         Some(why.to_owned())
