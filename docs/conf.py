@@ -39,6 +39,9 @@ def entries(module: object, where: str, names: list[str]) -> list[str]:
             lines += [f".. autoclass:: {where}.{name}", "   :members:", ""]
         elif inspect.isroutine(documented):
             lines += [f".. autofunction:: {where}.{name}", ""]
+        else:
+            # Numbers, names of types, the time: what stands beside them tells of them.
+            lines += [f".. autodata:: {where}.{name}", ""]
     return lines
 
 

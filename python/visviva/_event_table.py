@@ -24,7 +24,7 @@ __all__ = ["EventTable", "Lines"]
 
 
 @known_keywords
-class Lines(Exported, Shown):
+class Lines(Exported[str], Shown):
     """Base of tables of events: columns, a line for each event, and what was looked for."""
 
     __slots__ = ()

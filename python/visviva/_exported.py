@@ -9,7 +9,7 @@ from __future__ import annotations
 from abc import abstractmethod
 from dataclasses import dataclass, field
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
     from xarray import Dataset
 
 __all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels", "needed"]
+
+Name = TypeVar("Name", bound=str)
 
 # The numbers of a vector and of a quaternion, scalar last.
 AXES = {"component": np.array(["x", "y", "z"]), "quaternion": np.array(["x", "y", "z", "w"])}
@@ -58,13 +60,13 @@ class Columns:
 
 
 @known_keywords
-class Exported:
+class Exported(Generic[Name]):
     """Base of what can be handed to xarray and pandas, and written to Parquet."""
 
     __slots__ = ()
 
     @abstractmethod
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+    def _exported(self, columns: Name | Sequence[Name] | None) -> Columns:
         """Columns and axes; the first axis of a table is that of its rows."""
 
     @property
@@ -72,7 +74,7 @@ class Exported:
         """The leading axes that are rows of a DataFrame: copy and time of an ensemble."""
         return ("time",)
 
-    def to_xarray(self, columns: str | Sequence[str] | None = None) -> Dataset:
+    def to_xarray(self, columns: Name | Sequence[Name] | None = None) -> Dataset:
         """As an ``xarray.Dataset``: a variable for each column, over named axes with their labels.
 
         Parameters
@@ -113,7 +115,7 @@ class Exported:
         made: Dataset = module.Dataset(variables, coordinates, dict(export.attributes))
         return made
 
-    def to_pandas(self, columns: str | Sequence[str] | None = None) -> DataFrame:
+    def to_pandas(self, columns: Name | Sequence[Name] | None = None) -> DataFrame:
         """As a ``pandas.DataFrame`` with a row for each time, of elements each orbit, of ensembles each copy and time.
 
         Parameters
@@ -164,7 +166,7 @@ class Exported:
         frame.columns = module.MultiIndex.from_tuples(padded) if levels > 1 else [key[0] for key in keys]
         return frame
 
-    def to_parquet(self, path: str | PathLike[str], columns: str | Sequence[str] | None = None) -> None:
+    def to_parquet(self, path: str | PathLike[str], columns: Name | Sequence[Name] | None = None) -> None:
         """Write a Parquet file with the rows of `to_pandas`, a group of them at a time.
 
         Beside the result itself it takes the memory of one group of rows (16 MB). `EnsembleScene.run_to_parquet` does

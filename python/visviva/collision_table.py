@@ -23,7 +23,7 @@ __all__ = ["CollisionTable"]
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable(Exported, Shown):
+class CollisionTable(Exported[str], Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Attributes

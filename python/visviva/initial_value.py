@@ -64,9 +64,9 @@ def solve_ivp(
     ----------
     fun : callable, int or LowLevelCallable
         The right-hand side: a function of Python ``fun(t, y, *args)`` of a float and an array of n numbers that
-        returns n numbers, or a compiled function ``void f(double t, const double *y, double *rate, void *data)``, with or without the last: a ``@cfunc`` of
-        numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A compiled function runs without the
-        GIL, and must be what it says: a wrong signature or address ends the process.
+        returns n numbers, or a compiled function ``void f(double t, const double *y, double *rate, void *data)``, with
+        or without the last: a ``@cfunc`` of numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A
+        compiled function runs without the GIL, and must be what it says: a wrong signature or address ends the process.
     t_span : (t0, tf)
         Where to start and to end. The end may be smaller, or infinite if an event ends the run.
     y0 : (n,) array_like

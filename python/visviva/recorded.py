@@ -20,6 +20,7 @@ from visviva._names import body_index
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plan import Plan, told
+from visviva.typing import ColumnName
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -102,7 +103,7 @@ _ELSEWHERE = {
 
 @known_keywords
 @frozen
-class Recorded(Exported, Shown, ABC):
+class Recorded(Exported[ColumnName], Shown, ABC):
     """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
 
     __slots__ = ("_columns", "_result", "t")

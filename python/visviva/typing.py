@@ -1,7 +1,9 @@
 """Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
-has; a test compares. `TransformationName` is what a time transformation watches.
+has; a test compares. `TransformationName` is what a time transformation watches. `GeneralizedMethodName`,
+`DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
+`FoilTallyName` what Monte Carlo runs count.
 """
 
 from collections.abc import Callable
@@ -15,11 +17,16 @@ from visviva._progress import Progress, Report
 __all__ = [
     "CollisionRule",
     "ColumnName",
+    "DiscreteMethodName",
     "EventFunction",
+    "FoilTallyName",
+    "GeneralizedColumnName",
+    "GeneralizedMethodName",
     "MethodName",
     "Progress",
     "Report",
     "SolverName",
+    "TallyName",
     "TransformationName",
 ]
 
@@ -30,6 +37,32 @@ CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
 """What spheres do that touch."""
 
 TransformationName: TypeAlias = Literal["potential_energy", "distance"]
+
+GeneralizedColumnName: TypeAlias = Literal["position", "velocity", "momentum", "energy", "reactions"]
+"""What a run in generalized coordinates knows at its times."""
+
+TallyName: TypeAlias = Literal["cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"]
+"""What `visviva.scattering.monte_carlo` counts of an event."""
+
+FoilTallyName: TypeAlias = Literal[
+    "lab_angle",
+    "transmitted_angle",
+    "reflected_angle",
+    "transmitted_energy",
+    "reflected_energy",
+    "stopped_depth",
+    "cm_angle",
+]
+"""What `visviva.scattering.Foil` counts of an ion."""
+
+DiscreteMethodName: TypeAlias = Literal[
+    "variational_midpoint",
+    "variational_trapezoidal",
+    "variational_lobatto4",
+    "variational_lobatto6",
+    "variational_lobatto8",
+]
+"""Methods that make the action of a discrete path stationary."""
 
 # written by tools/write_names.py: begin
 MethodName: TypeAlias = Literal[
@@ -101,6 +134,13 @@ ColumnName: TypeAlias = Literal[
     "virial",
 ]
 # written by tools/write_names.py: end
+
+GeneralizedMethodName: TypeAlias = (
+    MethodName
+    | DiscreteMethodName
+    | Literal["gauss4", "gauss8", "gauss16", "matrix_exponential", "rattle", "rattle4", "rattle6", "rattle8"]
+)
+"""Methods of systems in generalized coordinates; which of them takes a system, its plan says."""
 
 
 def __dir__() -> list[str]:

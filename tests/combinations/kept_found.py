@@ -43,7 +43,7 @@ KEPT_FOUND: list[tuple[str, Recipe]] = [
             backward=True,
         ),
     ),
-    # Across the jump of a sampled drag verner98 errs by other amounts in scenes that differ by a turn (the law's bound).
+    # Across the jump of a sampled drag verner98 errs by other amounts in a scene that is turned: the law's bound.
     (
         "a_turned_scene_moves_alike",
         Recipe(

@@ -43,7 +43,9 @@ def test_an_event_gives_one_real_number(got: object) -> None:
         vv.solve_ivp(decay, (0, 1), [1.0], events=lambda t, y: got)
 
 
-@pytest.mark.parametrize("got", [np.array([object()]), np.array(["a"])], ids=["object", "str"])
+@pytest.mark.parametrize(
+    "got", [np.array([object()]), np.array(["a"]), None, [None]], ids=["object", "str", "None", "list"]
+)
 def test_a_right_hand_side_gives_real_numbers(got: object) -> None:
     with pytest.raises(vv.InvalidInput, match="fun: expected 1 real numbers as in y0, got"):
         vv.solve_ivp(lambda t, y: got, (0, 1), [1.0])

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._system import GeneralizedSystem
+    from visviva.integrators import Method
+    from visviva.typing import GeneralizedMethodName
 
 __all__ = ["boundary_value", "flow_jacobian", "legendre", "lyapunov_exponents", "routhian"]
 
@@ -119,7 +121,12 @@ def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float] | None) -> 
 
 
 def flow_jacobian(
-    system: GeneralizedSystem, t: float, *, rtol: float = 1e-12, method: str = "gauss16", most_steps: int = MOST_STEPS
+    system: GeneralizedSystem,
+    t: float,
+    *,
+    rtol: float = 1e-12,
+    method: GeneralizedMethodName | Method = "gauss16",
+    most_steps: int = MOST_STEPS,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Give the state at ``t``, and its derivatives with respect to the state at the start."""
     n = 2 * len(system.coordinates)

@@ -16,6 +16,7 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._source import _label
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
 from visviva.status import Status
+from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -27,7 +28,8 @@ if TYPE_CHECKING:
     from visviva.events import Event
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
-    from visviva.typing import Progress
+    from visviva.integrators import Method
+    from visviva.typing import GeneralizedMethodName, Progress
 
 __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
 
@@ -112,7 +114,7 @@ class GeneralizedEnsemble(Shown):
         self,
         t: ArrayLike,
         *,
-        method: str = "auto",
+        method: GeneralizedMethodName | Method = "auto",
         rtol: float = 1e-12,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
@@ -165,7 +167,7 @@ class GeneralizedEnsemble(Shown):
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory(Exported, Shown):
+class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
     """The motions of an ensemble.
 
     Attributes

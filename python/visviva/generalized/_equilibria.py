@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 
     from visviva.generalized._lagrangian import Lagrangian
 
-__all__ = ["Equilibrium", "equilibria"]
+__all__ = ["SAME", "Equilibrium", "equilibria", "starts_of_a_search"]
 
 #: Places that differ by less than this part of their sizes are one.
-_SAME = 1e-8
+SAME = 1e-8
 #: Starts of a search for equilibria, and of one of many coordinates.
 _MOST_STARTS = 2000
 _MOST_OF_MANY = 256
@@ -45,6 +45,8 @@ class Equilibrium:
         Whether small motions about it stay small, as the linear equations tell.
     frequencies : ndarray
         Angular frequencies of small oscillations, ascending.
+    momentum : ndarray, shape (n,)
+        The momenta there, which need not be zero.
 
     Examples
     --------
@@ -56,9 +58,10 @@ class Equilibrium:
     position: NDArray[np.float64]
     stable: bool
     frequencies: NDArray[np.float64]
+    momentum: NDArray[np.float64]
 
 
-def _starts(n: int) -> NDArray[np.float64]:
+def starts_of_a_search(n: int) -> NDArray[np.float64]:
     """Give places (S, n) over a turn where the search for equilibria starts: a grid, or of many coordinates fewer."""
     side = max(2, int(_MOST_STARTS ** (1.0 / n)))
     if 2**n <= _MOST_OF_MANY:
@@ -81,7 +84,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     """Equilibria of a Lagrangian, from starts or from a grid of them over a turn."""
     n = len(system.coordinates)
     if near is None:
-        starts = _starts(n)
+        starts = starts_of_a_search(n)
     else:
         starts = np.atleast_2d(float_array("near", near, None))
         if starts.shape[1] != n:
@@ -102,7 +105,7 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
     places: list[NDArray[np.float64]] = []
     while len(reached):
         places.append(reached[0])
-        reached = reached[((np.abs(reached - reached[0]) > _SAME * size) & told).any(axis=1)]
+        reached = reached[((np.abs(reached - reached[0]) > SAME * size) & told).any(axis=1)]
     results, without_mass = [], []
     for place in sorted(places, key=tuple):
         if _mass_is_singular(system, place):
@@ -113,7 +116,8 @@ def equilibria(system: Lagrangian, near: ArrayLike | None) -> list[Equilibrium]:
         except InvalidInput:
             # Where Newton's method has stopped, but forces are left.
             continue
-        results.append(Equilibrium(place, small.stable, small.frequencies))
+        momentum = system.at(position=place, velocity=np.zeros(n)).momentum
+        results.append(Equilibrium(place, small.stable, small.frequencies, momentum))
     if without_mass and not results:
         raise InvalidInput(
             "L",

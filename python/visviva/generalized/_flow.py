@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from visviva.generalized._analysis import PoincareSection
     from visviva.generalized._legendre import LegendreTransform
     from visviva.generalized._nodes import Node
+    from visviva.integrators import Method
+    from visviva.typing import GeneralizedMethodName
 
 __all__ = ["Flow"]
 
@@ -32,7 +34,7 @@ class Flow:
         t: float,
         *,
         direction: int = 1,
-        method: str = "gauss16",
+        method: GeneralizedMethodName | Method = "gauss16",
         rtol: float = 1e-12,
         dt: float | None = None,
     ) -> PoincareSection:

@@ -10,6 +10,7 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._canonical import CanonicalTest, canonical_test
 from visviva.generalized._changes import legendre
+from visviva.generalized._fixed_points import fixed_points
 from visviva.generalized._source import described
 from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.generalized._equilibria import Equilibrium
     from visviva.generalized._lagrangian import Lagrangian
 
 __all__ = ["Hamiltonian"]
@@ -114,6 +116,37 @@ class Hamiltonian(GeneralizedSystem):
         made: Any = legendre(self)
         lagrangian: Lagrangian = made
         return lagrangian
+
+    def equilibria(self, near: ArrayLike | None = None) -> list[Equilibrium]:
+        """States at which neither coordinates nor momenta change, their stability and their frequencies.
+
+        Each is told once: of states along a coordinate that nothing depends on, one. Of a curve of equilibria in
+        others, the states that the search comes to are told.
+
+        Parameters
+        ----------
+        near : array_like, shape (S, 2n), optional
+            States (coordinates, then momenta) where Newton's method starts; if not given a grid over −π … π of at most
+            2000 of them, and as many without momenta, which may miss some.
+
+        Returns
+        -------
+        list of Equilibrium
+
+        Raises
+        ------
+        InvalidInput
+            Where equations depend on the time, and for states of another shape.
+
+        Examples
+        --------
+        >>> import sympy, visviva as vv
+        >>> q, p = sympy.symbols("q p")
+        >>> well = vv.Hamiltonian(sympy.sqrt(1 + p**2) + (q**2 - 1) ** 2 / 4, q=[q], p=[p])
+        >>> [(round(float(e.position[0]), 9), e.stable) for e in well.equilibria()]
+        [(-1.0, True), (0.0, False), (1.0, True)]
+        """
+        return fixed_points(self, near)
 
     def poisson(self, f: Any, g: Any) -> Any:
         """The Poisson bracket {f, g} = Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q, as an expression of SymPy.

@@ -19,6 +19,8 @@ __all__ = ["phase_portrait"]
 
 #: Lines beside separatrices.
 _LINES = 24
+#: Places and momenta from which equilibria are looked for.
+_STARTS = 25
 
 
 def phase_portrait(
@@ -55,16 +57,17 @@ def phase_portrait(
     if finite.size:
         # As many points between two lines: they are dense where motion is slow.
         ax.contour(q, p, energy, levels=np.unique(np.quantile(finite, np.linspace(0.0, 1.0, _LINES))), linewidths=0.7)
-    lagrangian = system.lagrangian() if isinstance(system, Hamiltonian) else system
-    for rest in lagrangian.equilibria(np.linspace(ranges[0][0], ranges[0][1], 64)[:, None]):
-        at_rest = lagrangian.at(position=rest.position, velocity=[0.0])
-        place = (float(rest.position[0]), float(at_rest.momentum[0]))
-        if not (ranges[0][0] <= place[0] <= ranges[0][1] and ranges[1][0] <= place[1] <= ranges[1][1]):
-            continue
+    sides = [np.linspace(float(each[0]), float(each[1]), _STARTS) for each in ranges]
+    for rest in other.equilibria(np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)):
         if rest.stable:
-            ax.plot(*place, "o", color="black", markersize=4)
-        else:
-            ax.contour(q, p, energy, levels=[at_rest.energy], colors="black", linewidths=1.4)
+            place = (float(rest.position[0]), float(rest.momentum[0]))
+            if ranges[0][0] <= place[0] <= ranges[0][1] and ranges[1][0] <= place[1] <= ranges[1][1]:
+                ax.plot(*place, "o", color="black", markersize=4)
+            continue
+        # Lines through one that is outside may come by.
+        through = other.at(position=rest.position, momentum=rest.momentum).energy
+        if finite.size and finite.min() < through < finite.max():
+            ax.contour(q, p, energy, levels=[through], colors="black", linewidths=1.4)
     ax.set_xlabel(system.coordinates[0])
     ax.set_ylabel(f"momentum of {system.coordinates[0]}")
     return ax

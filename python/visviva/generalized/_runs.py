@@ -23,7 +23,8 @@ if TYPE_CHECKING:
     from visviva.events import Event
     from visviva.generalized._plan import GeneralizedPlan
     from visviva.generalized._trajectory import GeneralizedTrajectory
-    from visviva.typing import Progress
+    from visviva.integrators import Method
+    from visviva.typing import GeneralizedMethodName, Progress
 
 __all__ = ["Runs"]
 
@@ -40,7 +41,7 @@ class Runs(States):
     def _asked(
         self,
         t: ArrayLike,
-        method: str,
+        method: object,
         rtol: float,
         dt: float | None,
         max_step: float | None,
@@ -114,7 +115,7 @@ class Runs(States):
         self,
         t: ArrayLike,
         *,
-        method: str = "auto",
+        method: GeneralizedMethodName | Method = "auto",
         rtol: float = 1e-12,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
@@ -227,7 +228,7 @@ class Runs(States):
         self,
         t: ArrayLike,
         *,
-        method: str = "auto",
+        method: GeneralizedMethodName | Method = "auto",
         rtol: float = 1e-12,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,

@@ -12,6 +12,7 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.status import Status
+from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -53,7 +54,7 @@ def exported(
 
 
 @known_keywords
-class GeneralizedTrajectory(Exported, Shown):
+class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Attributes

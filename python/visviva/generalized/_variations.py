@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from visviva.generalized._accessory import AccessoryProblem
     from visviva.generalized._action import PathIntegral
     from visviva.generalized._discrete import DiscreteAction
+    from visviva.typing import DiscreteMethodName
 
 __all__ = ["Variations"]
 
@@ -132,7 +133,7 @@ class Variations:
 
         return second_variation(self, path, variation, degree)
 
-    def discrete_action(self: Any, path: Any, *, method: str | None = None) -> DiscreteAction:
+    def discrete_action(self: Any, path: Any, *, method: DiscreteMethodName | None = None) -> DiscreteAction:
         """The action of a path of places, segment by segment, as a variational integrator sums it, and its derivatives.
 
         Parameters

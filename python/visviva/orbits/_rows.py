@@ -27,7 +27,7 @@ _ANGLES = (
 )
 
 
-class OfOrbits(Exported):
+class OfOrbits(Exported[str]):
     """Base of what has one value, or one vector, for each of several orbits."""
 
     __slots__ = ("_axes",)

@@ -26,11 +26,18 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Bins
+    from visviva.typing import FoilTallyName
 
 __all__ = ["Foil"]
 
 _SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
-_TALLIES = ("transmitted_angle", "transmitted_energy", "reflected_angle", "reflected_energy", "stopped_depth")
+_TALLIES: tuple[FoilTallyName, ...] = (
+    "transmitted_angle",
+    "transmitted_energy",
+    "reflected_angle",
+    "reflected_energy",
+    "stopped_depth",
+)
 
 
 @known_keywords
@@ -155,7 +162,7 @@ class Foil:
         beam_energy: float,
         n_events: int,
         seed: int,
-        tally: str | Iterable[str] | Mapping[str, Any] = _TALLIES,
+        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, Any] = _TALLIES,
         bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
         incidence: float = 0.0,
         lowest_energy: float | None = None,

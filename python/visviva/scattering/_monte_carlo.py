@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Axes, Bins
+    from visviva.typing import TallyName
 
 __all__ = ["monte_carlo"]
 
@@ -42,7 +43,7 @@ def monte_carlo(
     b_max: float,
     n_events: int,
     seed: int,
-    tally: str | Iterable[str | tuple[str, str]] | Mapping[Any, Any] = "cm_angle",
+    tally: TallyName | Iterable[TallyName | tuple[TallyName, TallyName]] | Mapping[Any, Any] = "cm_angle",
     bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
     threads: int | None = None,
     first_event: int = 0,

@@ -102,8 +102,8 @@ fn converted(value: &Bound<'_, PyAny>, rate: &mut [f64]) -> PyResult<()> {
         "f" | "i" | "u" | "b" if size == rate.len() => {}
         "f" | "i" | "u" | "b" => return Err(refused(format!("{size}"))),
         "c" => return Err(refused("complex ones".to_owned())),
-        // Objects may be numbers, as those of SymPy.
-        "O" if size == rate.len() => {}
+        // Objects may be numbers, as those of SymPy; NumPy takes nothing for one, too.
+        "O" if size == rate.len() && !array.call_method0("ravel")?.try_iter()?.any(is_nothing) => {}
         _ => return Err(refused(value.get_type().name()?.to_string())),
     }
     let numbers = array.call_method1("astype", ("float64",));
@@ -112,6 +112,11 @@ fn converted(value: &Bound<'_, PyAny>, rate: &mut [f64]) -> PyResult<()> {
     let flat = flat.cast::<PyArray1<f64>>()?.readonly();
     rate.copy_from_slice(flat.as_slice()?);
     Ok(())
+}
+
+/// Whether an item is None.
+fn is_nothing(item: PyResult<Bound<'_, PyAny>>) -> bool {
+    item.is_ok_and(|item| item.is_none())
 }
 
 /// The number that an event gives, be it in an array of one.

@@ -1,0 +1,97 @@
+"""Equilibria of Hamiltonians, whether quadratic in the momenta or not, and the portraits that show them."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import sympy as sp
+
+import visviva as vv
+
+q, p, a = sp.symbols("q p a")
+
+
+def hamiltonian(H: sp.Expr, **given: object) -> vv.Hamiltonian:
+    return vv.Hamiltonian(H, q=[q], p=[p], **given)
+
+
+def test_a_relativistic_particle_in_two_wells() -> None:
+    """H = √(1 + p²) + (q² − 1)²/4: at rest the frequency is √V″ = √2."""
+    left, top, right = hamiltonian(sp.sqrt(1 + p**2) + (q**2 - 1) ** 2 / 4).equilibria()
+    for place, where in ((left, -1.0), (top, 0.0), (right, 1.0)):
+        assert place.position[0] == pytest.approx(where, abs=1e-14)
+        assert place.momentum[0] == 0.0
+    assert (left.stable, top.stable, right.stable) == (True, False, True)
+    np.testing.assert_allclose([left.frequencies[0], right.frequencies[0]], np.sqrt(2.0), rtol=1e-14)
+    assert top.frequencies.size == 0
+
+
+def test_momenta_that_are_not_zero_at_rest() -> None:
+    """H = cos p − cos q (Harper): centers where both cosines have different signs, saddles where they have the same."""
+    found = hamiltonian(sp.cos(p) - sp.cos(q)).equilibria()
+    assert len(found) == 9
+    for place in found:
+        turns = np.rint(np.concatenate([place.position, place.momentum]) / np.pi)
+        np.testing.assert_allclose(np.concatenate([place.position, place.momentum]), np.pi * turns, atol=1e-14)
+        assert place.stable == bool(turns.sum() % 2)
+
+
+def test_a_zero_of_higher_order_is_found_once() -> None:
+    """H = p⁴/4 − q²/2 + q⁴/4, of which the linear equations tell no stable state."""
+    found = hamiltonian(p**4 / 4 - q**2 / 2 + q**4 / 4).equilibria()
+    np.testing.assert_allclose([place.position[0] for place in found], [-1.0, 0.0, 1.0], atol=1e-12)
+    np.testing.assert_allclose([place.momentum[0] for place in found], 0.0, atol=1e-12)
+    assert not any(place.stable for place in found)
+
+
+def test_they_are_those_of_the_lagrangian() -> None:
+    """The double pendulum's, by both forms, with the same frequencies; momenta at rest are zero."""
+    pendulum = vv.systems.double_pendulum()
+    ours, others = pendulum.hamiltonian().equilibria(), pendulum.equilibria()
+    near = [place for place in ours if place.stable]
+    assert len(near) == 1
+    np.testing.assert_allclose(near[0].position, 0.0, atol=1e-12)
+    (rest,) = [place for place in others if place.stable]
+    np.testing.assert_allclose(near[0].frequencies, rest.frequencies, rtol=1e-12)
+    np.testing.assert_array_equal(rest.momentum, [0.0, 0.0])
+    for place in others:
+        assert min(np.abs(place.position - other.position).max() for other in ours) < 1e-9
+
+
+def test_along_a_cyclic_coordinate_one_is_told() -> None:
+    x, y, px, py = sp.symbols("x y px py")
+    (rest,) = vv.Hamiltonian((px**2 + py**2) / 2 + y**2 / 2, q=[x, y], p=[px, py]).equilibria()
+    np.testing.assert_allclose(rest.position, 0.0, atol=1e-14)
+    assert not rest.stable  # x runs away from any small px
+
+
+def test_parameters_starts_and_refusals() -> None:
+    well = hamiltonian(p**2 / 2 + (q - a) ** 2, parameters={a: 7.0})
+    assert well.equilibria() == []
+    (rest,) = well.equilibria(near=[5.0, 0.0])
+    assert rest.position[0] == pytest.approx(7.0, abs=1e-14)
+    with pytest.raises(vv.InvalidInput, match="near: expected states of 1 coordinates and momenta"):
+        well.equilibria(near=[1.0, 2.0, 3.0])
+    with pytest.raises(vv.InvalidInput, match="H: expected equations that do not depend on the time"):
+        hamiltonian(p**2 / 2 + q**2 * sp.cos(vv.time)).equilibria()
+
+
+@pytest.mark.parametrize("width", [3.0, 4.0])
+def test_a_portrait_needs_no_square_of_the_momentum(width: float) -> None:
+    """The separatrix of Harper's map is drawn also where its saddles lie at and beyond the edges."""
+    pytest.importorskip("matplotlib")
+    portrait = hamiltonian(sp.cos(p) + sp.cos(q) + q / 100)
+    axes = portrait.phase_portrait((-width, width), (-width, width), points=80)
+    dots = [line for line in axes.get_lines() if line.get_marker() == "o"]
+    lines = [lines for lines in axes.collections if np.allclose(lines.get_linewidths(), 1.4)]
+    assert dots
+    assert lines
+
+
+def test_a_separatrix_comes_by_whose_saddle_is_outside() -> None:
+    pytest.importorskip("matplotlib")
+    axes = hamiltonian(p**2 / 2 - sp.cos(q)).phase_portrait((-3.0, 3.0), (-2.5, 2.5), points=80)
+    strong = [lines for lines in axes.collections if np.allclose(lines.get_linewidths(), 1.4)]
+    assert strong
+    path = strong[0].get_paths()[0].vertices
+    np.testing.assert_allclose(path[:, 1] ** 2 / 2 - np.cos(path[:, 0]), 1.0, atol=5e-3)  # a grid of 80 points
