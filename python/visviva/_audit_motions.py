@@ -11,6 +11,7 @@ from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
+from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -55,6 +56,8 @@ def impulse(
     >>> (vv.audit.impulse(push, (0.0, 0.5)) * np.pi).round(12).tolist()
     [1.0, 0.0, 0.0]
     """
+    if not callable(force):
+        raise InvalidInput("force", f"expected a function of the time, got {type(force).__name__}")
     start, end = float_array("span", span, (2,))
     rtol = positive("rtol", rtol)
 
@@ -146,6 +149,8 @@ def rigidity(trajectory: Any, pairs: Sequence[tuple[int, int]] | None = None) ->
     >>> bool(np.abs(vv.audit.rigidity(out)).max() < 1e-9)
     True
     """
+    if not isinstance(trajectory, Trajectory):
+        raise InvalidInput("trajectory", f"expected what `Scene.run` gives, got {type(trajectory).__name__}")
     x = trajectory.position
     count = x.shape[1]
     chosen = list(combinations(range(count), 2)) if pairs is None else [tuple(pair) for pair in pairs]

@@ -7,6 +7,7 @@ imported when they are asked for, so that nobody else pays for them.
 from __future__ import annotations
 
 from abc import abstractmethod
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
@@ -18,7 +19,7 @@ from visviva._paths import path_text
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Mapping, Sequence
     from os import PathLike
 
     from numpy.typing import NDArray
@@ -245,6 +246,8 @@ def chosen_columns(given: str | Sequence[str] | None, default: Sequence[str], kn
     """
     if given is None:
         return list(default)
+    if not isinstance(given, Iterable):
+        raise InvalidInput("columns", f"expected a name or several of {', '.join(sorted(known))}, got {given!r}")
     names = [given] if isinstance(given, str) else list(given)
     for name in names:
         if name not in known:

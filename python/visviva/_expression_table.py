@@ -8,8 +8,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import number
+from visviva._keywords import check_call
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, called, check_call, recorded
+from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, called, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:

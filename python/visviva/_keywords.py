@@ -10,7 +10,7 @@ from __future__ import annotations
 from functools import wraps
 from inspect import Parameter, signature
 from types import FunctionType
-from typing import TYPE_CHECKING, NoReturn, ParamSpec, TypeVar, overload
+from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar, overload
 
 from visviva import _core
 from visviva._text import article
@@ -19,7 +19,7 @@ from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongA
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["did_you_mean", "frozen", "known_keywords", "refuse_subclass"]
+__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "refuse_subclass"]
 
 # What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
 _ELSEWHERE = {
@@ -209,3 +209,17 @@ def _unknown(called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     elsewhere = _ELSEWHERE.get(("run" if called == "plan" else called, came))
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
+
+
+def check_call(
+    argument: str, function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str] = ()
+) -> None:
+    """Refuse a function that does not take what it will be called with."""
+    places, keywords = tuple(places), tuple(keywords)
+    try:
+        signature(function).bind(*places, **dict.fromkeys(keywords))
+    except TypeError as error:
+        called = ", ".join([*places, *(f"{name}=" for name in keywords)])
+        raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
+    except ValueError:  # one that does not tell what it takes
+        pass

@@ -8,6 +8,7 @@ Source: Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -21,8 +22,6 @@ from visviva.integrators import Method
 from visviva.integrators import methods as all_methods
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from matplotlib.axes import Axes
 
     from visviva.typing import MethodName
@@ -195,6 +194,8 @@ class WorkPrecision(Shown):
         columns = 1 + len(self.series) // _IN_A_COLUMN
         if axes is None:
             _, (axes,) = new_figure(1, (6.0 + 1.3 * columns, 5.0))
+        if isinstance(peers, str) or not isinstance(peers, Iterable):
+            raise InvalidInput("peers", f"expected names of series, as in ('REBOUND',), got {peers!r}")
         others = frozenset(peers)
         front = [point for point in self.envelope() if point.position_error > 0.0]
         axes.plot(
@@ -281,6 +282,8 @@ def work_precision(
     limit, times = positive("seconds", seconds), whole_number("repeats", repeats, low=1)
     known = {method.name: method for method in all_methods()}
     names = list(known) if methods is None else [m.name if isinstance(m, Method) else m for m in methods]
+    if not names:
+        raise InvalidInput("methods", "expected one or more methods, got none; leave it out for all")
     run = Runner(problem, limit, times, whole_number("threads", threads, low=1))
     points: list[Point] = []
     for name in names:

@@ -19,7 +19,7 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event_table import EventTable
-from visviva._keywords import known_keywords
+from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -371,6 +371,7 @@ def function(
     """
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
+    check_call("call", call, ("t", "position", "velocity"))
     return _made("function", direction, terminal, function=call)
 
 

@@ -9,10 +9,10 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, Literal
 
 from visviva import _expression_table
-from visviva._keywords import known_keywords
+from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
-from visviva.generalized._nodes import Nodes, check_call
+from visviva.generalized._nodes import Nodes
 from visviva.generalized._source import calls
 from visviva.generalized._symbolic import Symbols, sympy, time
 

@@ -206,4 +206,13 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
         },
     ),
     (vv.load, {"path": None}, {"path": (3, None, 1.5)}),
+    (vv.audit.impulse, {"force": lambda t: np.ones((len(t), 3)), "span": [0.0, 1.0]}, {"force": ("x", 3, None)}),
+    (vv.audit.rigidity, {"trajectory": SCENE.run(t=1.0)}, {"trajectory": (3, None, "run")}),
+    (
+        vv.work_precision,
+        {"problem": vv.problems.kepler(e=0.3), "methods": ["dop853"], "seconds": 0.001, "repeats": 1},
+        {"problem": ([], None), "methods": ([],)},
+    ),
+    (vv.events.function, {"call": lambda t, x, v: t - 1.0}, {"call": (3, None, lambda t, x: t)}),
+    (vv.systems.henon_heiles().poincare, {"section": "x", "t": 1.0}, {"section": (3, "z"), "t": (NAN, "t")}),
 ]

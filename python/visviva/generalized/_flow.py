@@ -85,6 +85,8 @@ class Flow:
         else:
             nodes, roots = self._source.nodes("section", [section])
             root = roots[0]
+            if nodes[root][0] == "constant":
+                raise InvalidInput("section", f"expected a function of the state, got {section!r}, which is one number")
         asked, _ = self._asked(number("t", t), method, rtol, dt, None)
         passed = {"nodes": nodes, "root": root, "energy": None, "function": None}
         asked["events"] = [passed | {"direction": float(direction), "last": None}]

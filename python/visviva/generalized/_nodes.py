@@ -5,7 +5,6 @@ A node is ``(operation, arguments, value)``, its arguments the numbers of nodes 
 
 from __future__ import annotations
 
-from inspect import signature
 from math import isfinite, log, pi
 from typing import TYPE_CHECKING, Any, NoReturn, SupportsFloat, SupportsIndex, TypeAlias
 
@@ -19,7 +18,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "called", "check_call", "recorded", "row"]
+__all__ = ["FUNCTIONS", "Expression", "Node", "Nodes", "called", "recorded", "row"]
 
 Node: TypeAlias = tuple[str, list[int], float]
 
@@ -312,18 +311,6 @@ def row(expressions: Iterable[Expression]) -> NDArray[np.object_]:
     numbers = np.empty(len(listed), dtype=object)
     numbers[:] = listed
     return numbers
-
-
-def check_call(argument: str, function: Callable[..., Any], places: Iterable[str], keywords: Iterable[str]) -> None:
-    """Refuse a function that does not take what it will be called with."""
-    places, keywords = tuple(places), tuple(keywords)
-    try:
-        signature(function).bind(*places, **dict.fromkeys(keywords))
-    except TypeError as error:
-        called = ", ".join([*places, *(f"{name}=" for name in keywords)])
-        raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
-    except ValueError:  # one that does not tell what it takes
-        pass
 
 
 def _is_array(other: object) -> bool:

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from visviva._arrays import number
+from visviva._keywords import check_call
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import Expression, Nodes, called, check_call, recorded, row
+from visviva.generalized._nodes import Expression, Nodes, called, recorded, row
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 __all__ = ["Source", "calls", "described"]

@@ -6,10 +6,9 @@ from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import float_array
-from visviva._keywords import known_keywords
+from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized import Hamiltonian, Lagrangian
-from visviva.generalized._nodes import check_call
 from visviva.generalized._points import with_points
 from visviva.systems import _points
 from visviva.systems._values import checked
