@@ -45,6 +45,31 @@ def entries(module: object, where: str, names: list[str]) -> list[str]:
     return lines
 
 
+def methods() -> list[str]:
+    """A table of all integrators, of points and of rigid bodies, as the core has registered them."""
+    lines = [
+        "What the core has registered: `vv.methods()` and `vv.rigid.methods()` give the same with all coefficients.",
+        "",
+        ".. list-table::",
+        "   :header-rows: 1",
+        "",
+        "   * - method",
+        "     - order",
+        "     - what it is",
+        "     - source",
+    ]
+    points = visviva.methods()
+    turning = [method for method in visviva.rigid.methods() if method.name not in {each.name for each in points}]
+    for method in (*points, *turning):
+        lines += [
+            f"   * - ``{method.name}``",
+            f"     - {method.order}",
+            f"     - {method.summary}",
+            f"     - {method.reference}",
+        ]
+    return lines
+
+
 def write_reference() -> None:
     """One page for the package and one for each of its rooms."""
     REFERENCE.mkdir(exist_ok=True)
@@ -55,8 +80,9 @@ def write_reference() -> None:
         # What the package itself names is on its own page.
         own = [name for name in module.__all__ if name not in visviva.__all__]
         pages[room] = [(module.__doc__ or "").splitlines()[0], "", *entries(module, f"visviva.{room}", own)]
+    pages["methods"] = methods()
     for room, lines in pages.items():
-        title = "visviva" if room == "visviva" else f"visviva.{room}"
+        title = {"visviva": "visviva", "methods": "Methods"}.get(room, f"visviva.{room}")
         text = "\n".join([title, "=" * len(title), "", *lines]).rstrip() + "\n"
         page = REFERENCE / f"{room}.rst"
         if not page.exists() or page.read_text(encoding="utf-8") != text:

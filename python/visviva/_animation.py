@@ -15,7 +15,7 @@ import numpy as np
 
 from visviva._arrays import number, whole_number
 from visviva._paths import path_text
-from visviva._style import COLORS, FRAME
+from visviva._style import COLORS, FRAME, legend_beside
 from visviva.errors import InvalidInput
 from visviva.plot import chosen_bodies, directions, label_places, new_figure
 
@@ -126,7 +126,7 @@ def _moving(
     ]
     if names and len(names) <= len(COLORS):
         # Beside the picture: within it, something would move behind.
-        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        legend_beside(axes)
     title = axes.set_title("")
 
     def draw(output: int) -> list[Any]:

@@ -7,20 +7,26 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._arrays import positive
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
+from visviva.scene import Scene
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.integrators import Method
-    from visviva.scene import Scene
     from visviva.typing import MethodName
 
 _ROUNDING = 1e-13
 """Beside the size of a scene: smaller changes are what steps round."""
 _NEAR = 2.0**-11
 """The step of differences, of the size of a scene: fourth order errs by some 1e-11 there, rounding by less."""
+
+
+def _check(scene: object) -> None:
+    if not isinstance(scene, Scene):
+        raise InvalidInput("scene", f"expected a Scene, got {type(scene).__name__}")
 
 
 def _end(scene: Scene, t: float, method: MethodName | Method, dt: float) -> NDArray[np.float64]:
@@ -71,6 +77,8 @@ def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> 
     >>> round(vv.audit.order(scene, 2.0, method="rk4", dt=0.02), 1)
     4.0
     """
+    _check(scene)
+    positive("dt", dt)
     x = [_end(scene, t, method, dt / 2**halvings) for halvings in range(3)]
     first, second = (float(np.abs(a - b).max(initial=0.0)) for a, b in ((x[0], x[1]), (x[1], x[2])))
     least = _ROUNDING * _size(scene)
@@ -121,6 +129,7 @@ def reversal(
     >>> vv.audit.reversal(scene, 4.0, method="rk4", dt=0.0625) > 1e-6
     True
     """
+    _check(scene)
     there = scene.run(t=t, method=method, dt=dt, rtol=rtol).final
     back = there.reversed().run(t=2.0 * t - scene.t0, method=method, dt=dt, rtol=rtol).final
     return float(np.abs(back.particles.position - scene.particles.position).max(initial=0.0)) / _size(scene)
@@ -167,6 +176,7 @@ def symplecticity(scene: Scene, t: float, *, method: MethodName | Method, dt: fl
     >>> vv.audit.symplecticity(scene, 2.0, method="rk4", dt=0.125) > 1e-5
     True
     """
+    _check(scene)
     bodies = scene.particles
     if not bodies.mass.all():
         raise InvalidInput("mass", "expected bodies that all have mass: a momentum is a mass times a velocity")

@@ -11,10 +11,10 @@ import numpy as np
 
 from visviva._exported import AXES
 from visviva._keywords import did_you_mean
-from visviva._style import BLUE
+from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.plot import POINTS, mark_round_off, new_figure
+from visviva.plot import POINTS, given_axes, mark_round_off, new_figure
 from visviva.recorded import COLUMN_AXES
 
 if TYPE_CHECKING:
@@ -110,7 +110,7 @@ def _panels(
     if ax is not None:
         if len(labels) != 1:
             raise InvalidInput("ax", f"one pair of axes takes one panel, and there are {len(labels)}: {labels}")
-        axes, figure = [ax], cast("Figure", ax.figure)
+        axes, figure = [given_axes(ax)], cast("Figure", ax.figure)
     else:
         figure, axes = new_figure(len(labels), (1.5 + 4.0 * len(labels), 3.6))
     stride = max(1, len(t) // POINTS)
@@ -129,7 +129,7 @@ def _panels(
         if changes and not floor:
             panel.ticklabel_format(axis="y", style="sci", scilimits=(-3, 3))
     if drawn == "bands":
-        axes[-1].legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        legend_beside(axes[-1])
     ended = int(np.isnan(values[:, -1]).any(axis=-1).sum())
     ended_by = f", of which {ended} ended before" if ended else ""
     axes[0].set_title(f"{count(copies, 'copy', 'copies')}{ended_by}", loc="left", fontsize="medium")

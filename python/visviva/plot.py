@@ -8,7 +8,7 @@ import numpy as np
 
 from visviva._keywords import did_you_mean
 from visviva._names import body_indices
-from visviva._style import FRAME, dress
+from visviva._style import FRAME, dress, legend_beside, set_box
 from visviva._text import count
 from visviva.errors import InvalidInput
 
@@ -27,6 +27,7 @@ __all__ = [
     "axes_or_new",
     "chosen_bodies",
     "directions",
+    "given_axes",
     "mark_round_off",
     "new_figure",
     "plot_trajectory",
@@ -40,6 +41,8 @@ POINTS = 4000
 _A_PATH = 10
 # A legend of more bodies would hide the picture.
 _LEGEND = 24
+# What turns at more than this part of its points is no line.
+_TURNING = 0.25
 # A relative change of the energy below this is the rounding of its terms, and no drift.
 _ROUND_OFF = 16.0 * float(np.finfo(float).eps)
 
@@ -75,9 +78,21 @@ def axes_or_new(axes: Axes | None) -> Axes:
     """
     if axes is None:
         return new_figure(1, (5.5, 4.0))[1][0]
+    return given_axes(axes)
+
+
+def given_axes(axes: Any) -> Axes:
+    """The axes that were given.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For what are none.
+    """
     if not hasattr(axes, "plot"):
         raise InvalidInput("ax", f"expected axes of matplotlib, as of plt.subplots(), or None, got {axes!r}")
-    return axes
+    given: Axes = axes
+    return given
 
 
 def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
@@ -151,8 +166,8 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
     label_places(axes, shown)
     axes.set_title("orbits")
     if names and len(bodies) <= _LEGEND:
-        # Beside the orbits, which may be anywhere within.
-        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        # Orbits may be anywhere within.
+        legend_beside(axes)
 
 
 def label_places(axes: Any, shown: Sequence[int]) -> None:
@@ -164,32 +179,54 @@ def label_places(axes: Any, shown: Sequence[int]) -> None:
         middle, half = ends.mean(axis=1), np.ptp(ends, axis=1) / 2.0
         half = np.maximum(half, 0.4 * half.max())
         axes.set(**{f"{axis}lim": (at - off, at + off) for axis, at, off in zip("xyz", middle, half, strict=True)})
-        axes.set_aspect("equal")
+        set_box(axes, half)
     else:
         axes.set_aspect("equal", adjustable="datalim")
 
 
-def mark_round_off(axes: Axes, change: NDArray[np.float64]) -> bool:
-    """Whether relative changes of an energy are no more than rounding; axes then say so. NaN is no change."""
-    if not np.nanmax(np.abs(change)) <= _ROUND_OFF:
+def mark_round_off(axes: Axes, change: NDArray[np.float64], terms: float = 1.0) -> bool:
+    """Whether relative changes of an energy are no more than rounding; axes then say so. NaN is no change.
+
+    `terms` is how many times as large as the energy the kinetic and potential energies are that it is the sum of.
+    """
+    rounding = _ROUND_OFF * terms
+    if not np.nanmax(np.abs(change)) <= rounding:
         return False
-    axes.set_ylim(-2.0 * _ROUND_OFF, 2.0 * _ROUND_OFF)
-    axes.axhspan(-_ROUND_OFF, _ROUND_OFF, color="0.95", zorder=-1)
+    axes.set_ylim(-2.0 * rounding, 2.0 * rounding)
+    axes.axhspan(-rounding, rounding, color="0.95", zorder=-1)
     axes.annotate("round-off", (0.02, 0.95), xycoords="axes fraction", va="top", color="0.4")
     return True
+
+
+def _terms(trajectory: Trajectory, energy: NDArray[np.float64]) -> float:
+    """How large kinetic and potential energies are beside their sum, as far as velocities tell."""
+    if "velocity" not in trajectory.recorded or not energy[0]:
+        return 1.0
+    masses = trajectory.scene.particles.mass
+    with np.errstate(all="ignore"):
+        kinetic = 0.5 * (masses * (trajectory.velocity**2).sum(axis=-1)).sum(axis=-1)
+        terms = float(np.max(kinetic + np.abs(energy - kinetic)) / abs(energy[0]))
+    return max(terms, 1.0) if np.isfinite(terms) else 1.0
+
+
+def _is_noise(change: NDArray[np.float64]) -> bool:
+    """Whether numbers turn so often that a line through them would be a band."""
+    steps = np.diff(change)
+    return len(steps) > 2 and bool(np.mean(steps[1:] * steps[:-1] < 0.0) > _TURNING)
 
 
 def _energy(axes: Axes, trajectory: Trajectory) -> None:
     energy = trajectory.energy
     scale = abs(energy[0]) if energy[0] != 0.0 else 1.0
     stride = max(1, len(trajectory) // POINTS)
-    change = (energy - energy[0]) / scale
+    t, change = trajectory.t[::stride], ((energy - energy[0]) / scale)[::stride]
     axes.set(xlabel="t", ylabel="(E − E₀) / |E₀|" if energy[0] != 0.0 else "E − E₀", title="energy")
-    if energy[0] != 0.0 and mark_round_off(axes, change):
+    rounded = energy[0] != 0.0 and mark_round_off(axes, (energy - energy[0]) / scale, _terms(trajectory, energy))
+    if rounded or _is_noise(change):
         # Points, since a line would draw noise as a signal.
-        axes.plot(trajectory.t[::stride], change[::stride], ".", markersize=2)
+        axes.plot(t, change, ".", markersize=2)
     else:
-        axes.plot(trajectory.t[::stride], change[::stride], linewidth=0.8)
+        axes.plot(t, change, linewidth=0.8)
     axes.axhline(0.0, color=FRAME, linewidth=0.6, zorder=0)
     axes.margins(x=0.01)
     axes.ticklabel_format(axis="y", style="sci", scilimits=(0, 0))

@@ -7,6 +7,7 @@ their three components along the last axis; all arguments broadcast against each
 Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.11; Landau & Lifshitz, *Mechanics*, §16–17.
 """
 
+from visviva.collision_table import CollisionTable
 from visviva.collisions._impacts import (
     CollisionOutcome,
     contact_time,
@@ -20,6 +21,7 @@ from visviva.collisions._relative import from_relative, reduced_mass, to_relativ
 
 __all__ = [
     "CollisionOutcome",
+    "CollisionTable",
     "contact_time",
     "elastic",
     "from_relative",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -12,8 +13,6 @@ from visviva.generalized._source import Source, _label
 from visviva.generalized._symbolic import sympy, time
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._system import GeneralizedSystem
@@ -75,6 +74,8 @@ def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float] | None) -> 
     source, n = system._source, len(system.coordinates)
     if source.description["forces"] or source.description["dissipation"] is not None or system._constraints():
         raise InvalidInput("L", "Routh's function is that of a Lagrangian without further forces and constraints")
+    if momenta is not None and not isinstance(momenta, Mapping):
+        raise InvalidInput("momenta", f"expected values by name, {{coordinate: momentum}}, got {momenta!r}")
     given = dict.fromkeys(system.cyclic) if momenta is None else {_label(k): v for k, v in momenta.items()}
     for name in given:
         if name not in system.coordinates:

@@ -8,6 +8,7 @@ import numpy as np
 
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
+from visviva.generalized._trajectory import check_run
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -23,6 +24,7 @@ _DEPENDENT = 1e-12
 
 def dalembert(system: Lagrangian, trajectory: GeneralizedTrajectory) -> NDArray[np.float64]:
     """Give the relative residual at each time."""
+    check_run(trajectory)
     c, n = Calculus(system), len(system.coordinates)
     run = trajectory.system
     if run._source.kind != "lagrangian" or run.coordinates != system.coordinates:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
@@ -19,7 +20,7 @@ from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -70,6 +71,8 @@ class GeneralizedEnsemble(Shown):
             for name, value in (("position", position), (system._second_name, second))
         ]
         own: dict[str, NDArray[np.float64]] = {}
+        if parameters is not None and not isinstance(parameters, Mapping):
+            raise InvalidInput("parameters", f"expected values by name, {{name: values}}, got {parameters!r}")
         for key, value in (parameters or {}).items():
             name = _label(key)
             if name not in system.parameters:

@@ -10,6 +10,7 @@ from visviva._keywords import known_keywords
 from visviva.generalized._flow import Flow
 from visviva.generalized._runs import Runs
 from visviva.generalized._symbolic import sympy, trees
+from visviva.generalized._trajectory import check_run
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -108,6 +109,7 @@ class GeneralizedSystem(Runs, Flow):
         if trajectory is None:
             t, states = np.array([self.t0]), self._start()[None, :]
         else:
+            check_run(trajectory)
             t, states = trajectory.t, trajectory._states
         found = self._model.evaluate(nodes, roots, t, states, self._values[None, :])
         return found[0] if trajectory is None else found

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["GeneralizedTrajectory"]
+__all__ = ["GeneralizedTrajectory", "check_run", "exported"]
 
 STATUS = {
     "finished": Status.OK,
@@ -35,6 +35,18 @@ STATUS = {
     "not finite": Status.STEP_FAILURE,
     "interrupted": Status.INTERRUPTED,
 }
+
+
+def check_run(trajectory: object) -> None:
+    """Refuse what is no run.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        By name.
+    """
+    if not isinstance(trajectory, GeneralizedTrajectory):
+        raise InvalidInput("trajectory", f"expected what `run` gives, got {type(trajectory).__name__}")
 
 
 def exported(
@@ -281,6 +293,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         >>> ax.get_xlabel()
         't'
         """
+        from visviva._style import legend_beside
         from visviva.plot import axes_or_new
 
         ax = axes_or_new(ax)
@@ -289,7 +302,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         ax.set_xlabel("t")
         ax.set_ylabel(", ".join(self.system.coordinates) if len(self.system.coordinates) < 4 else "coordinates")
         if len(self.system.coordinates) > 1:
-            ax.legend()
+            legend_beside(ax)
         return ax
 
     def plot_phase(self, name: str | None = None, *, ax: Axes | None = None) -> Axes:

@@ -10,7 +10,7 @@ from visviva._keywords import did_you_mean
 from visviva._style import BLUE, FRAME, VERMILION
 from visviva.errors import InvalidInput
 from visviva.orbits._central import effective_potential
-from visviva.plot import new_figure
+from visviva.plot import given_axes, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -33,7 +33,7 @@ def plot_orbit(orbit: CentralOrbit, kind: str, ax: Any) -> Figure:
         raise InvalidInput("kind", f"expected one of {expected}, got {kind!r}{hint}")
     if ax is None:
         _, (ax,) = new_figure(1, (5.5, 5.0))
-    pictures[kind](ax, orbit)
+    pictures[kind](given_axes(ax), orbit)
     figure: Figure = ax.get_figure()
     return figure
 

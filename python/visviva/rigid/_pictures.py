@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
-from visviva._style import VERMILION
+from visviva._style import VERMILION, legend_beside, set_box
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
@@ -79,7 +79,7 @@ def polhode(axes: Any, motion: FreeRotation | BodyTurning) -> None:
     _ellipsoid(axes, half)
     axes.plot(*path.T, linewidth=1.4, color=VERMILION)
     axes.plot(*path[:1].T, "o", markersize=4, color=VERMILION)
-    axes.set_box_aspect(half)
+    set_box(axes, half)
     axes.set(**{f"{letter}label": f"ω{letter} / √2T" for letter in _LETTERS}, title="polhode")
 
 
@@ -104,9 +104,9 @@ def traces(axes: Any, motion: FreeRotation | BodyTurning) -> None:
         axes.plot(*columns[:, :, at].T, linewidth=0.8, label=letter)
     along = 1.2 * _directions(motion.angular_momentum[:1])[0]
     axes.plot(*np.array([np.zeros(3), along]).T, color="0.2", label="L")
-    axes.set_box_aspect(np.ones(3))
+    set_box(axes, np.ones(3))
     axes.set(xlabel="x", ylabel="y", zlabel="z", title="the body's axes in space")
-    axes.legend(fontsize="small", loc="upper right")
+    legend_beside(axes)
 
 
 def spin(axes: Any, motion: FreeRotation | BodyTurning) -> None:
@@ -116,7 +116,7 @@ def spin(axes: Any, motion: FreeRotation | BodyTurning) -> None:
         axes.plot(motion.t[chosen], motion.angular_velocity[chosen, at], linewidth=0.8, label=f"ω{letter}")
     axes.set(xlabel="t", ylabel="ω in the body", title="angular velocity")
     axes.margins(x=0.01)
-    axes.legend(fontsize="small", loc="upper right")
+    legend_beside(axes)
 
 
 def nutation(axes: Any, motion: TopMotion) -> None:
@@ -130,7 +130,7 @@ def nutation(axes: Any, motion: TopMotion) -> None:
     path = motion.axis[_thinned(motion)]
     axes.plot(*path.T, linewidth=1.2, color=VERMILION)
     axes.plot(*path[:1].T, "o", markersize=4, color=VERMILION)
-    axes.set_box_aspect(np.ones(3))
+    set_box(axes, np.ones(3))
     axes.set(xlabel="x", ylabel="y", zlabel="z", title="nutation")
 
 

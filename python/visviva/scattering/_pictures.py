@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva._keywords import did_you_mean
-from visviva._style import COLORS, FRAME, LINES
+from visviva._style import COLORS, FRAME, LINES, legend_beside
 from visviva.errors import InvalidInput
-from visviva.plot import new_figure
+from visviva.plot import given_axes, new_figure
 from visviva.scattering._cross_sections import cross_section
 from visviva.scattering._structure import glories, orbiting, rainbows
 
@@ -52,12 +52,12 @@ def plot_deflection(found: Deflection, kind: object, ax: Any) -> Figure:
     energies = np.unique(found.energy)
     if energies.size > _ENERGIES:
         raise InvalidInput("plot", f"expected at most {_ENERGIES} energies in one picture, got {energies.size}")
-    axes = new_figure(1, (6.5, 4.0))[1][0] if ax is None else ax
+    axes = new_figure(1, (6.5, 4.0))[1][0] if ax is None else given_axes(ax)
     pictures[kind](axes, found, energies)
     _, labels = axes.get_legend_handles_labels()
     if labels:
         # Beside the lines, which may be anywhere within.
-        axes.legend(fontsize="small", loc="upper left", bbox_to_anchor=(1.0, 1.0))
+        legend_beside(axes)
     return cast("Figure", axes.figure)
 
 

@@ -11,6 +11,7 @@ import numpy as np
 
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._paths import path_text
 from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
@@ -226,6 +227,8 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
 
         Raises
         ------
+        visviva.InvalidInput
+            For what is no path.
         OSError
             Where the file cannot be written.
 
@@ -240,6 +243,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         >>> vv.scattering.MonteCarlo.load(path) == run
         True
         """
+        path = path_text("path", path)
         beam = self.beam
         energy = beam.beam_energy
         lines = energy if isinstance(energy, Spectrum) else None
@@ -301,7 +305,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         >>> vv.scattering.MonteCarlo.load(path) == result
         True
         """
-        with open(path, "rb") as stream:
+        with open(path_text("path", path), "rb") as stream:
             try:
                 with np.load(stream, allow_pickle=False) as file:
                     return _restored({name: file[name] for name in file.files})

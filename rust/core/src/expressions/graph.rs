@@ -249,6 +249,13 @@ impl Graph {
         sorted.into_iter().fold(one, |product, factor| self.multiply(product, factor))
     }
 
+    /// a · b of vectors.
+    pub fn dot(&mut self, a: [Id; 3], b: [Id; 3]) -> Id {
+        let products: Vec<(f64, Id)> =
+            a.into_iter().zip(b).map(|(a, b)| (1.0, self.multiply(a, b))).collect();
+        self.sum(0.0, &products)
+    }
+
     /// a / b.
     pub fn divide(&mut self, a: Id, b: Id) -> Id {
         if let Some(value) = self.as_constant(b)

@@ -4,9 +4,11 @@ use super::Force;
 use super::bodies::{Of, PreciseBodies, Vector};
 use super::context::Context;
 use super::links::{check_counts, of_link};
-use super::sources::{Kernel, Law, Relative};
+use super::series::Series;
+use super::sources::{Kernel, Law, Relative, Written, WrittenLaw};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
+use crate::expressions::graph::{Graph, Id};
 use crate::numerics::double_double::DoubleDouble;
 use crate::numerics::lanes::Lanes;
 use crate::numerics::points::distance;
@@ -116,6 +118,12 @@ impl ForceTerm for Oblate {
     }
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         self.sources(context).beside(other, context)
+    }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        self.sources(context).series(context)
+    }
+    fn has_series(&self) -> bool {
+        true
     }
     fn potential_and_virial(
         &self,
@@ -272,5 +280,35 @@ impl Law for Flattening {
             radial.multiply_add(d[1], axial * y),
             radial.multiply_add(d[2], axial * z),
         ]
+    }
+}
+
+impl WrittenLaw for Flattening {
+    fn written(&self, source: usize, of: &Written, graph: &mut Graph) -> [Id; 3] {
+        let [second, fourth] = self.harmonics[source];
+        let r2 = graph.dot(of.d, of.d);
+        let terms: Vec<(f64, Id)> = self.axis.into_iter().zip(of.d).collect();
+        let along = graph.sum(0.0, &terms);
+        let [inverse2, fifth] = [-1.0, -2.5].map(|exponent| graph.power(r2, exponent));
+        let squared = graph.multiply(along, along);
+        let square = graph.multiply(squared, inverse2);
+        let mut radial = graph.sum(-second, &[(5.0 * second, square)]);
+        let mut axial = graph.constant(-2.0 * second);
+        if fourth != 0.0 {
+            let inner = graph.sum(-42.0, &[(63.0, square)]);
+            let polynomial = graph.multiply(inner, square);
+            let polynomial = graph.sum(3.0 * fourth, &[(fourth, polynomial)]);
+            let of_axis = graph.sum(12.0 * fourth, &[(-28.0 * fourth, square)]);
+            let [more, more_axial] = [polynomial, of_axis].map(|factor| graph.multiply(inverse2, factor));
+            radial = graph.add(radial, more);
+            axial = graph.add(axial, more_axial);
+        }
+        let fifth = graph.multiply(of.strength, fifth);
+        let axial = graph.multiply(axial, along);
+        [0, 1, 2].map(|c| {
+            let along = graph.multiply(radial, of.d[c]);
+            let sum = graph.sum(0.0, &[(1.0, along), (self.axis[c], axial)]);
+            graph.multiply(fifth, sum)
+        })
     }
 }

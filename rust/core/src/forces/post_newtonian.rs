@@ -4,9 +4,11 @@ use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
 use super::oblate::{CONSTANT, check_sources, sources_act};
-use super::sources::{Kernel, Law, Relative};
+use super::series::Series;
+use super::sources::{Kernel, Law, Relative, Written, WrittenLaw};
 use super::term::{About, Bodies, Conserves, Coupling, ForceDeclaration, ForceTerm};
 use crate::error::{Error, Result};
+use crate::expressions::graph::{Graph, Id};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::real::Real;
 use crate::numerics::scaled::Scaled;
@@ -68,6 +70,12 @@ impl ForceTerm for PostNewtonian {
     fn kernel_after(&self, other: &dyn ForceTerm, context: &Context<'_>) -> Option<Box<dyn Force<Lanes>>> {
         self.sources(context).beside(other, context)
     }
+    fn series(&self, context: &Context<'_>) -> Option<Box<dyn Series<Lanes>>> {
+        self.sources(context).series(context)
+    }
+    fn has_series(&self) -> bool {
+        true
+    }
     fn potential_and_virial(
         &self,
         _: &PreciseBodies,
@@ -124,5 +132,25 @@ impl Law for Schwarzschild {
             radial.multiply_add(d[1], moving * v[1]),
             radial.multiply_add(d[2], moving * v[2]),
         ]
+    }
+}
+
+impl WrittenLaw for Schwarzschild {
+    fn written(&self, _: usize, of: &Written, graph: &mut Graph) -> [Id; 3] {
+        let [r2, v2, product] =
+            [(of.d, of.d), (of.velocity, of.velocity), (of.d, of.velocity)].map(|(a, b)| graph.dot(a, b));
+        let inverse = graph.power(r2, -0.5);
+        let cube = graph.power(r2, -1.5);
+        let strength = graph.product(&[of.strength, cube]);
+        let factor = graph.scale(self.inverse_square, strength);
+        let depth = graph.multiply(of.strength, inverse);
+        let radial = graph.sum(0.0, &[(4.0, depth), (-1.0, v2)]);
+        let moving = graph.scale(4.0, product);
+        [0, 1, 2].map(|c| {
+            let [along, with] =
+                [(radial, of.d[c]), (moving, of.velocity[c])].map(|(a, b)| graph.multiply(a, b));
+            let sum = graph.add(along, with);
+            graph.multiply(factor, sum)
+        })
     }
 }

@@ -8,6 +8,9 @@
 //! vector that is read soon after waits long for them.
 
 mod beside_gravity;
+mod series;
+
+pub(super) use series::{Written, WrittenLaw};
 
 use super::context::{Arrangement, Context, packed_place};
 use super::{Adds, Force, Phase};
