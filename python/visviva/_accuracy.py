@@ -54,13 +54,14 @@ def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
     """Warn of an orbit with too few steps: total energies hardly know of a light body that is lost."""
     if "too_long" not in result:
         return
-    copy, (body, about), steps, fewest = result["too_long"]
+    copy, (body, about), steps, fewest, at_pericenter = result["too_long"]
+    tight = ", as tight as at its pericenter," if at_pericenter else ""
     whose = f"in copy {copy}, " if ensemble else ""
     # A turn may take no time beside a step.
     shorter = f"a step that is {fewest / steps:.2g} times shorter or less, or " if steps > 0.0 else ""
     message = (
-        f"{whose}a turn of body {body} about body {about} has {steps:.3g} steps, and the method tells nothing of "
-        f"orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, dop853)"
+        f"{whose}a turn of body {body} about body {about}{tight} has {steps:.3g} steps, and the method "
+        f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, dop853)"
     )
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 

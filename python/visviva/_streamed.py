@@ -93,6 +93,6 @@ def _keep_worst(worst: dict[str, Any], result: dict[str, Any], start: int) -> No
         if "energy_error" not in worst or error[0] >= worst["energy_error"][1]:
             worst["energy_error"] = (copy + start, *error)
     if "too_long" in result:
-        copy, bodies, steps, fewest = result["too_long"]
-        if "too_long" not in worst or steps < worst["too_long"][2]:
-            worst["too_long"] = (copy + start, bodies, steps, fewest)
+        copy, *rest = result["too_long"]
+        if "too_long" not in worst or result["too_long"][2] < worst["too_long"][2]:
+            worst["too_long"] = (copy + start, *rest)

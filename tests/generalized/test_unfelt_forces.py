@@ -74,6 +74,27 @@ def test_what_rests_until_a_pulse_comes(method: str, off: float, place: float) -
         assert both.run(40.0, method=method, threads=threads).position[0, -1, 0] == out.position[-1, 0]
 
 
+@pytest.mark.parametrize("width", [1e-3, 1e-4, 1e-5])
+@pytest.mark.parametrize("method", ["gauss16", "gauss8", "gauss4"])
+def test_a_layer_where_the_run_begins(method: str, width: float) -> None:
+    """ẍ = −x + tanh(t/w)/2: the force is 0 at the start, and 1/2 at every stage of a step that is long beside w."""
+    system = vv.Lagrangian(
+        vx**2 / 2 - x**2 / 2, [x], forces={x: sp.tanh(vv.time / width) / 2}, position=[1.0], velocity=[0.0]
+    )
+    t = np.linspace(0.0, 20.0 * width, 20_001)
+    # What the layer leaves out of the impulse ∫ cos(20 − t)/2, by Simpson's rule; it is 0 beyond 20 w but for e⁻⁴⁰.
+    left = 0.5 * (1.0 - np.tanh(t / width))
+    weights = np.full(t.size, 2.0)
+    weights[1::2], weights[[0, -1]] = 4.0, 1.0
+    lost = (weights * left * np.sin(20.0 - t)).sum() * (t[1] - t[0]) / 3.0
+    expected = np.cos(20.0) + 0.5 * (1.0 - np.cos(20.0)) - lost
+    both = system.ensemble(position=[[1.0], [0.5]], velocity=[[0.0], [0.0]])
+    out = system.run(20.0, method=method)
+    off = {"gauss16": 1e-9, "gauss8": 1e-7, "gauss4": 1e-6}[method]
+    assert out.position[-1, 0] == pytest.approx(expected, abs=off)
+    assert both.run(20.0, method=method).position[0, -1, 0] == out.position[-1, 0]
+
+
 def test_what_is_switched_on_meets_no_singularity() -> None:
     """1 + tanh(t − 20) is 1e-16 in steps of 1e-16 before it is anything: rounding of nothing yet."""
     system = vv.Lagrangian(vx**2 / 2, [x], forces={x: 1 + sp.tanh(vv.time - 20)}, position=[0.0], velocity=[0.0])

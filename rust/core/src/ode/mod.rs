@@ -148,7 +148,7 @@ pub struct Multistep {
 }
 
 /// Steps in a period below which a one-step method tells nothing of an oscillator: leapfrog is unstable below π.
-const FEWEST_STEPS: f64 = 6.0;
+pub const FEWEST_STEPS: f64 = 6.0;
 
 impl Method {
     /// How many equal steps a period must have for the method to tell anything of it.

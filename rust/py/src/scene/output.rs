@@ -185,8 +185,8 @@ pub(super) fn output_dict<'py>(
             dict.set_item("dt_beyond", (step, span))?;
         }
     }
-    if let Some(TooLong { copy, bodies, steps, fewest }) = output.plan.too_long {
-        dict.set_item("too_long", (copy, bodies, steps, fewest))?;
+    if let Some(TooLong { copy, bodies, steps, fewest, at_pericenter }) = output.plan.too_long {
+        dict.set_item("too_long", (copy, bodies, steps, fewest, at_pericenter))?;
     }
     let worst =
         outcomes.iter().map(|outcome| outcome.energy_error).enumerate().filter(|(_, error)| !error.is_nan());

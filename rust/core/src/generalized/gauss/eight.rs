@@ -38,6 +38,8 @@ pub struct GaussEight {
     length_tried: Lanes,
     /// Rates at the ends of the steps that are tried.
     ends: Vec<Lanes>,
+    /// Rates at the beginnings of the first ones.
+    begin: Vec<Lanes>,
     /// Those of shadow steps.
     shadow: Columns,
     next: State<Lanes>,
@@ -72,6 +74,7 @@ impl GaussEight {
             length: Lanes::zero(),
             length_tried: Lanes::zero(),
             ends: vec![Lanes::zero(); evaluated],
+            begin: vec![Lanes::zero(); evaluated],
             shadow: Columns::new(evaluated),
             next: state.clone(),
             steps,
@@ -137,7 +140,17 @@ impl GaussEight {
         for lane in (0..WIDTH).filter(|&lane| asked.lane(lane)) {
             self.taken[lane] += 1;
         }
-        missed(&self.ending.weights, self.table.stages, &self.columns, &self.ends, h)
+        let stages = self.table.stages;
+        let mut most = missed(&self.ending.weights, stages, &self.columns, &self.ends, h);
+        let first = self.lanes(|_, pace| pace.kept == 0).and(asked);
+        if first.any() {
+            let begun = missed(&self.ending.first, stages, &self.columns, &self.begin, h);
+            for lane in (0..WIDTH).filter(|&lane| first.lane(lane)) {
+                let (begun, most) = (begun.0[lane], &mut most.0[lane]);
+                *most = if begun <= *most { *most } else { begun };
+            }
+        }
+        most
     }
 
     /// Looks for what motions from rest are measured by, in the lanes of the mask, over the spans of their runs.
@@ -193,6 +206,9 @@ impl Trial<Lanes> for GaussEight {
         }
         if matches!(self.steps, Steps::Chosen { .. }) {
             self.machine.run(Lanes::splat(self.t0) + clock.elapsed, state.all().0);
+            for (i, begin) in self.begin.iter_mut().enumerate() {
+                *begin = Lanes::select(fresh, self.machine.output(i), *begin);
+            }
         }
         for lane in (0..WIDTH).filter(|&lane| fresh.lane(lane)) {
             (self.taken[lane], self.lost[lane]) = (0, None);

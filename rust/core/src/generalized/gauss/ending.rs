@@ -21,6 +21,8 @@ const LOST_DIGITS: f64 = 1e-10;
 pub(super) struct Ending {
     /// What each stage contributes there, in all lanes.
     pub(super) weights: [Lanes; WIDTH],
+    /// And at the beginning, which of the first step of a run no step before it has looked at.
+    pub(super) first: [Lanes; WIDTH],
     /// Of what a polynomial leads astray in the next step, the most by which it errs at the end of its own where motions are smooth.
     share: f64,
 }
@@ -34,6 +36,7 @@ impl Ending {
         let later_terms = (0..table.stages).fold(1.0, |product, _| product * SMOOTH);
         Self {
             weights: table.at(&Lanes([1.0; WIDTH])),
+            first: table.at(&Lanes([0.0; WIDTH])),
             share: later_terms * product(1.0) / product(farthest),
         }
     }

@@ -40,6 +40,8 @@ pub struct GaussStep {
     length_tried: f64,
     /// Where the stages lead at the end of the step.
     led: Vec<Lanes>,
+    /// Rates at the beginning of the first step, if it was chosen here.
+    begin: Vec<f64>,
     /// Those of a shadow step.
     shadow: Stages,
     next: State<f64>,
@@ -71,6 +73,7 @@ impl GaussStep {
             led: vec![Lanes([0.0; WIDTH]); evaluated],
             length: 0.0,
             length_tried: 0.0,
+            begin: vec![],
             shadow: Stages::new(evaluated),
             next: state.clone(),
             steps,
@@ -162,7 +165,8 @@ impl GaussStep {
         }
     }
 
-    /// By how much the rates at the end of the step are not those that the stages lead to, as a part of a size.
+    /// By how much the rates at the end of the step, and at the beginning of the first, are not those that the stages lead to,
+    /// as a part of a size.
     fn missed(&mut self, t: f64, h: f64) -> f64 {
         led(&self.ending.weights, &self.stages.rates, &mut self.led);
         let end = self.next.all().0;
@@ -174,6 +178,14 @@ impl GaussStep {
         let mut most = 0.0;
         for (i, led) in self.led.iter().enumerate() {
             let missed = (self.machine.output(i).0[0] - led.0[0]).abs() * h.abs() * self.stages.scales[i];
+            most = if missed <= most { most } else { missed };
+        }
+        if self.pace.kept > 0 {
+            return most;
+        }
+        led(&self.ending.first, &self.stages.rates, &mut self.led);
+        for (i, (led, begin)) in self.led.iter().zip(&self.begin).enumerate() {
+            let missed = (begin - led.0[0]).abs() * h.abs() * self.stages.scales[i];
             most = if missed <= most { most } else { missed };
         }
         most
@@ -203,6 +215,7 @@ impl Trial<f64> for GaussStep {
             self.machine.run(Lanes([self.t0 + clock.elapsed; WIDTH]));
             self.evaluations += 1;
             let rate = |i: usize| self.machine.output(i).0[0];
+            self.begin = (0..self.stages.rates.len()).map(rate).collect();
             clock.h = first_step(self.form, (|i: usize| y[i], rate), (span, self.max_step));
             let moves = |y: &f64| *y != 0.0;
             let is_driven = matches!(self.steps, Steps::Chosen { held: false, .. });

@@ -99,8 +99,8 @@ pub struct Systems<'a> {
     pub row: usize,
     /// The number of the first rigid body.
     pub first: usize,
-    /// The constant of gravity, 0 without.
-    pub constant: f64,
+    /// The constant of gravity of each system, 0 without.
+    pub constants: Vec<f64>,
     /// The units of the integration.
     pub units: Units,
     /// The time at which the run begins.
@@ -190,7 +190,7 @@ impl Loads {
                 }
             }
         }
-        if systems.constant == 0.0 {
+        if systems.constants.iter().all(|&constant| constant == 0.0) {
             return;
         }
         for (place, &number) in own.iter().enumerate() {
@@ -202,9 +202,10 @@ impl Loads {
                 if member == rigid + number {
                     continue;
                 }
-                let constant = units.take(systems.constant, [3, -1, -2]);
+                let constant = lane_by_lane(systems.constants.len(), |system| {
+                    units.take(systems.constants[system], [3, -1, -2])
+                });
                 let mass = lane_by_lane(systems.mass.len(), |system| systems.mass[system][slot]);
-                let constant = Lanes::splat(constant);
                 let pull = constant * mass;
                 self.acting.push(Acting::Shape {
                     body: systems.first + place,

@@ -81,9 +81,14 @@ impl Plan {
                 );
                 row("long span", format!("{periods:.0} of the shortest period"), why);
             }
-            if let Some(TooLong { bodies: (body, about), steps, fewest, .. }) = self.too_long {
+            if let Some(TooLong { bodies: (body, about), steps, fewest, at_pericenter, .. }) = self.too_long {
+                let tight = if at_pericenter { ", as tight as at its pericenter" } else { "" };
                 let why = format!("the method tells nothing of an orbit with fewer than {fewest}");
-                row("step too long", format!("{steps:.0} in a turn of body {body} about body {about}"), why);
+                row(
+                    "step too long",
+                    format!("{steps:.2} in a turn of body {body} about body {about}{tight}"),
+                    why,
+                );
             }
             if self.from > 0 {
                 let why = "the scene ended a run with this method and step: its bits are those of one run";

@@ -2,7 +2,7 @@
 
 use super::super::{Scene, distance};
 use crate::forces::ForceTerm;
-use crate::ode::Method;
+use crate::ode::{FEWEST_STEPS, Method};
 use core::f64::consts::TAU;
 use std::sync::Arc;
 
@@ -56,10 +56,12 @@ pub struct TooLong {
     pub copy: usize,
     /// The body on the orbit, and the one that it is about.
     pub bodies: (usize, usize),
-    /// Steps in a turn.
+    /// Steps in a turn, or in one on a circle through the pericenter.
     pub steps: f64,
     /// How many the method needs to tell anything of it.
     pub fewest: f64,
+    /// Whether it is that circle.
+    pub at_pericenter: bool,
 }
 
 /// The orbit with the fewest steps, if a method with equal steps tells nothing of it: total energies hardly know of a light
@@ -80,13 +82,18 @@ pub(super) fn too_long(
     let mut worst: Option<TooLong> = None;
     for copy in 0..scene.copies {
         for body in 0..scene.particles {
-            let Some(Some(Turn { about, period, .. })) = turn(scene, copy, constant, body) else {
+            let Some(Some(Turn { about, period, at_pericenter, .. })) = turn(scene, copy, constant, body)
+            else {
                 continue;
             };
-            let steps = period / dt;
-            // Of less than a turn nothing is said.
-            if steps < fewest && period <= span && worst.is_none_or(|worst| steps < worst.steps) {
-                worst = Some(TooLong { copy, bodies: (body, about), steps, fewest });
+            for (turn, fewest, at_pericenter) in
+                [(period, fewest, false), (at_pericenter, FEWEST_STEPS, true)]
+            {
+                let steps = turn / dt;
+                // Of less than a turn nothing is said.
+                if steps < fewest && period <= span && worst.is_none_or(|worst| steps < worst.steps) {
+                    worst = Some(TooLong { copy, bodies: (body, about), steps, fewest, at_pericenter });
+                }
             }
         }
     }

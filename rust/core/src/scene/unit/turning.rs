@@ -193,8 +193,11 @@ pub(in crate::scene) fn assembled(
     let Turning::Stepped(free) = plan.turning else { return None };
     let bodies = scene.rigid.as_ref().filter(|_| !units[0].starts.is_empty())?;
     let first = &units[0];
-    let constants = plan.forces_of(first.unit.copy).iter().filter_map(|force| force.as_newtonian());
-    let constant = constants.map(|(constant, _)| constant).sum();
+    // Copies may have forces of their own.
+    let constant = |unit: &Prepared| {
+        let constants = plan.forces_of(unit.unit.copy).iter().filter_map(|force| force.as_newtonian());
+        constants.map(|(constant, _)| constant).sum()
+    };
     let (mut lanes, mut loads) = (Vec::new(), Loads::default());
     for (block, units) in units.chunks(WIDTH).enumerate() {
         let row = block * first.shape.rows;
@@ -214,7 +217,7 @@ pub(in crate::scene) fn assembled(
             particles: scene.particles,
             row,
             first: lanes.len(),
-            constant,
+            constants: units.iter().map(constant).collect(),
             units: plan.units,
             t0: plan.t0,
         };
