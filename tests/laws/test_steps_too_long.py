@@ -50,14 +50,13 @@ def test_copies_are_named() -> None:
 
 
 @pytest.mark.parametrize("method", ["leapfrog", "kahan_li8", "rk4"])
-@pytest.mark.parametrize("mass", [0.0, 1e-12])
-def test_a_light_body_on_a_long_ellipse(method: str, mass: float) -> None:
+@pytest.mark.parametrize("heavy", [0.0, 1e-2])
+def test_a_light_body_on_a_long_ellipse(method: str, heavy: float) -> None:
     """Its pericenter is a hundredth of its axis: it was thrown out to a thousand axes without a word."""
-    comet = vv.Particles([1.0, mass], [[0.0, 0.0, 0.0], [1.99, 0.0, 0.1]], [[0.0, 0.0, 0.0], [0.0, 0.07, 0.0]])
-    scene = vv.Scene(comet, vv.Gravity(G=1.0))
+    places, velocities = [[0.0, 0.0, 0.0], [1.99, 0.0, 0.1], [0.0, 40.0, 0.0]], [[0.0] * 3, [0.0, 0.07, 0.0], [0.0] * 3]
+    scene = vv.Scene(vv.Particles([1.0, 0.0, heavy], places, velocities), vv.Gravity(G=1.0))
     with pytest.warns(vv.AccuracyWarning, match="a turn of body 1 about body 0, as tight as at its pericenter, has 0"):
         scene.run(t=100.0, method=method, dt=0.05)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         scene.run(t=100.0, method="taylor")
-        scene.run(t=100.0, method=method, dt=5e-4)

@@ -192,9 +192,12 @@ pub(super) fn run_through(scene: &Scene, request: &Request, ticker: &mut Ticker<
             columns.finish(&core::mem::take(&mut missing));
         }
     }
-    if matches!(plan.turning, Turning::Exact) {
-        turn_freely((scene, begun.start(scene)), request, &mut columns, &outcomes, &mut reached, ticker)?;
-    }
+    // What acts on some copies may be nothing to others.
+    let free = parts.iter().filter(|part| matches!(part.plan.turning, Turning::Exact));
+    let free: Vec<usize> =
+        free.flat_map(|part| (0..part.scene.copies).map(|copy| part.member(copy))).collect();
+    let scenes = (scene, begun.start(scene));
+    turn_freely(scenes, &free, request, &mut columns, &outcomes, &mut reached, ticker)?;
     if wanted.keep_states {
         let rows: Vec<usize> = outcomes.iter().map(|outcome| outcome.rows).collect();
         derive(scene, &mut columns, &rows, request.threads, ticker)?;

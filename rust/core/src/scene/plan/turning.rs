@@ -31,7 +31,10 @@ impl Turning {
         if let Some(order) = discrete(method) {
             return Self::Stepped(Free::Discrete(order));
         }
-        let pulls = forces.iter().any(|force| force.as_newtonian().is_some());
+        // Copies may have forces of their own.
+        let own = scene.own_forces.iter().flat_map(|own| &own.sets).flatten();
+        let mut newtonian = forces.iter().chain(own).filter_map(|force| force.as_newtonian());
+        let pulls = newtonian.any(|(constant, _)| constant != 0.0);
         if bodies.is_loaded() || (pulls && scene.particles > 1 && bodies.any_shape()) {
             return Self::Stepped(Free::Exact);
         }

@@ -14,13 +14,14 @@ use crate::rigid::quaternion::Quaternion;
 /// Orientations that one thread finds at a time, about.
 const TOGETHER: usize = 1 << 12;
 
-/// Fills in orientations and angular velocities, of the rows that each copy has and of where it ended: of a scene, which may
-/// go on with a run that began at `start`. Then bodies turn on from there, as they would have in one run.
+/// Fills in orientations and angular velocities of some copies, of the rows that each has and of where it ended: of a scene,
+/// which may go on with a run that began at `start`. Then bodies turn on from there, as they would have in one run.
 ///
 /// # Errors
 /// A spin that no body has, or turns that nobody can count.
 pub(super) fn turn_freely(
     (scene, start): (&Scene, &Scene),
+    copies: &[usize],
     request: &Request,
     columns: &mut Columns,
     outcomes: &[Outcome],
@@ -29,7 +30,8 @@ pub(super) fn turn_freely(
 ) -> Result<()> {
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let times = columns.times;
-    let all: Vec<usize> = (0..scene.copies * bodies.count).collect();
+    let of = |&copy: &usize| copy * bodies.count..(copy + 1) * bodies.count;
+    let all: Vec<usize> = copies.iter().flat_map(of).collect();
     let together = TOGETHER.div_ceil(times.max(1));
     let chunks: Vec<&[usize]> = all.chunks(together).collect();
     let found = for_chunks(request.threads, chunks.len(), ticker, |chunk, ticker| {
