@@ -5,9 +5,14 @@ from __future__ import annotations
 import sys
 import warnings
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
 
 from visviva.errors import AccuracyWarning
+
+if TYPE_CHECKING:
+    from numpy.typing import NDArray
 
 _TOLERATED = 1e-2
 """Of kinetic + |potential| energy: beyond it not even the shape of an orbit can be trusted."""
@@ -78,3 +83,21 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) 
     if error < _UNRESOLVED:
         return f"{told}try {named}, or an adaptive method (dop853)"
     return f"{told}try an adaptive method (dop853), which finds the steps that close bodies take, or at most {named}"
+
+
+def judge_energies(dt: float, energies: NDArray[np.float64], sizes: NDArray[np.float64], *, ensemble: bool) -> None:
+    """Warn of energies (B, 2) at both ends of runs in equal steps that are conserved and differ out of all proportion.
+
+    `sizes` (B, 2) are those of the kinetic and potential energies that they are sums of.
+    """
+    with np.errstate(all="ignore"):
+        errors = np.abs(energies[:, 1] - energies[:, 0]) / sizes.max(axis=1)
+    worst = int(np.argmax(np.where(np.isfinite(errors), errors, 0.0)))
+    if not errors[worst] > _UNRESOLVED:
+        return
+    whose = f"in copy {worst}, " if ensemble else ""
+    message = (
+        f"{whose}the energy at the end is off by {errors[worst]:.2g} of kinetic + |potential|: a step of dt = {dt:g} "
+        "does not resolve this motion; take a shorter one, or leave it to gauss16, which chooses its own"
+    )
+    warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())

@@ -86,6 +86,7 @@ def test_a_copy_has_them_by_splittings_and_sums_too(method: str) -> None:
         assert np.array_equal(many[member].run(T, method=method, dt=0.1).position, out.position[member])
 
 
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # of the equal steps that are too long for one
 @pytest.mark.parametrize("how", [{"dt": 0.1}, {}, {"max_step": 0.05, "rtol": 1e-6}])
 @pytest.mark.parametrize("method", ["gauss4", "gauss8", "gauss16"])
 def test_copies_of_their_own_pace_do_not_feel_each_other(method: str, how: dict[str, Any]) -> None:

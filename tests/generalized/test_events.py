@@ -38,6 +38,7 @@ def speed(_q: Any, v: Any, _t: Any, **_parameters: Any) -> Any:
     return v[0]
 
 
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # Euler's method, whose bits are as good as any
 @pytest.mark.parametrize("method", METHODS)
 def test_events_are_states_of_the_run_and_change_no_bit_of_it(method: str) -> None:
     swing = vv.systems.pendulum(g=1.0, position=[2.0])

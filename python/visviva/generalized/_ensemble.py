@@ -14,6 +14,7 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
+from visviva.generalized._resolved import judge
 from visviva.generalized._source import _label
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
 from visviva.status import Status
@@ -166,6 +167,7 @@ class GeneralizedEnsemble(Shown):
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)
+        judge(self.system, asked, self._states, (out._states[:, -1], float(out.t[-1])), self._parameters)
         return out
 
 

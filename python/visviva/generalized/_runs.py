@@ -12,6 +12,7 @@ from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 from visviva.generalized._methods import check_atol, method_name
+from visviva.generalized._resolved import judge
 from visviva.generalized._states import States, whole
 from visviva.status import Status
 
@@ -206,6 +207,8 @@ class Runs(States):
         if failure is not None:
             raise ConvergenceError(failure, result["reached"][0], out)
         assert len(out.t) == len(outputs) or out.status is Status.STOPPED
+        if len(out.t):
+            judge(whole(self), asked, start[None, :], (out._states[-1:], float(out.t[-1])), self._values[None, :])
         return out
 
     def _run(

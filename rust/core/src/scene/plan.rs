@@ -270,7 +270,7 @@ impl Plan {
         plan.guided = plan.method.adaptive() && plan.passive_apart() && plan.forces.iter().all(guides);
         plan.threads = plan.share_threads(request);
         if !plan.turning.steps() {
-            plan.too_long = turn::too_long(scene, &plan.forces, method, (dt, whole));
+            plan.too_long = turn::too_long(scene, &plan.forces, method, (dt, whole), touching);
         }
         if automatic && chosen.is_none() && plan.solutions.integrates() {
             plan.quiet = quiet::quiet(scene, &plan.forces, direction * whole);
