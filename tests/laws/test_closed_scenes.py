@@ -1,17 +1,9 @@
 """The conservation laws over random closed scenes, for every method there is."""
 
-import sys
 from itertools import pairwise
-from pathlib import Path
 
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from numpy.typing import NDArray
-
-import visviva as vv
-
-sys.path.insert(0, str(Path(__file__).parent))
 from closed_scenes import (
     END,
     METHODS,
@@ -26,6 +18,10 @@ from closed_scenes import (
     step,
     tolerance,
 )
+from hypothesis import given, settings
+from numpy.typing import NDArray
+
+import visviva as vv
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)

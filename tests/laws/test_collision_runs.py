@@ -3,17 +3,16 @@
 from __future__ import annotations
 
 import pickle
-import sys
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import pytest
+from colliding import crowd, each_method, head_on, how, spheres
 
 import visviva as vv
 
-sys.path.insert(0, str(Path(__file__).parent))
-from colliding import crowd, each_method, head_on, how, spheres
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 def test_what_mergers_leave_goes_on() -> None:

@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import sys
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from colliding import crowd, each_method, head_on, how, spheres
 
 import visviva as vv
-
-sys.path.insert(0, str(Path(__file__).parent))
-from colliding import crowd, each_method, head_on, how, spheres
 
 EPSILON = float(np.finfo(float).eps)
 

@@ -1,18 +1,13 @@
 """Integration against what is known of a motion: its closed form, or what a central field keeps."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from closed_scenes import METHODS, arrays, distance
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import visviva as vv
-
-sys.path.insert(0, str(Path(__file__).parent))
-from closed_scenes import METHODS, arrays, distance
 
 
 @given(

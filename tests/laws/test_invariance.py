@@ -1,18 +1,13 @@
 """What changes nothing of a closed scene: another frame, other units, mirrors, time reversed, company, outputs."""
 
-import sys
-from pathlib import Path
-
 import numpy as np
 import pytest
+from closed_scenes import END, METHODS, NAMES, arguments, arrays, closed_scenes, distance, run, state_error
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from numpy.typing import NDArray
 
 import visviva as vv
-
-sys.path.insert(0, str(Path(__file__).parent))
-from closed_scenes import END, METHODS, NAMES, arguments, arrays, closed_scenes, distance, run, state_error
 
 
 @pytest.mark.parametrize("method", METHODS, ids=NAMES)

@@ -6,19 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from event_scenes import PERIOD, kepler
 
 import visviva as vv
 
 MASS = np.array([1.0, 0.5])
-PERIOD = 2.0 * np.pi / np.sqrt(1.5)
-
-
-def kepler(e: float = 0.5) -> vv.Scene:
-    """Two bodies at the pericenter, with the semi-major axis 1."""
-    separation, speed = np.array([1.0 - e, 0.0, 0.0]), np.sqrt(1.5 * (1.0 + e) / (1.0 - e))
-    share = np.array([-0.5, 1.0])[:, None] / 1.5
-    velocity = np.array([0.0, speed, 0.0])
-    return vv.Scene(vv.Particles(MASS, share * separation, share * velocity), vv.Gravity(G=1.0))
 
 
 @pytest.mark.parametrize("method", ["leapfrog", "yoshida4", "rk4"])
@@ -26,12 +18,12 @@ def kepler(e: float = 0.5) -> vv.Scene:
 def test_it_passes_a_value_where_the_energies_of_the_nodes_do(method: str, direction: int) -> None:
     dt = PERIOD / 64
     nodes = dt * np.arange(401)
-    plain = kepler().run(t=nodes, method=method, dt=dt, record=("energy",))
+    plain = kepler(0.5).run(t=nodes, method=method, dt=dt, record=("energy",))
     level = float(np.median(plain.energy)) + 1e-9
     above = plain.energy > level
     changes = above[1:].astype(int) - above[:-1].astype(int)
     event = vv.events.energy(level, direction=direction)
-    watched = kepler().run(t=nodes, method=method, dt=dt, record=("energy",), events=[event])
+    watched = kepler(0.5).run(t=nodes, method=method, dt=dt, record=("energy",), events=[event])
     np.testing.assert_array_equal(watched.energy, plain.energy)
     wanted = np.flatnonzero(changes if direction == 0 else changes == direction)
     assert len(wanted) > 0
@@ -48,7 +40,7 @@ def test_it_passes_a_value_where_the_energies_of_the_nodes_do(method: str, direc
     "how", [{"method": "dop853"}, {"method": "taylor"}, {"method": "kahan_li8", "dt": PERIOD / 500}]
 )
 def test_a_guard_that_is_not_met_evaluates_no_forces(how: dict[str, Any]) -> None:
-    scene = kepler()
+    scene = kepler(0.5)
     copies = scene.ensemble(velocity=scene.particles.velocity * np.array([1.0, 0.98])[:, None, None])
     level = float(scene.run(t=1.0).energy[0])
     for of in (scene, copies):
@@ -58,6 +50,28 @@ def test_a_guard_that_is_not_met_evaluates_no_forces(how: dict[str, Any]) -> Non
         assert len(watched.events) == 0
         np.testing.assert_array_equal(watched.position, plain.position)
         assert watched.stats.evaluations == plain.stats.evaluations
+
+
+@pytest.mark.parametrize("how", [{"method": "dop853"}, {"method": "taylor"}, {"method": "yoshida4", "dt": 0.05}])
+def test_copies_with_masses_of_their_own_and_massless_bodies(how: dict[str, Any]) -> None:
+    """Eleven copies, of which each passes the level as it does alone, on one thread and on three."""
+    pair = kepler(0.5).particles
+    light = np.array([[5.0, 0.0, 0.0], [0.0, 7.0, 0.0]])
+    bodies = vv.Particles(
+        [*MASS, 0.0, 0.0], np.vstack([pair.position, light]), np.vstack([pair.velocity, np.zeros((2, 3))])
+    )
+    scene = vv.Scene(bodies, vv.Gravity(G=1.0))
+    masses = bodies.mass * np.linspace(0.9, 1.1, 11)[:, None]
+    many = scene.ensemble(mass=masses)
+    level = float(scene.run(t=0.1, record=("energy",)).energy[0]) + 1e-9
+    guard = {"events": [vv.events.energy(level)]}
+    runs = [many.run(t=20.0, threads=threads, **how, **guard) for threads in (1, 3)]
+    np.testing.assert_array_equal(runs[0].events.t, runs[1].events.t)
+    for member in (0, 5, 10):
+        own = vv.Scene(vv.Particles(masses[member], bodies.position, bodies.velocity), vv.Gravity(G=1.0))
+        alone = own.run(t=20.0, **how, **guard)
+        np.testing.assert_array_equal(runs[0].events.t[runs[0].events.member == member], alone.events.t)
+        np.testing.assert_array_equal(runs[0].position[member, -1], alone.position[-1])
 
 
 def test_what_takes_energy_is_looked_at_inside_of_steps() -> None:

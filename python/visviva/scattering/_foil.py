@@ -16,7 +16,7 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
 from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
-from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally
+from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult, FoilTally
 from visviva.scattering._monte_carlo import _which
 
 if TYPE_CHECKING:
@@ -31,13 +31,6 @@ if TYPE_CHECKING:
 __all__ = ["Foil"]
 
 _SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
-_TALLIES: tuple[FoilTallyName, ...] = (
-    "transmitted_angle",
-    "transmitted_energy",
-    "reflected_angle",
-    "reflected_energy",
-    "stopped_depth",
-)
 
 
 @known_keywords
@@ -162,7 +155,7 @@ class Foil:
         beam_energy: float,
         n_events: int,
         seed: int,
-        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, Any] = _TALLIES,
+        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, Any] = USUAL_TALLIES,
         bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
         incidence: float = 0.0,
         lowest_energy: float | None = None,

@@ -21,9 +21,18 @@ if TYPE_CHECKING:
 
     from visviva.scattering._foil import Foil
     from visviva.scattering._foil_material import Ion
+    from visviva.typing import FoilTallyName
 
-__all__ = ["Bombardment", "FoilResult", "FoilTally", "Fraction"]
+__all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult", "FoilTally", "Fraction"]
 
+#: What is counted if nobody asks for anything else.
+USUAL_TALLIES: tuple[FoilTallyName, ...] = (
+    "transmitted_angle",
+    "transmitted_energy",
+    "reflected_angle",
+    "reflected_energy",
+    "stopped_depth",
+)
 _FATES = ("transmitted", "reflected", "stopped", "missed")
 _AXES = {
     "lab_angle": "angle from the beam",
