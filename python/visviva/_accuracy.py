@@ -26,6 +26,9 @@ _UNRESOLVED = 0.1
 
 _LOW_ORDER = 4
 
+_BLOWN_UP = 1e4
+"""Energy errors beyond it have grown from step to step, and tell nothing of how much shorter a step must be."""
+
 _PACKAGE = str(Path(__file__).parent)
 
 
@@ -51,7 +54,8 @@ def judge(result: dict[str, Any], *, ensemble: bool) -> None:
         return
     whose = f"in copy {copy}, " if ensemble else ""
     advice = _advice(result, error, dt, order)
-    message = f"{whose}the energy at the end is off by {error:.2g} of kinetic + |potential|: {advice}"
+    size = f"{error:.2g}" if error < np.inf else "more than 1e308"
+    message = f"{whose}the energy at the end is off by {size} of kinetic + |potential|: {advice}"
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 
 
@@ -78,7 +82,7 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) 
     # it has grown to the energy itself it tells little: then as for a low order.
     power = 1.0 / (order if error < _UNRESOLVED else min(order, _LOW_ORDER))
     longest = min(dt, result.get("dt_beyond", (dt, dt))[1])
-    named = f"dt = {float(f'{0.5 * longest * (_WANTED / error) ** power:.0e}'):g}"
+    named = f"dt = {float(f'{0.5 * longest * (_WANTED / min(error, _BLOWN_UP)) ** power:.0e}'):g}"
     told = f"a step of dt = {dt:g} does not resolve this motion; "
     if error < _UNRESOLVED:
         return f"{told}try {named}, or an adaptive method (dop853)"

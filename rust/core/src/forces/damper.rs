@@ -101,6 +101,9 @@ impl ForceTerm for Dampers {
     fn conserves(&self) -> Conserves {
         Conserves { momentum: true, angular_momentum: About::Everywhere, spin: true, energy: false }
     }
+    fn never_gives_energy(&self) -> bool {
+        true
+    }
     fn keeps_plane(&self) -> bool {
         true
     }

@@ -141,6 +141,9 @@ impl<L: Law> ForceTerm for Spheres<L> {
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
     }
+    fn never_gives_energy(&self) -> bool {
+        true
+    }
     fn translation_invariant(&self) -> bool {
         true
     }

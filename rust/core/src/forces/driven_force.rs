@@ -3,7 +3,7 @@
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
 use super::series::{Scale, Series};
-use super::term::{Bodies, Drive, ForceDeclaration, ForceTerm};
+use super::term::{Bodies, ForceDeclaration, ForceTerm};
 use super::{Adds, Force, Phase};
 use crate::error::Result;
 use crate::numerics::cosine::cosine;
@@ -23,6 +23,17 @@ use std::sync::Arc;
 /// The exponents of length, mass and time in a force.
 const FORCE: [i32; 3] = [1, 1, -2];
 const FREQUENCY: [i32; 3] = [0, 0, -1];
+
+/// The force amplitude·cos(frequency·t + phase), t being the scene's own time.
+#[derive(Clone, Copy, Debug)]
+pub struct Drive {
+    /// The largest force.
+    pub amplitude: [f64; 3],
+    /// The angular frequency.
+    pub frequency: f64,
+    /// The phase at time 0.
+    pub phase: f64,
+}
 
 /// What it declares about itself.
 pub static DECLARATION: ForceDeclaration = Declaration {

@@ -74,6 +74,9 @@ impl ForceTerm for LinearDrag {
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
     }
+    fn never_gives_energy(&self) -> bool {
+        true
+    }
     fn translation_invariant(&self) -> bool {
         true
     }

@@ -102,6 +102,9 @@ impl ForceTerm for QuadraticDrag {
     fn needs(&self) -> Needs {
         Needs { velocity: true, ..Needs::default() }
     }
+    fn never_gives_energy(&self) -> bool {
+        true
+    }
     fn translation_invariant(&self) -> bool {
         true
     }

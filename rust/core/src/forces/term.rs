@@ -7,7 +7,9 @@
 use super::Force;
 use super::bodies::PreciseBodies;
 use super::context::Context;
+use super::driven_force::Drive;
 use super::series::Series;
+use super::uniform_magnetic_field::MagneticField;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::Lanes;
 use crate::numerics::scaled::Scaled;
@@ -202,6 +204,10 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn conserves(&self) -> Conserves {
         Conserves::NOTHING
     }
+    /// Whether the sum of the kinetic and of the potential energies never grows by it.
+    fn never_gives_energy(&self) -> bool {
+        self.conserves().energy
+    }
     /// Whether it looks at differences of places at most: bodies that are shifted as a whole feel the same.
     fn translation_invariant(&self) -> bool {
         self.between() || self.as_uniform().is_some()
@@ -318,33 +324,6 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     }
 }
 
-/// The force amplitude·cos(frequency·t + phase), t being the scene's own time.
-#[derive(Clone, Copy, Debug)]
-pub struct Drive {
-    /// The largest force.
-    pub amplitude: [f64; 3],
-    /// The angular frequency.
-    pub frequency: f64,
-    /// The phase at time 0.
-    pub phase: f64,
-}
-
-/// A uniform magnetic field, which acts by the force charge v × field.
-#[derive(Clone, Copy, Debug)]
-pub struct MagneticField<'a> {
-    /// The field.
-    pub field: [f64; 3],
-    /// One charge for all bodies, or one for each.
-    pub charge: &'a [f64],
-}
-
-impl MagneticField<'_> {
-    /// The charge of a body.
-    pub fn charge_of(&self, particle: usize) -> f64 {
-        if let [all] = self.charge { *all } else { self.charge.get(particle).copied().unwrap_or(0.0) }
-    }
-}
-
 /// Refuses a massless body on which a force acts that moves only what has mass.
 ///
 /// # Errors
@@ -380,6 +359,11 @@ pub fn conserved_by(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>
         };
     }
     all
+}
+
+/// Whether the energy of these bodies never grows by any of the forces.
+pub fn never_give_energy(terms: &[std::sync::Arc<dyn ForceTerm>], bodies: &Bodies<'_>) -> bool {
+    terms.iter().all(|term| !term.acts(bodies) || term.never_gives_energy())
 }
 
 /// Potential energy and Σ r·F of all the forces.

@@ -3,7 +3,7 @@
 use super::bodies::PreciseBodies;
 use super::context::{Context, System};
 use super::series::{LinearSeries, Series};
-use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm, MagneticField};
+use super::term::{Bodies, Conserves, ForceDeclaration, ForceTerm};
 use super::{Force, Phase};
 use crate::error::Result;
 use crate::numerics::angles::sin_cos;
@@ -23,6 +23,22 @@ use std::sync::Arc;
 
 /// The exponents of length, mass and time in charge times field.
 const FIELD: [i32; 3] = [0, 1, -1];
+
+/// A uniform magnetic field, which acts by the force charge v × field.
+#[derive(Clone, Copy, Debug)]
+pub struct MagneticField<'a> {
+    /// The field.
+    pub field: [f64; 3],
+    /// One charge for all bodies, or one for each.
+    pub charge: &'a [f64],
+}
+
+impl MagneticField<'_> {
+    /// The charge of a body.
+    pub fn charge_of(&self, particle: usize) -> f64 {
+        if let [all] = self.charge { *all } else { self.charge.get(particle).copied().unwrap_or(0.0) }
+    }
+}
 
 /// What it declares about itself.
 pub static DECLARATION: ForceDeclaration = Declaration {

@@ -40,7 +40,7 @@ pub struct Outcome {
     pub counts: Counts,
     /// The time that all its particles have reached.
     pub time: f64,
-    /// How far the energy is off at the end of fixed steps, against kinetic + |potential|; NaN if nobody looked.
+    /// How far the energy is off at the end, at least, against kinetic + |potential|; NaN if nobody looked.
     pub energy_error: f64,
 }
 

@@ -1,4 +1,5 @@
-//! Whether a run has resolved anything: the energy at the end against that at the start.
+//! Whether a run has resolved anything: the energy at the end against that at the start, which it may not exceed where
+//! forces only take energy.
 //!
 //! Looked at where it costs next to nothing beside the run, so that a result that is wrong by orders of magnitude does
 //! not go out without a word.
@@ -9,7 +10,7 @@ use super::{Outcome, Part, Reached};
 use crate::conservation::kinetic_energy;
 use crate::error::Result;
 use crate::forces::bodies::PreciseBodies;
-use crate::forces::term::{conserved_by, potential_and_virial};
+use crate::forces::term::{conserved_by, never_give_energy, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
 
@@ -37,7 +38,8 @@ pub(super) fn look(
     let (scene, plan) = (part.scene, part.plan);
     // Members that run together have forces of one kind.
     let conserved = conserved_by(&scene.forces, &scene.bodies()).energy;
-    if !conserved || plan.active.len() > MOST || request.times.is_empty() {
+    let told = conserved || never_give_energy(&scene.forces, &scene.bodies());
+    if !told || plan.active.len() > MOST || request.times.is_empty() {
         return Ok(());
     }
     let pairs = plan.pairs_per_evaluation();
@@ -73,7 +75,8 @@ pub(super) fn look(
         let size = larger(absolute(potential), absolute(potential_end));
         let whole = kinetic.plus(size);
         if whole.to_f64() >= LEAST {
-            outcome.energy_error = change.over(whole).to_f64().abs();
+            let change = change.over(whole).to_f64();
+            outcome.energy_error = if conserved { change.abs() } else { change.max(0.0) };
         }
     }
     Ok(())
