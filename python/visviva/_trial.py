@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva import _core
+from visviva.integrators import methods
 from visviva.plan import Cost
 
 if TYPE_CHECKING:
@@ -53,7 +54,8 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
     if plan.closed_form:
         result, seconds = stretch(tried, 1.0)
         return None if result["error"] else Cost(0, 0, memory, seconds * scale * max(1, rows - 1), exact=True)
-    if rigid is not None and asked["method"] == "auto" and asked["dt"] is None and plan.method != "dop853":
+    chosen = rigid is not None and asked["method"] == "auto" and asked["dt"] is None
+    if chosen and not any(method.adaptive for method in methods() if method.name == plan.method):
         return None  # parts of the run, of which a stretch has as many: its steps tell nothing of the whole
     if plan.evaluations_per_step * plan.pairs_per_evaluation > _PAIRS or not bodies or not copies:
         return None

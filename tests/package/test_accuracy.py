@@ -63,6 +63,36 @@ def test_a_tolerance_that_resolves_nothing_is_said(scene: vv.Scene, t: float, ho
         scene.run(t=t, **how)
 
 
+BALLS = vv.Particles([1.0, 1.0], [[0, 0, 0], [1.0, 0, 0]], [[50.0, 0, 0], [0, 3.0, 0]])
+DAMPED = [
+    (vv.LinearDrag(0.1), vv.UniformField((0.0, 0.0, -9.8))),
+    (vv.QuadraticDrag(0.5),),
+    (vv.Spring(i=0, j=1, k=1.0), vv.Damper(i=0, j=1, c=5.0)),
+    (vv.Drag(density=1e-3, viscosity=1.0, radius=1.0), vv.UniformMagneticField((0.0, 0.0, 1.0))),
+]
+
+
+@pytest.mark.parametrize("forces", DAMPED)
+def test_energy_that_grows_where_forces_take_it_is_said(forces: tuple[vv.forces.Force, ...]) -> None:
+    """Beyond the limit of stability every step multiplies a velocity by more than one: 1e229 was told with status OK."""
+    scene = vv.Scene(BALLS, *forces)
+    with pytest.warns(vv.AccuracyWarning, match="kinetic") as caught:
+        scene.run(t=0.4, method="rk4", dt=0.4)
+    assert 0.0 < step_named(str(caught[0].message)) < 0.4
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene.run(t=0.4, method="rk4", dt=0.001)
+
+
+@pytest.mark.parametrize("forces", DAMPED)
+def test_energy_that_comes_back_is_not_blamed(forces: tuple[vv.forces.Force, ...]) -> None:
+    """Backward in time drag gives what it took; forward it may take nearly all."""
+    scene = vv.Scene(BALLS, *forces)
+    out = scene.run(t=1.0, rtol=1e-12)
+    back = vv.Scene(out.final.particles, *forces, t0=1.0)
+    np.testing.assert_allclose(back.run(t=0.0, rtol=1e-12).velocity[-1], BALLS.velocity, atol=1e-4)
+
+
 def test_a_named_step_is_never_longer_than_the_run() -> None:
     with pytest.warns(vv.AccuracyWarning) as caught:
         vv.problems.kepler(e=0.6).scene.run(t=1.0, method="rk4", dt=1e308)

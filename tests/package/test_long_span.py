@@ -30,7 +30,7 @@ def told(scene: vv.Scene, t: float, **how: Any) -> dict[str, float] | None:
     return {"periods": float(decision.split()[0]), "dt": float(reason.split("dt=")[1].split()[0])}
 
 
-@pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.6])
+@pytest.mark.parametrize("eccentricity", [0.0, 0.3, 0.5])
 @pytest.mark.parametrize("direction", [1.0, -1.0])
 def test_a_long_quiet_span_is_told_with_a_better_way(eccentricity: float, direction: float) -> None:
     """The period is that of the circle through the pericenter; the way that is told is closer than the plan's own."""
@@ -43,7 +43,7 @@ def test_a_long_quiet_span_is_told_with_a_better_way(eccentricity: float, direct
     exact = scene.run(t=end, method="kahan_li8", dt=direction * period / 300.0).position[-1]
     ours = scene.run(t=end, method="stormer13", dt=found["dt"])
     other = scene.run(t=end)
-    assert other.plan.method == "dop853"
+    assert other.plan.method == "verner98"
     off, of_auto = (np.abs(out.position[-1] - exact).max() for out in (ours, other))
     assert off < 0.1 * of_auto
     assert ours.stats.evaluations < other.stats.evaluations
@@ -55,7 +55,7 @@ def test_of_others_nothing_is_told() -> None:
     assert told(scene, long) is not None
     assert told(scene, 100.0) is None
     assert told(scene, long, method="dop853") is None
-    assert told(planets(0.7), long) is None
+    assert told(planets(0.6), long) is None
     assert told(vv.problems.figure_eight().scene, long) is None
     assert told(planets(0.3, sign=-1.0), long) is None
     bodies = scene.particles

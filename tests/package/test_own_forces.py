@@ -32,7 +32,7 @@ def ensemble(parameters: dict[Any, dict[str, Any]] = PARAMETERS) -> vv.EnsembleS
 
 @pytest.mark.parametrize("method", ["rk4", "dop853", "auto"])
 def test_copies_have_the_bits_that_they_have_alone(method: str) -> None:
-    how: dict[str, Any] = {"dt": 0.01} if method == "rk4" else {}
+    how: dict[str, Any] = {"dt": 0.001} if method == "rk4" else {}
     columns = ("position", "energy", "angular_momentum")
     copies = ensemble()
     out = copies.run(t=[0.5, 1.0], method=method, record=columns, **how)

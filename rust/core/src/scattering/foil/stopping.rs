@@ -179,7 +179,8 @@ fn loss(model: Model, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
             Model::Joined => {
                 let (slow, fast) =
                     (lindhard_scharff(ion, atoms, beta2), continued(ion, atoms, beta2, impulse));
-                slow * fast / (slow + fast)
+                // What is fast alone may overflow where nothing else does.
+                slow / (1.0 + slow / fast)
             }
         };
         atoms.density * cross_section
@@ -263,6 +264,8 @@ mod tests {
         };
         let slow = both(10.0);
         assert!((slow[0] / slow[1] - 1.0).abs() < 1e-3, "{slow:?}");
+        let slowest = both(1e-300);
+        assert_eq!(slowest[0].to_bits(), slowest[1].to_bits(), "{slowest:?}");
         let fast = both(1e9);
         assert!((fast[0] / fast[2] - 1.0).abs() < 0.01, "{fast:?}");
     }

@@ -76,7 +76,8 @@ pub(super) fn look(
         let whole = kinetic.plus(size);
         if whole.to_f64() >= LEAST {
             let change = change.over(whole).to_f64();
-            outcome.energy_error = if conserved { change.abs() } else { change.max(0.0) };
+            // Backward in time what is taken comes back.
+            outcome.energy_error = if conserved { change.abs() } else { (plan.direction * change).max(0.0) };
         }
     }
     Ok(())
