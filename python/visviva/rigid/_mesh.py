@@ -25,6 +25,8 @@ def mesh(
 ) -> MassProperties:
     """Give the mass properties of the solid that a closed mesh of triangles encloses.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     vertices : array_like, shape (V, 3)
@@ -53,6 +55,11 @@ def mesh(
     (``VISVIVA_THREADS``), with the same bits on any number of them. That the mesh is closed is told by the areas that
     it has where its corners are scattered at random, which miss an open edge once in 2¹²¹ meshes; edges are counted
     only to say what is wrong.
+
+    References
+    ----------
+    F. Tonon, *Explicit exact formulas for the 3-D tetrahedron inertia tensor in terms of its vertex coordinates*, J.
+    Math. Stat. 1 (2005) 8.
 
     Examples
     --------
@@ -85,6 +92,8 @@ def mesh(
 def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
     """Read vertices and faces from a file (STL, OBJ, PLY, …); needs ``trimesh``.
 
+    Units: those of the file.
+
     Parameters
     ----------
     path : str or path
@@ -93,7 +102,7 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     Returns
     -------
     tuple of ndarray
-        Vertices (V, 3) and faces (F, 3), for `mesh`.
+        Vertices, shape (V, 3), and faces, shape (F, 3), for `mesh`.
 
     Raises
     ------
