@@ -26,6 +26,8 @@ __all__ = ["CollisionTable"]
 class CollisionTable(Exported[str], Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
+    Units: those of the scene.
+
     Attributes
     ----------
     t : ndarray, shape (K,)
