@@ -28,7 +28,7 @@ _VECTORS = ("vector", "axial_vector", "direction", "point")
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
-    "indices": "int or str, or array_like of them",
+    "indices": "int or str, or array_like of them, shape (M,)",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
     "direction": "array_like, shape (3,)",

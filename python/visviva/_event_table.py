@@ -81,7 +81,12 @@ class Lines(Exported[str], Shown):
         Returns
         -------
         EventTable or GeneralizedEventTable
-            As this one.
+            As this one, each column of shape (K, …).
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For what is no whole number.
 
         Examples
         --------
@@ -97,6 +102,8 @@ class Lines(Exported[str], Shown):
 @dataclass(frozen=True, slots=True, eq=False)
 class EventTable(Lines):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
+
+    Units: those of the run.
 
     Attributes
     ----------
