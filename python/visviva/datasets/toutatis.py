@@ -205,7 +205,7 @@ class Toutatis(Record):
         Parameters
         ----------
         t : float or array_like, shape (T,)
-            Days since the epoch.
+            Days since the epoch. Any other shape takes the place of (T,) in all that is given.
 
         Returns
         -------

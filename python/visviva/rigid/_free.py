@@ -176,7 +176,7 @@ def free_rotation(
     angular_velocity : array_like, shape (3,)
         At time 0, along the body's principal axes.
     t : float or array_like, shape (T,)
-        Times since then, of either sign and in any order.
+        Times since then, of either sign and in any order. Any other shape takes the place of (T,) in all that is given.
     orientation : array_like, shape (4,), optional
         The quaternion (x, y, z, w) from the body to space at time 0; without it, the body's axes are those of space.
 

@@ -456,7 +456,8 @@ class HeavyTop:
         Parameters
         ----------
         t : float or array_like, shape (T,)
-            Times since the start, of either sign and in any order.
+            Times since the start, of either sign and in any order. Any other shape takes the place of (T,) in all that
+            is given.
         theta : float
             Angle of the axis from the vertical at the start, in [0, π].
         psi_dot, theta_dot, phi_dot : float

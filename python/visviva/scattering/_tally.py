@@ -33,7 +33,7 @@ _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 class CrossSection(NamedTuple):
     """A cross section by bin and its standard error; NaN in a bin that the beam does not reach.
 
-    Both have the shape of the bins, and are in the units of b_max².
+    Both have shape (B,), and are in the units of b_max² per steradian for angles, else over those of the quantity.
 
     Examples
     --------
