@@ -74,7 +74,31 @@ class OdeSolution:
         return float(max(self.ts[0], self.ts[-1]))
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate the solution: shape (n,) at one time, (n, T) at T times."""
+        """Evaluate the solution: shape (n,) at one time, (n, T) at T times.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            Times, in the units of the problem, in any order.
+
+        Returns
+        -------
+        ndarray, shape (n,) or (n, T)
+            States there.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For an array of more than one axis, NaN or infinity.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> decay = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0, 2.0], rtol=1e-10, dense_output=True)
+        >>> decay.sol([0.0, 1.0]).round(6)
+        array([[1.      , 0.367879],
+               [2.      , 0.735759]])
+        """
         times = float_array("t", t, None)
         if times.ndim > 1:
             raise InvalidInput("t", f"expected one time or an array of times, got shape {times.shape}")

@@ -2,7 +2,9 @@
 
 The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both
 together are the mixed law. `visviva.Drag` has the laws that hold between them, by name; `custom` and `tabulated` take
-one's own.
+one's own. Units are yours, one consistent system.
+
+Source: Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., §19, §20 and §45.
 """
 
 from __future__ import annotations

@@ -89,6 +89,8 @@ class LegendreTransform:
     def __call__(self, position: ArrayLike, second: ArrayLike, *, t: float | None = None) -> _Array:
         """Give Σ p q̇ − L, or Σ p q̇ − H.
 
+        Units: those of the system.
+
         Parameters
         ----------
         position : array_like, shape (..., n)

@@ -90,7 +90,7 @@ def mesh(
 
 @known_keywords
 def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read vertices and faces from a file (STL, OBJ, PLY, …); needs ``trimesh``.
+    r"""Read vertices and faces from a file (STL, OBJ, PLY, …); needs ``trimesh``.
 
     Units: those of the file.
 
@@ -113,8 +113,14 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
 
     Examples
     --------
-    >>> import visviva as vv
-    >>> vertices, faces = vv.rigid.load_mesh("part.stl")  # doctest: +SKIP
+    >>> import pathlib, tempfile, visviva as vv
+    >>> from importlib.util import find_spec
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "corner.obj"
+    >>> text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    >>> length = path.write_text(text)
+    >>> if find_spec("trimesh"):
+    ...     vertices, faces = vv.rigid.load_mesh(path)
+    ...     assert vertices.shape == (4, 3) and faces.shape == (4, 3)
     """
     file = path_text("path", path)
     try:
