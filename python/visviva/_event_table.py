@@ -120,6 +120,10 @@ class EventTable(Lines):
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
 
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
+
     Examples
     --------
     >>> import visviva as vv

@@ -32,6 +32,10 @@ class OdeSolution:
     t_min, t_max : float
         The ends of the span that it is good for; beyond them it is what the outermost steps say.
 
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (dense output).
+
     Examples
     --------
     >>> import visviva as vv

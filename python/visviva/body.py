@@ -190,6 +190,10 @@ class BodyMotion:
         visviva.InvalidInput
             As of `Trajectory.elements`.
 
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
+
         Examples
         --------
         >>> import visviva as vv

@@ -47,6 +47,10 @@ class CollisionTable(Exported[str], Shown):
 
     Indexing with a slice or an array gives a smaller table.
 
+    References
+    ----------
+    M. P. Allen & D. J. Tildesley, *Computer Simulation of Liquids* (1987), § 3.6.1 (hard spheres).
+
     Examples
     --------
     >>> import visviva as vv

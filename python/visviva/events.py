@@ -47,6 +47,10 @@ class Event:
     terminal : int
         The run ends with the zero of this number; 0 if it does not.
 
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
+
     Examples
     --------
     >>> import visviva as vv

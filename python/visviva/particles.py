@@ -306,6 +306,10 @@ class Particles(Shown):
         visviva.InvalidInput
             If the total mass is zero.
 
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
+
         Examples
         --------
         >>> import visviva as vv

@@ -354,6 +354,10 @@ class Recorded(Exported[ColumnName], Shown, ABC):
             If there is no such body; if a body is at the very place of what it orbits, or neither has mass; if the
             scene has no gravity and no `G` is given; if positions or velocities were not recorded.
 
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
+
         Examples
         --------
         >>> import visviva as vv

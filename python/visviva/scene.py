@@ -404,6 +404,10 @@ class Scene(Runnable[Trajectory], Framed):
         visviva.InvalidInput
             For another reference point.
 
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
+
         Examples
         --------
         >>> import visviva as vv
@@ -439,6 +443,10 @@ class Scene(Runnable[Trajectory], Framed):
         ------
         visviva.InvalidInput
             As of `Trajectory.elements`.
+
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
 
         Examples
         --------

@@ -191,6 +191,10 @@ class Trajectory(Recorded):
         visviva.InvalidInput
             If position or velocity was not recorded.
 
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
+
         Examples
         --------
         >>> import visviva as vv
@@ -223,6 +227,10 @@ class Trajectory(Recorded):
         ------
         visviva.InvalidInput
             If a quantity was neither recorded nor can be computed; the message says what to record.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
         Examples
         --------
