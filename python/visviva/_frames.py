@@ -137,7 +137,7 @@ class Framed(ABC):
 
         References
         ----------
-        Landau & Lifshitz, *Mechanics*, 3rd ed., § 9 (rotation) and § 10 (similarity).
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 9.
 
         Examples
         --------
@@ -170,7 +170,7 @@ class Framed(ABC):
 
         References
         ----------
-        Landau & Lifshitz, *Mechanics*, 3rd ed., § 9 (rotation) and § 10 (similarity).
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 10.
 
         Examples
         --------

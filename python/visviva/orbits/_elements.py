@@ -343,7 +343,7 @@ def propagate(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Move states along their orbits by given times, in closed form.
 
-    Units: μ is in length³ / time², in the caller's units of both; angles in radians.
+    Units: μ is in length³ / time², in the caller's units of both.
 
     Parameters
     ----------
