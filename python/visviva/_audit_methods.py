@@ -43,6 +43,8 @@ def _size(scene: Scene) -> float:
 def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> float:
     """The order with which a method's positions converge on a scene: by halving the step twice.
 
+    Units: those of the scene; the order is without dimension.
+
     Parameters
     ----------
     scene : Scene
@@ -67,7 +69,8 @@ def order(scene: Scene, t: float, *, method: MethodName | Method, dt: float) -> 
 
     Notes
     -----
-    Richardson's argument; Hairer, Nørsett & Wanner, Solving Ordinary Differential Equations I, section II.4. Linear
+    Richardson's argument; Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993),
+    section II.4. Linear
     problems may show a higher order than a method has.
 
     Examples
@@ -95,6 +98,8 @@ def reversal(
 ) -> float:
     """How far from the start a run ends that goes to ``t``, is turned round, and comes back.
 
+    Units: those of the scene; what is told is relative to its size, without dimension.
+
     Parameters
     ----------
     scene : Scene
@@ -118,7 +123,7 @@ def reversal(
 
     Notes
     -----
-    Hairer, Lubich & Wanner, Geometric Numerical Integration, chapter V.
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), chapter V.
 
     Examples
     --------
@@ -165,7 +170,7 @@ def symplecticity(scene: Scene, t: float, *, method: MethodName | Method, dt: fl
     Notes
     -----
     M is found by differences of fourth order, over an ensemble of 4 copies for each coordinate and velocity.
-    Hairer, Lubich & Wanner, Geometric Numerical Integration, section VI.2.
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), section VI.2.
 
     Examples
     --------

@@ -25,6 +25,8 @@ def impulse(
 ) -> NDArray[np.float64]:
     """The impulse ∫ F dt of a force that is given in time, by which it changes the momentum.
 
+    Units: the units of the force times those of the time; `rtol` is without dimension.
+
     Parameters
     ----------
     force : callable
@@ -80,6 +82,8 @@ def impulse(
 def mass_ratio(first: ArrayLike, second: ArrayLike) -> float:
     """The mass of a second body over that of the first, from what they do to each other.
 
+    Units: any, the same of both; the ratio is without dimension.
+
     Parameters
     ----------
     first, second : array_like, shape (3,) or (T, 3)
@@ -124,6 +128,8 @@ def mass_ratio(first: ArrayLike, second: ArrayLike) -> float:
 def rigidity(trajectory: Any, pairs: Sequence[tuple[int, int]] | None = None) -> NDArray[np.float64]:
     """By how much the distances of bodies change along a recorded run: by nothing in a rigid body.
 
+    Units: what is told is relative, without dimension.
+
     Parameters
     ----------
     trajectory : Trajectory
@@ -140,6 +146,10 @@ def rigidity(trajectory: Any, pairs: Sequence[tuple[int, int]] | None = None) ->
     ------
     visviva.InvalidInput
         A pair of one body, or of bodies in one place at the start.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 4.1.
 
     Examples
     --------

@@ -53,12 +53,18 @@ class BodyForce:
         return type(self)(**(self._values() | changes))
 
     def core_arguments(self) -> dict[str, Any]:
-        """What the core takes: the kind and every value by name, vectors as arrays.
+        """What the core takes: the kind and every value by name, vectors as arrays of shape (3,).
 
         Raises
         ------
         visviva.InvalidInput
             For a body that is given by name, outside a scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sorted(vv.AppliedTorque([0.0, 0.0, 2.0], body=0).core_arguments())
+        ['body', 'frame', 'kind', 'torque']
         """
         for name in self._bodies:
             if isinstance(given := getattr(self, name), str):
@@ -79,20 +85,42 @@ class BodyForce:
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,)
+            By what is displaced, and boosted, in the units of the scene.
+
         Raises
         ------
         visviva.InvalidInput
             For a boost, if the force has a fixed place, which would move.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> vv.RotationalDrag(0.5).shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3))
+        RotationalDrag(coefficient=0.5, body=None)
         """
         return self
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).
 
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            An orthogonal matrix, without dimension; of determinant −1 a reflection.
+
         Raises
         ------
         visviva.InvalidInput
             For a compiled function, which knows the axes that it was written for.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> vv.RotationalDrag(0.5).rotated(np.diag([1.0, -1.0, 1.0]))
+        RotationalDrag(coefficient=0.5, body=None)
         """
         return self
 
@@ -103,6 +131,12 @@ class BodyForce:
         ------
         visviva.InvalidInput
             If there is none: for drag, damping, or a compiled function.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.AppliedTorque([0.0, 0.0, 2.0]).reversed()
+        AppliedTorque(torque=(0.0, 0.0, 2.0), body=None, frame='space')
         """
         if self._one_way:
             raise InvalidInput("forces", f"{type(self).__name__} cannot be reversed: {self._one_way}")
@@ -110,6 +144,11 @@ class BodyForce:
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit.
+
+        Parameters
+        ----------
+        length, mass, time : float
+            What one old unit is in new ones; positive.
 
         Raises
         ------

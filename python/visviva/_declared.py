@@ -25,10 +25,11 @@ if TYPE_CHECKING:
 __all__ = ["Declared", "Parameter", "make", "scaled"]
 
 _VECTORS = ("vector", "axial_vector", "direction", "point")
+_QUANTITIES = ("number", "numbers", *_VECTORS)  # what has a dimension, and says so where it is none
 _TYPES = {
     "number": "float",
     "numbers": "float or array_like",
-    "indices": "int or str, or array_like of them",
+    "indices": "int or str, or array_like of them, shape (M,)",
     "vector": "array_like, shape (3,)",
     "axial_vector": "array_like, shape (3,)",
     "direction": "array_like, shape (3,)",
@@ -161,7 +162,7 @@ class Parameter:
         optional = "" if self.default is None else ", optional"
         kind = "{" + ", ".join(f'"{word}"' for word in self.choices) + "}" if self.choices else _TYPES[self.kind]
         text = self.description + ("" if self.description.endswith(".") else ".")
-        if self.dimension is not None and any(self.dimension):
+        if self.dimension is not None and (any(self.dimension) or self.kind in _QUANTITIES):
             text += f" Dimension: {_dimension(self.dimension)}."
         if self.default is not None:
             text += f" {self.missing!r} if not given."
@@ -280,6 +281,8 @@ def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...], law: str
 
 def _dimension(powers: tuple[int, ...]) -> str:
     units = [(name, power) for name, power in zip(("length", "mass", "time"), powers, strict=True) if power]
+    if not units:
+        return "no length, mass or time"
     above = " · ".join(name if power == 1 else f"{name}^{power}" for name, power in units if power > 0) or "1"
     below = " · ".join(name if power == -1 else f"{name}^{-power}" for name, power in units if power < 0)
     if not below:

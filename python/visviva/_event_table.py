@@ -81,7 +81,12 @@ class Lines(Exported[str], Shown):
         Returns
         -------
         EventTable or GeneralizedEventTable
-            As this one.
+            As this one, each column of shape (K, …).
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For what is no whole number.
 
         Examples
         --------
@@ -98,6 +103,8 @@ class Lines(Exported[str], Shown):
 class EventTable(Lines):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
 
+    Units: those of the run.
+
     Attributes
     ----------
     which : ndarray of int64, shape (K,)
@@ -112,6 +119,10 @@ class EventTable(Lines):
         What was looked for, by `which`. Of a function its name alone, as of what is saved.
 
     Indexing with a slice or an array gives a smaller table; `of` that of one event.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
 
     Examples
     --------

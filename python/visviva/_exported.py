@@ -88,7 +88,7 @@ class Exported(Generic[Name]):
         xarray.Dataset
             Axes are ``time``, ``copy``, ``body`` (names, if the bodies have some), ``component``, ``quaternion``,
             ``coordinate``, ``orbit`` and so on, as far as there are such. Numbers are views of the result's, which are
-            read-only.
+            read-only, of the shapes that they have there.
 
         Raises
         ------
@@ -128,7 +128,8 @@ class Exported(Generic[Name]):
         -------
         pandas.DataFrame
             Where columns hold several numbers a row, as positions do, labels are tuples:
-            ``frame["position"]["Jupiter"]["x"]``, and those of fewer numbers end in empty texts.
+            ``frame["position"]["Jupiter"]["x"]``, and those of fewer numbers end in empty texts. Rows are those of
+            arrays of shape (T, …), or (B, T, …).
 
         Raises
         ------
@@ -189,9 +190,10 @@ class Exported(Generic[Name]):
 
         Notes
         -----
-        First come the axes of the rows (``copy``, ``time``), then the columns, with a name for each number:
-        ``position_Jupiter_x``, or ``position_0_x`` of bodies without names. Of an ensemble every row has the ``status``
-        of its copy. Method and status are in the metadata of the schema.
+        Rows are those of arrays of shape (T, …), or (B, T, …). First come the axes of the rows (``copy``, ``time``),
+        then the columns, with a name for each number: ``position_Jupiter_x``, or ``position_0_x`` of bodies without
+        names. Of an ensemble every row has the ``status`` of its copy. Method and status are in the metadata of the
+        schema.
 
         Examples
         --------

@@ -28,6 +28,8 @@ def arenstorf() -> Problem:
     is where it was as seen from the turned pair. It begins and ends beside the Moon, at 0.006 of the distance of the
     pair: equal steps do badly.
 
+    Units: those in which the distance of the pair, the sum of their masses and the gravitational constant are 1.
+
     Returns
     -------
     Problem
@@ -149,6 +151,10 @@ def projectile() -> Problem:
     -----
     No closed form is known but for an upright throw. The reference is by Taylor series in 30 and 40 digits, which agree
     to 25 (mpmath's ``odefun``; the tests do it again).
+
+    References
+    ----------
+    Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., § 45, for the law of the drag.
 
     Examples
     --------

@@ -49,10 +49,19 @@ class Framed(ABC):
     def shifted(self, *, position: ArrayLike = (0.0, 0.0, 0.0), velocity: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
         """The scene displaced by `position` and boosted by `velocity`, the fields with it.
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,), optional
+            By what is displaced, and boosted, in the units of the scene; nothing if not given.
+
         Raises
         ------
         visviva.InvalidInput
             For a boost of a field with a fixed centre.
+
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 3 and § 8.
 
         Examples
         --------
@@ -73,9 +82,18 @@ class Framed(ABC):
         Parameters
         ----------
         velocity : array_like, shape (3,)
-            Velocity V of the frame.
+            Velocity V of the frame, in the units of the scene.
         origin : array_like, shape (3,), optional
-            Where the frame's origin is at t = 0.
+            Where the frame's origin is at t = 0, likewise.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For another shape, NaN or infinity; as `shifted`.
+
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 3 and § 8.
 
         Examples
         --------
@@ -90,6 +108,10 @@ class Framed(ABC):
     def center_of_mass_frame(self) -> Self:
         """The scene in the frame in which its centre of mass rests at the origin.
 
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 3 and § 8.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -103,10 +125,19 @@ class Framed(ABC):
     def rotated(self, rotation: ArrayLike) -> Self:
         """The scene turned (or reflected) about the origin by an orthogonal matrix, shape (3, 3).
 
+        Parameters
+        ----------
+        rotation : array_like, shape (3, 3)
+            The matrix, without dimension; of determinant −1 a reflection.
+
         Raises
         ------
         visviva.InvalidInput
             If the matrix is not orthogonal to 1e-12.
+
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 9.
 
         Examples
         --------
@@ -127,10 +158,19 @@ class Framed(ABC):
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The same scene in other units: how many new units of each kind make one old unit.
 
+        Parameters
+        ----------
+        length, mass, time : float, optional
+            How many new units make one old unit, positive. Powers of two change no bit of any mantissa.
+
         Raises
         ------
         visviva.InvalidInput
             If a scale is not positive, a force cannot be scaled, or a number would leave the range of float64.
+
+        References
+        ----------
+        Landau & Lifshitz, *Mechanics*, 3rd ed., § 10.
 
         Examples
         --------
@@ -146,12 +186,16 @@ class Framed(ABC):
         return self._like(particles, forces, later, lambda part: part.rescaled(**scales))
 
     def reversed(self) -> Self:
-        """The scene with every velocity turned round: run on, it retraces its path.
+        """The scene with every velocity, shape (N, 3), turned round: run on, it retraces its path.
 
         Raises
         ------
         visviva.InvalidInput
             If a force has no reverse: drag, or a force that goes on with time.
+
+        References
+        ----------
+        Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), chapter V.
 
         Examples
         --------
@@ -175,6 +219,22 @@ class Framed(ABC):
         """The scene with other positions and velocities, and another time if given.
 
         Rigid bodies may be given other orientations (K, 4) and angular velocities (K, 3), too.
+
+        Parameters
+        ----------
+        position, velocity : array_like, shape (N, 3)
+            Of the particles, then of the centers of mass of rigid bodies, in the units of the scene.
+        t0 : float, optional
+            The time; that of the scene if not given.
+        orientation : array_like, shape (K, 4), optional
+            Quaternions (x, y, z, w) of the rigid bodies; as they are if not given.
+        angular_velocity : array_like, shape (K, 3), optional
+            Along their axes, in radians per time; as they are if not given.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For another shape, NaN or infinity.
 
         Examples
         --------

@@ -27,10 +27,14 @@ class OdeSolution:
 
     Attributes
     ----------
-    ts : (S + 1,) ndarray
-        The nodes.
+    ts : ndarray, shape (S + 1,)
+        The nodes, in the units of the problem.
     t_min, t_max : float
         The ends of the span that it is good for; beyond them it is what the outermost steps say.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (dense output).
 
     Examples
     --------
@@ -49,16 +53,56 @@ class OdeSolution:
 
     @property
     def t_min(self) -> float:
-        """The smaller end of the span."""
+        """The smaller end of the span, in the units of the problem's time.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> solution = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0], dense_output=True).sol
+        >>> solution.t_min
+        0.0
+        """
         return float(min(self.ts[0], self.ts[-1]))
 
     @property
     def t_max(self) -> float:
-        """The larger end of the span."""
+        """The larger end of the span, in the units of the problem's time.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> solution = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0], dense_output=True).sol
+        >>> solution.t_max
+        5.0
+        """
         return float(max(self.ts[0], self.ts[-1]))
 
     def __call__(self, t: ArrayLike) -> NDArray[np.float64]:
-        """Evaluate the solution: shape (n,) at one time, (n, T) at T times."""
+        """Evaluate the solution: shape (n,) at one time, (n, T) at T times.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            Times, in the units of the problem, in any order.
+
+        Returns
+        -------
+        ndarray, shape (n,) or (n, T)
+            States there.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For an array of more than one axis, NaN or infinity.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> decay = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), [1.0, 2.0], rtol=1e-10, dense_output=True)
+        >>> decay.sol([0.0, 1.0]).round(6)
+        array([[1.      , 0.367879],
+               [2.      , 0.735759]])
+        """
         times = float_array("t", t, None)
         if times.ndim > 1:
             raise InvalidInput("t", f"expected one time or an array of times, got shape {times.shape}")
@@ -76,16 +120,16 @@ class OdeResult:
 
     Attributes
     ----------
-    t : (T,) ndarray
-        Times: the nodes, or `t_eval` as far as the run came.
-    y : (n, T) ndarray
+    t : ndarray, shape (T,)
+        Times: the nodes, or `t_eval` as far as the run came, in the units of the problem.
+    y : ndarray, shape (n, T)
         States there.
     sol : OdeSolution or None
         The solution as a function of time, if `dense_output`.
     t_events : list of ndarray or None
-        For each event the times of its zeros.
+        For each event the times of its zeros, shape (K,).
     y_events : list of ndarray or None
-        The states there, one in a row.
+        The states there, one in a row, shape (K, n).
     nfev : int
         Evaluations of the right-hand side.
     njev, nlu : int

@@ -24,6 +24,8 @@ __all__ = ["Problem", "Reference", "reference", "rows"]
 class Reference:
     """Where bodies are at a time.
 
+    Units: those of the problem's scene.
+
     Attributes
     ----------
     t : float
@@ -48,6 +50,8 @@ class Reference:
 @dataclass(frozen=True, slots=True, eq=False)
 class Problem(Shown):
     """A scene, how far to run it, and what must come out.
+
+    Units: those of the problem's scene.
 
     Attributes
     ----------
@@ -86,6 +90,8 @@ class Problem(Shown):
 
     def error(self, final: Scene | Trajectory) -> float:
         """Largest distance of a body from its reference position at the time of `final`.
+
+        Units: those of the problem's scene.
 
         Parameters
         ----------

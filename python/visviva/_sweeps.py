@@ -36,11 +36,11 @@ class Point:
     series : str
         The method.
     setting : float
-        Its step or relative tolerance.
+        Its step, in the units of the problem, or its relative tolerance.
     seconds : float
-        What the run took, the least of several.
+        What the run took, in seconds, the least of several.
     position_error : float
-        The largest distance of a body from its reference at the end.
+        The largest distance of a body from its reference at the end, in the units of the problem.
     energy_error : float
         |E − E₀|/|E₀| there; NaN where the scene does not conserve its energy, or a peer did not tell.
 

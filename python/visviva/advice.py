@@ -46,10 +46,10 @@ class Option:
     how : dict
         Arguments for ``run``: ``method``, and ``dt`` or ``rtol``.
     error : float
-        What the run is expected to be off.
+        What the run is expected to be off, relative, without dimension.
     steps : int
     seconds : float
-        What it is expected to take.
+        What it is expected to take, in seconds.
 
     Examples
     --------
@@ -74,22 +74,26 @@ class Advice(Shown):
     ----------
     accuracy : float
     of : str
-        What was asked for.
+        What was asked for; the accuracy is relative, without dimension.
     judges_massless : bool
         Whether massless bodies, which have no energy, were judged by their positions, relative to the size of the
         system.
     options : tuple of Option
         What holds it, the fastest first.
     tried : float
-        The part of the span that was tried.
+        The part of the span that was tried, without dimension.
+
+    References
+    ----------
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), IX.8 and X.3.
 
     Examples
     --------
     >>> import visviva as vv
     >>> orbit = vv.problems.kepler(e=0.5).scene
     >>> advice = orbit.advise(t=10.0, accuracy=1e-6)
-    >>> advice.accuracy, all(option.error <= 1e-6 for option in advice.options)
-    (1e-06, True)
+    >>> advice.accuracy, all(option.error <= 1e-6 for option in advice.options), "method" in advice.how
+    (1e-06, True, True)
     """
 
     accuracy: float

@@ -64,6 +64,8 @@ def __dir__() -> list[str]:
 def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:
     """The force on a body at rest, as a function of where it is.
 
+    Units: those of the force's parameters.
+
     Parameters
     ----------
     force : Force
@@ -82,6 +84,10 @@ def field(force: Force, *, mass: float = 1.0, t0: float = 0.0) -> Callable[[NDAr
     ------
     visviva.InvalidInput
         A force between bodies.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.1.
 
     Examples
     --------
@@ -113,6 +119,8 @@ def work(
     force: Force | _Field, path: ArrayLike | Callable[[NDArray[np.float64]], ArrayLike], *, rtol: float = 1e-12
 ) -> float:
     """The work ∫ F·dr of a field along a path.
+
+    Units: those of the force times those of the places; `rtol` is without dimension.
 
     Parameters
     ----------
@@ -167,6 +175,8 @@ def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[n
 def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
     """The work of one force on each body along a recorded run, up to each of its times.
 
+    Units: those of the scene.
+
     Parameters
     ----------
     trajectory : Trajectory
@@ -188,6 +198,10 @@ def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
     -----
     Power F·v between two times is that at three places of Gauss and Lobatto, the middle one on Hermite's cubic through
     both ends: the error falls with the fourth power of the times' distance.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.1.
 
     Examples
     --------
@@ -225,6 +239,8 @@ def _power(force: Force, mass: Any, t: Any, x: Any, v: Any) -> NDArray[np.float6
 class Curl(Record):
     """What `curl` finds.
 
+    Units: those of the field over a length; `relative` is without dimension.
+
     Attributes
     ----------
     value : ndarray, shape (K, 3)
@@ -233,6 +249,10 @@ class Curl(Record):
         The largest, over the largest derivative of the field at its place.
     conservative : bool
         Whether that is no more than what the differences err by (1e-8).
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.1.
 
     Examples
     --------
@@ -252,6 +272,8 @@ class Curl(Record):
 def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     """The curl of a field: zero wherever it is the gradient of a potential.
 
+    Units: those of the field over those of the places.
+
     Parameters
     ----------
     force : Force or callable
@@ -267,6 +289,10 @@ def curl(force: Force | _Field, places: ArrayLike) -> Curl:
     ------
     visviva.InvalidInput
         For places of another shape, a force between bodies, or a function whose values have another shape.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.1.
 
     Examples
     --------
@@ -318,6 +344,8 @@ def _derivatives(at: _Field, x: NDArray[np.float64]) -> NDArray[np.float64]:
 class ThirdLaw:
     """What `third_law` finds.
 
+    Units: those of the forces, and of them times a length; `rtol` is without dimension.
+
     Attributes
     ----------
     force : ndarray, shape (3,)
@@ -328,6 +356,10 @@ class ThirdLaw:
         Whether the force of each body on each other one is opposite to the other's on it.
     strong : bool
         Whether both lie along the line between them, too.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
     Examples
     --------
@@ -348,6 +380,8 @@ class ThirdLaw:
 @known_keywords
 def third_law(position: ArrayLike, forces: ArrayLike, *, rtol: float = 1e-12) -> ThirdLaw:
     """Newton's third law for forces between bodies, in its weak and in its strong form.
+
+    Units: those of the forces, and of them times a length; `rtol` is without dimension.
 
     Parameters
     ----------

@@ -24,6 +24,8 @@ __all__ = ["BodyMotion"]
 class BodyMotion:
     """The motion of one body. Made by indexing a run with a name, or by ``out.body``.
 
+    Units: those of the scene; angles in radians.
+
     Attributes
     ----------
     index : int
@@ -68,38 +70,92 @@ class BodyMotion:
 
     @property
     def mass(self) -> NDArray[np.float64]:
-        """Its mass at the start, a number, or (B,)."""
+        """Its mass at the start, in the units of the scene: a number, shape (), or of an ensemble shape (B,).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.body(1).mass.item()
+        0.5
+        """
         mass: NDArray[np.float64] = self._run._start._keywords["mass"][..., self.index]
         return mass if self._run._start._is_ensemble else mass[0]
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Positions, shape (T, 3), or (B, T, 3)."""
+        """Positions, shape (T, 3), or (B, T, 3), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.body(1).position.shape
+        (2, 3)
+        """
         return self._run.position[..., self.index, :]
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (T, 3), or (B, T, 3)."""
+        """Velocities, shape (T, 3), or (B, T, 3), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.body(1).velocity.shape
+        (2, 3)
+        """
         return self._run.velocity[..., self.index, :]
 
     @property
     def orientation(self) -> NDArray[np.float64]:
-        """Of a rigid body: quaternions from the body to space, shape (T, 4), or (B, T, 4)."""
+        """Of a rigid body: quaternions (x, y, z, w) from the body to space, shape (T, 4), or (B, T, 4).
+
+        Without dimension.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name="book")
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 6))
+        >>> out["book"].orientation.shape
+        (6, 4)
+        """
         return self._run.orientation[..., self._place, :]
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:
-        """Of a rigid body: along its axes, shape (T, 3), or (B, T, 3)."""
+        """Of a rigid body: along its axes, shape (T, 3), or (B, T, 3), in radians per time of the scene.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name="book")
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 6))
+        >>> out["book"].angular_velocity[0]
+        array([0.1, 1. , 0. ])
+        """
         return self._run.angular_velocity[..., self._place, :]
 
     @property
     def turning(self) -> BodyTurning:
         """Of a rigid body: angular momentum, energy, and pictures, along its principal axes.
 
+        Arrays have a first axis T; moments have shape (3,).
+
         Raises
         ------
         visviva.InvalidInput
             If it is a particle, or the run is that of an ensemble.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name="book")
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 6))
+        >>> out["book"].turning.moments
+        array([1. , 2. , 2.5])
         """
         from visviva.body_turning import BodyTurning
 
@@ -122,17 +178,21 @@ class BodyMotion:
         about : str or int, optional
             What it orbits: a body, ``"jacobi"`` or ``"center_of_mass"``.
         G : float, optional
-            The gravitational constant; by default that of the scene's `Gravity`.
+            The gravitational constant in the units of the scene; by default that of the scene's `Gravity`.
 
         Returns
         -------
         Elements
-            Arrays of shape (T,), or (B, T).
+            Arrays of shape (T,), or (B, T), in the units of the scene; angles in radians.
 
         Raises
         ------
         visviva.InvalidInput
             As of `Trajectory.elements`.
+
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
 
         Examples
         --------

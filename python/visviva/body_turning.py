@@ -29,6 +29,8 @@ __all__ = ["BodyTurning"]
 class BodyTurning(Rotation):
     """How a rigid body turns along a run. Made by ``out["name"].turning``.
 
+    Units: those of the scene; angles in radians.
+
     Attributes
     ----------
     t : ndarray, shape (T,)
@@ -46,6 +48,10 @@ class BodyTurning(Rotation):
         ½ ω·I ω.
     casimir : ndarray, shape (T,)
         L·L, which no torque-free motion changes, whatever the moments.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.6.
 
     Examples
     --------
@@ -144,7 +150,7 @@ class BodyTurning(Rotation):
         plane : str, optional
             What is shown: ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"``, the default.
         trail : float
-            For how much of the time, from 0 to 1, the ways of the axes are shown behind them.
+            For how much of the time, from 0 to 1 without dimension, the ways of the axes are shown behind them.
         frames : int
             At most so many.
         fps : int

@@ -26,6 +26,8 @@ __all__ = ["CollisionTable"]
 class CollisionTable(Exported[str], Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
+    Units: those of the scene.
+
     Attributes
     ----------
     t : ndarray, shape (K,)
@@ -44,6 +46,10 @@ class CollisionTable(Exported[str], Shown):
         The copy of an ensemble; 0 of a single run.
 
     Indexing with a slice or an array gives a smaller table.
+
+    References
+    ----------
+    M. P. Allen & D. J. Tildesley, *Computer Simulation of Liquids* (1987), § 3.6.1 (hard spheres).
 
     Examples
     --------

@@ -67,6 +67,7 @@ class WorkPrecision(Shown):
         Parameters
         ----------
         error : float
+            The largest error of places, in the units of the problem's lengths.
         series : str, optional
             Of one method only.
 
@@ -252,7 +253,7 @@ def work_precision(
     methods : iterable of str or Method, optional
         By default all that the scene's forces allow.
     seconds : float, optional
-        A method is taken no further once two runs in turn take so long.
+        A method is taken no further once two runs in turn take so long, in seconds.
     repeats : int, optional
         Runs for each time, of which the least is taken.
     threads : int, optional
@@ -265,6 +266,10 @@ def work_precision(
     ------
     visviva.InvalidInput
         By name; for a problem that has no reference at its end.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.10.
 
     Examples
     --------

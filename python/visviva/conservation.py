@@ -72,6 +72,9 @@ class Drift:
 class Conservation(Shown):
     """Drift of each invariant of a trajectory; prints as a table.
 
+    Units: drifts are relative to their scales, without dimension, and so is the virial; each `Drift.scale` is in those
+    of the scene.
+
     Attributes
     ----------
     energy, momentum, angular_momentum, center_of_mass : Drift
@@ -89,6 +92,11 @@ class Conservation(Shown):
     collisions : int
         Collisions of the run. Energy is not conserved by those that take some, nor by mergers, in which angular
         momentum becomes spin that no body has here.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 (König's theorem, angular momentum) and §
+    3.4 (virial).
 
     Examples
     --------
@@ -109,7 +117,15 @@ class Conservation(Shown):
 
     @property
     def rows(self) -> tuple[Drift, ...]:
-        """The drifts, in the order of the table."""
+        """The drifts, in the order of the table.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> kept = vv.problems.figure_eight().scene.run(t=[1.0, 2.0], rtol=1e-12).conservation()
+        >>> [row.name for row in kept.rows]
+        ['energy', 'momentum', 'angular momentum', 'centre of mass']
+        """
         return self.energy, self.momentum, self.angular_momentum, self.center_of_mass
 
     @property

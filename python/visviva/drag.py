@@ -2,7 +2,9 @@
 
 The Reynolds number is taken with the radius, ρ a v/μ. `stokes` and `quadratic` make the forces of a scene; both
 together are the mixed law. `visviva.Drag` has the laws that hold between them, by name; `custom` and `tabulated` take
-one's own.
+one's own. Units are yours, one consistent system.
+
+Source: Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., §19, §20 and §45.
 """
 
 from __future__ import annotations
@@ -27,6 +29,13 @@ __all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number",
 class Throw:
     """What is told of a body thrown straight up, as plain numbers.
 
+    Units: those of the arguments of `throw`.
+
+    References
+    ----------
+    Corless et al., Adv. Comput. Math. 5 (1996) 329 (Lambert's function); Landau & Lifshitz, *Fluid Mechanics*, 2nd ed.,
+    § 45.
+
     Examples
     --------
     >>> import visviva as vv
@@ -50,6 +59,8 @@ class Throw:
 @known_keywords
 def throw(*, speed: float, g: float, tau: float | None = None, terminal_speed: float | None = None) -> Throw:
     """Rise and fall of a body thrown straight up, with linear or with quadratic drag.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -111,6 +122,10 @@ def reynolds_number(*, density: float, radius: float, speed: float, viscosity: f
     visviva.InvalidInput
         If a number is not positive.
 
+    References
+    ----------
+    Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., § 19.
+
     Examples
     --------
     >>> import visviva as vv
@@ -135,6 +150,8 @@ def quadratic(
     speed: float | None = None,
 ) -> QuadraticDrag:
     """Quadratic drag on a sphere, with the coefficient ½ C ρ π a².
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -181,6 +198,8 @@ def stokes(
     *, mass: float, radius: float, viscosity: float, density: float | None = None, speed: float | None = None
 ) -> LinearDrag:
     """Linear drag on a sphere by Stokes' law, with the time m/(6πaμ).
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -233,15 +252,18 @@ def custom(
     is linear; beyond `R_max` there is no value. A drag coefficient C of the Reynolds number Re with the diameter is the
     function ``lambda R: np.pi / 2 * C(2 * R)``.
 
+    Units: those of the caller, one consistent system; R and F are without dimension.
+
     Parameters
     ----------
     function : callable, int, numba CFunc, ctypes function or scipy.LowLevelCallable
-        F(R) of an array, elementwise, nowhere negative; or a compiled ``double f(double)``, or its address.
+        F(R) of an array of any shape, elementwise, nowhere negative; or a compiled ``double f(double)``, or its
+        address.
     R_min, R_max : float, positive
         Reynolds numbers, ρ a v/μ, between which the function is asked.
     density, viscosity : float, positive
         Of the fluid.
-    radius : float or array_like, not negative
+    radius : float or array_like, shape (N,), not negative
         Of every body, or of each.
     tolerance : float, optional
         Largest error of f allowed, from 1e-12 to 1e-4, relative to f + R abs(df/dR): as of `visviva.potentials.Custom`.
@@ -291,6 +313,8 @@ def tabulated(
     Where R F rises, or falls, over four points in a row, so does the curve of it between the middle two. Below the
     first point drag is linear, beyond the last there is no value.
 
+    Units: those of the caller, one consistent system; R and F are without dimension.
+
     Parameters
     ----------
     R : array_like, shape (P,)
@@ -299,7 +323,7 @@ def tabulated(
         Values there, not negative; π/2 C of a drag coefficient C.
     density, viscosity : float, positive
         Of the fluid.
-    radius : float or array_like, not negative
+    radius : float or array_like, shape (N,), not negative
         Of every body, or of each.
 
     Returns
@@ -332,6 +356,8 @@ def tabulated(
 def crossover_speed(*, density: float, radius: float, viscosity: float, drag_coefficient: float) -> float:
     """The speed of a sphere at which Stokes' law and the quadratic one give the same drag.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     density, radius, viscosity, drag_coefficient : float
@@ -345,6 +371,10 @@ def crossover_speed(*, density: float, radius: float, viscosity: float, drag_coe
     ------
     visviva.InvalidInput
         If a number is not positive.
+
+    References
+    ----------
+    Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., § 20 and 45.
 
     Examples
     --------

@@ -37,6 +37,8 @@ __all__ = ["EnsembleScene"]
 class EnsembleScene(Runnable["EnsembleTrajectory"]):
     """B copies of a scene. Made by `Scene.ensemble`.
 
+    Units: those of the scene.
+
     Attributes
     ----------
     scene : Scene
@@ -204,7 +206,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         Parameters
         ----------
         t, method, dt, time_transformation, rtol, atol, max_step, max_steps, record, collisions, restitution, threads
-            As of `run`; `record` is what the file holds, with the same bits.
+            As of `run`, in the units of the scene; `record` is what the file holds, with the same bits.
         events
             As of `run`. What ends copies ends them here, too; the tables of events and collisions are not kept.
         to : path-like

@@ -40,6 +40,8 @@ __all__ = ["EnsembleTrajectory", "one_or_some", "rows_of"]
 class EnsembleTrajectory(Recorded):
     """The motions of the copies. Made by `EnsembleScene.run` and `load`.
 
+    Units: those of the scene.
+
     Attributes
     ----------
     ensemble : EnsembleScene
@@ -135,14 +137,34 @@ class EnsembleTrajectory(Recorded):
 
     @property
     def status(self) -> NDArray[np.int8]:
-        """How each copy ended, values of `Status`, shape (B,)."""
+        """How each copy ended, values of `Status`, shape (B,), without dimension.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> velocity = scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]
+        >>> out = scene.ensemble(velocity=velocity).run(t=1.0)
+        >>> out.status.tolist()
+        [0, 0]
+        """
         status: NDArray[np.int8] = self._result["status"]
         status.setflags(write=False)
         return status
 
     @property
     def per_trajectory(self) -> dict[str, NDArray[Any]]:
-        """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,)."""
+        """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,), numbers without dimension.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> velocity = scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]
+        >>> out = scene.ensemble(velocity=velocity).run(t=1.0)
+        >>> out.per_trajectory["steps"].shape
+        (2,)
+        """
         counts: dict[str, NDArray[Any]] = self._result["per_trajectory"]
         for each in counts.values():
             each.setflags(write=False)
@@ -156,6 +178,15 @@ class EnsembleTrajectory(Recorded):
         ------
         visviva.InvalidInput
             If copies failed or were stopped, so that they do not share a time; ``out[i].final`` works for each.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> velocity = scene.particles.velocity * np.array([1.0, 0.9])[:, None, None]
+        >>> out = scene.ensemble(velocity=velocity).run(t=1.0)
+        >>> len(out.final), out.final.scene.t0
+        (2, 1.0)
         """
         if self.status.any():
             failed = np.flatnonzero(self.status)[:8].tolist()

@@ -47,6 +47,10 @@ class Event:
     terminal : int
         The run ends with the zero of this number; 0 if it does not.
 
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
+
     Examples
     --------
     >>> import visviva as vv
@@ -104,6 +108,8 @@ def distance(
 ) -> Event:
     """Two bodies come nearer to each other than a distance.
 
+    Units: those of the run.
+
     Parameters
     ----------
     first, second : int or str
@@ -144,6 +150,8 @@ def plane(
 ) -> Event:
     """A body passes a plane.
 
+    Units: those of the run.
+
     Parameters
     ----------
     point, normal : array_like, shape (3,)
@@ -182,6 +190,8 @@ def plane(
 @known_keywords
 def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
     """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
+
+    Units: those of the run.
 
     Parameters
     ----------
@@ -224,6 +234,8 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False) -> Event:
     """A generalized coordinate passes a value.
 
+    Units: those of the coordinate; angles in radians.
+
     Parameters
     ----------
     name : str or sympy.Function
@@ -236,7 +248,8 @@ def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: b
     Returns
     -------
     Event
-        For ``events=`` of a run in generalized coordinates.
+        For ``events=`` of a run in generalized coordinates. The table of what is found has a row for each: times of
+        shape (K,).
 
     Raises
     ------
@@ -303,6 +316,8 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
 
     In generalized coordinates it is that of the run: Jacobi's integral, or H.
 
+    Units: those of the run.
+
     Parameters
     ----------
     value : float
@@ -343,6 +358,8 @@ def function(
 
     In generalized coordinates it is called with coordinates and velocities (of a Hamiltonian momenta) of shape (n,). An
     `expression` is better there where it is one: it is compiled, and no zero is missed between two looks.
+
+    Units: those of the run.
 
     Parameters
     ----------

@@ -43,6 +43,8 @@ class Force(Declared):
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
+        Units: those of the scene.
+
         Parameters
         ----------
         position, velocity : array_like, shape (3,)
@@ -87,7 +89,7 @@ class Force(Declared):
         Parameters
         ----------
         rotation : array_like, shape (3, 3)
-            An orthogonal matrix; of determinant −1 a reflection.
+            An orthogonal matrix, without dimension; of determinant −1 a reflection.
 
         Returns
         -------

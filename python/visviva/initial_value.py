@@ -68,13 +68,14 @@ def solve_ivp(
         or without the last: a ``@cfunc`` of numba or its address, a function of ctypes, a ``scipy.LowLevelCallable``. A
         compiled function runs without the GIL, and must be what it says: a wrong signature or address ends the process.
     t_span : (t0, tf)
-        Where to start and to end. The end may be smaller, or infinite if an event ends the run.
-    y0 : (n,) array_like
+        Where to start and to end, in the units of the problem. The end may be smaller, or infinite if an event ends the
+        run.
+    y0 : array_like, shape (n,)
         The state at t0, real numbers.
     method : str, optional
         ``"RK45"`` (= ``"dormand_prince54"``), ``"RK23"`` (= ``"bogacki_shampine32"``), ``"DOP853"`` (= ``"dop853"``),
         or the name of any explicit Runge-Kutta method of `visviva.methods`.
-    t_eval : (T,) array_like, optional
+    t_eval : array_like, shape (T,), optional
         Times of the output, in the order of `t_span`. They do not steer: values between steps are interpolated.
     dense_output : bool, optional
         Whether the result gets ``sol``, the solution as a function of time.
@@ -85,8 +86,9 @@ def solve_ivp(
     vectorized : bool, optional
         Whether `fun` takes and returns states as columns (n, 1).
     args : tuple or array, optional
-        Further arguments of `fun` and the events; for a compiled function an array of float64, its ``data``.
-    rtol, atol : float or (n,) array_like, optional
+        Further arguments of `fun` and the events; for a compiled function an array of float64 of shape (k,), its
+        ``data``.
+    rtol, atol : float or array_like, shape (n,), optional
         The estimated error of each number in a step is kept to ``atol + rtol*abs(y)``, in the root mean square.
         By default 1e-3 and 1e-6.
     first_step, max_step : float, optional

@@ -35,6 +35,8 @@ _COLUMNS = ["kinetic_energy", "potential_energy", "energy", "momentum", "angular
 class Invariants(Shown):
     """The conserved quantities of a state.
 
+    Units: those of the scene.
+
     Attributes
     ----------
     total_mass : float
@@ -51,6 +53,11 @@ class Invariants(Shown):
         König's split of the kinetic energy: P²/2M and the rest.
     virial : float
         Σ r·F.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 (König's theorem, angular momentum) and §
+    3.4 (virial).
 
     Examples
     --------

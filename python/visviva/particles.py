@@ -232,6 +232,10 @@ class Particles(Shown):
             size, not at all, a parabola's semi-major axis, a body about one that comes after it, masses none of which
             attracts.
 
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
+
         Examples
         --------
         >>> import visviva as vv
@@ -291,6 +295,8 @@ class Particles(Shown):
     def center_of_mass(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """Position and velocity of the centre of mass.
 
+        Units: those of the scene.
+
         Returns
         -------
         position, velocity : ndarray, shape (3,)
@@ -299,6 +305,10 @@ class Particles(Shown):
         ------
         visviva.InvalidInput
             If the total mass is zero.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
         Examples
         --------
@@ -315,6 +325,11 @@ class Particles(Shown):
         ----------
         length, mass, time : float
             How many new units make one old unit. Powers of two change no bit of any mantissa.
+
+        Returns
+        -------
+        Particles
+            With arrays of the same shapes.
 
         Raises
         ------

@@ -27,7 +27,7 @@ class Cost:
     memory : int
         Bytes of the results.
     seconds : float
-        Time, as the trial went.
+        Time in seconds, as the trial went.
     exact : bool
         Whether the number of steps is; else it is scaled from the trial.
 
@@ -148,7 +148,14 @@ class Plan(Shown):
 
     @property
     def closed_form(self) -> bool:
-        """Whether the motion is known in closed form, so that no step is taken."""
+        """Whether the motion is known in closed form, so that no step is taken.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.problems.kepler(e=0.5).scene.plan(t=1.0).closed_form
+        True
+        """
         return self.solution.startswith("closed form")
 
     @classmethod

@@ -50,7 +50,14 @@ class Potential(Declared):
 
     @property
     def parameters(self) -> tuple[Any, ...]:
-        """The parameters, in the order of the constructor."""
+        """The parameters, in the order of the constructor.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.potentials.Yukawa(k=-1.0, length=2.0).parameters
+        (-1.0, 2.0)
+        """
         return tuple(self._values().values())
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
@@ -82,6 +89,8 @@ class Potential(Declared):
     def value(self, r: ArrayLike) -> NDArray[np.float64]:
         """V(r).
 
+        Units: those of the parameters: r is a length, V an energy.
+
         Parameters
         ----------
         r : array_like
@@ -108,6 +117,8 @@ class Potential(Declared):
     def force(self, r: ArrayLike) -> NDArray[np.float64]:
         """−dV/dr at the distances ``r``: positive where the force repels.
 
+        Units: those of the parameters: r is a length, the force an energy over a length.
+
         Parameters
         ----------
         r : array_like
@@ -133,6 +144,8 @@ class Potential(Declared):
 
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]:
         """d²V/dr² at the distances ``r``.
+
+        Units: those of the parameters: r is a length, the curvature an energy over a length squared.
 
         Parameters
         ----------
@@ -237,7 +250,8 @@ def Custom(  # noqa: N802
     function : sympy.Expr, callable, int, numba CFunc, ctypes function or scipy.LowLevelCallable
         Without a range a formula: an expression of SymPy of the symbol ``r``, or a function that is called once with
         ``(r, **parameters)``, an expression in the place of r: arithmetic and NumPy's functions, and no branches. With
-        a range any V(r) of an array of distances, elementwise; or a compiled ``double f(double r)``, or its address.
+        a range any V(r) of an array of distances of any shape, elementwise; or a compiled ``double f(double r)``, or
+        its address.
     r_min, r_max : float, optional
         Distances between which a function is sampled. Beyond them there is no value: asking for one is refused, and a
         run that comes there ends with `Status.OUTSIDE_DOMAIN`. A formula has no such range, and takes none.
@@ -326,8 +340,15 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
 
 # What a class has beside what is declared.
 _FURTHER: dict[str, dict[str, Any]] = {"screened_coulomb": {"between": classmethod(_between)}}
+_SHAPES = "Distances may have any shape; values, forces and curvatures have the same."
 _BY_NAME = {
-    entry["name"]: make(entry, Potential, __name__, "", {"name": entry["name"], **_FURTHER.get(entry["name"], {})})
+    entry["name"]: make(
+        entry | {"notes": f"{entry['notes']} {_SHAPES}".strip()},
+        Potential,
+        __name__,
+        "",
+        {"name": entry["name"], **_FURTHER.get(entry["name"], {})},
+    )
     for entry in _core.potentials()
 }
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
@@ -339,6 +360,8 @@ __all__ += list(_CLASSES)
 @known_keywords
 def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
     """The potential of a registry name, as files hold it.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------

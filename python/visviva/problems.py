@@ -54,6 +54,8 @@ __all__ = [
 def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "hairer_lubich_wanner") -> Problem:
     """The Sun and five outer planets over 200 000 days, or Applegate's version over 3 650 000.
 
+    Units: astronomical units, days and masses of the Sun.
+
     Parameters
     ----------
     variant : {"hairer_lubich_wanner", "applegate"}, optional
@@ -68,6 +70,11 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
     ------
     visviva.InvalidInput
         For another kind of start.
+
+    References
+    ----------
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), section I.2.4; Applegate et al., Astron.
+    J. 92 (1986) 176.
 
     Examples
     --------
@@ -94,6 +101,8 @@ def outer_solar_system(variant: Literal["hairer_lubich_wanner", "applegate"] = "
 @known_keywords
 def figure_eight(periods: int = 1) -> Problem:
     """Three equal bodies that chase each other along one figure eight.
+
+    Units: those in which the gravitational constant is 1.
 
     Parameters
     ----------
@@ -145,10 +154,12 @@ def pythagorean() -> Problem:
     The closest approach of all is 4.138248362587e-4, of bodies 1 and 2 at t = 15.829920271581. By t = 63 the
     problem has amplified its input 3e7 times: compare accuracy up to t = 30, and the outcome beyond.
 
+    Units: those in which the gravitational constant is 1.
+
     Returns
     -------
     Problem
-        With its scene, its end, and where bodies must be there.
+        With its scene, its end, and where bodies must be there. Its scene has three bodies, positions of shape (3, 3).
 
     Notes
     -----
@@ -175,6 +186,8 @@ def pythagorean() -> Problem:
 def pleiades() -> Problem:
     """Seven stars in a plane with masses 1 … 7 and several close encounters.
 
+    Units: those in which the gravitational constant is 1.
+
     Returns
     -------
     Problem
@@ -182,7 +195,7 @@ def pleiades() -> Problem:
 
     Notes
     -----
-    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, II.10.
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.10.
 
     Examples
     --------
@@ -209,6 +222,8 @@ def pleiades() -> Problem:
 def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem:
     """Two bodies with semi-major axis 1, total mass 1 and period 2π, starting at pericenter.
 
+    Units: those in which the gravitational constant is 1.
+
     Parameters
     ----------
     e : float, optional
@@ -221,12 +236,16 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
     Returns
     -------
     Problem
-        With its scene, its end, and where bodies must be there.
+        With its scene, its end, and where bodies must be there. Its scene has two bodies, positions of shape (2, 3).
 
     Raises
     ------
     visviva.InvalidInput
         For arguments outside these ranges.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.8.
 
     Examples
     --------
@@ -260,6 +279,8 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
 def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2.0, turn: float = 1.0) -> Problem:
     """Three bodies that turn as a rigid equilateral triangle, ω² = (m₁ + m₂ + m₃) / side³.
 
+    Units: those in which the gravitational constant is 1.
+
     Parameters
     ----------
     masses : sequence of 3 floats, optional
@@ -282,6 +303,11 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     -----
     Unstable unless one body outweighs the others (Gascheau): with equal or similar masses the
     triangle breaks up after a few turns whatever the method.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.12; J. M. A. Danby, *Fundamentals of Celestial
+    Mechanics*, 2nd ed. (1988), ch. 8.
 
     Examples
     --------
@@ -320,6 +346,8 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
 def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float = 1.0, turn: float = 0.25) -> Problem:
     """Three bodies that turn on a straight line, in the order given, as if on a rigid rod.
 
+    Units: those in which the gravitational constant is 1.
+
     Parameters
     ----------
     masses : sequence of 3 floats, optional
@@ -341,6 +369,11 @@ def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float
     Notes
     -----
     Unstable for any masses: what is out of line grows by the factor that the conditioning tells.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.12; J. M. A. Danby, *Fundamentals of Celestial
+    Mechanics*, 2nd ed. (1988), ch. 8.
 
     Examples
     --------

@@ -49,7 +49,7 @@ class Stats:
     steps, rejected, evaluations : int
         Steps taken and rejected, and force evaluations.
     seconds : float
-        Of the core alone.
+        Of the core alone, in seconds.
     threads : int
     simd : str
         The tier: ``"portable"``, ``"avx2"`` or ``"avx512"``.
@@ -158,57 +158,138 @@ class Recorded(Exported[ColumnName], Shown, ABC):
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Positions, shape (T, N, 3), or (B, T, N, 3) of an ensemble."""
+        """Positions, shape (T, N, 3), or (B, T, N, 3) of an ensemble, in the units of the scene."""
         return self._column("position")
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (T, N, 3), or (B, T, N, 3)."""
+        """Velocities, shape (T, N, 3), or (B, T, N, 3), in the units of the scene."""
         return self._column("velocity")
 
     @property
     def orientation(self) -> NDArray[np.float64]:
-        """Quaternions (x, y, z, w) of rigid bodies, from the body to space, shape (T, K, 4), or (B, T, K, 4)."""
+        """Quaternions (x, y, z, w) of rigid bodies, from the body to space, shape (T, K, 4), or (B, T, K, 4).
+
+        Without dimension.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name="book")
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 6))
+        >>> out.orientation.shape
+        (6, 1, 4)
+        """
         return self._column("orientation")
 
     @property
     def angular_velocity(self) -> NDArray[np.float64]:
-        """Angular velocities of rigid bodies along their axes, shape (T, K, 3), or (B, T, K, 3)."""
+        """Angular velocities of rigid bodies along their axes, shape (T, K, 3), or (B, T, K, 3).
+
+        In radians per time of the scene.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0.0], name="book")
+        >>> out = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 6))
+        >>> out.angular_velocity.shape
+        (6, 1, 3)
+        """
         return self._column("angular_velocity")
 
     @property
     def energy(self) -> NDArray[np.float64]:
-        """Total energy, shape (T,), or (B, T)."""
+        """Total energy, shape (T,), or (B, T), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.energy.round(12)
+        array([-0.125, -0.125])
+        """
         return self._column("energy")
 
     @property
     def kinetic_energy(self) -> NDArray[np.float64]:
-        """Kinetic energy, shape (T,), or (B, T)."""
+        """Kinetic energy, shape (T,), or (B, T), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.kinetic_energy.round(12)
+        array([0.375     , 0.13434051])
+        """
         return self._column("kinetic_energy")
 
     @property
     def potential_energy(self) -> NDArray[np.float64]:
-        """Potential energy of all forces, shape (T,), or (B, T)."""
+        """Potential energy of all forces, shape (T,), or (B, T), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.potential_energy.round(12)
+        array([-0.5       , -0.25934051])
+        """
         return self._column("potential_energy")
 
     @property
     def virial(self) -> NDArray[np.float64]:
-        """The virial Σ r·F, shape (T,), or (B, T)."""
+        """The virial Σ r·F, shape (T,), or (B, T), an energy in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.virial.round(12)  # of gravity the potential energy
+        array([-0.5       , -0.25934051])
+        """
         return self._column("virial")
 
     @property
     def momentum(self) -> NDArray[np.float64]:
-        """Total momentum, shape (T, 3), or (B, T, 3)."""
+        """Total momentum, shape (T, 3), or (B, T, 3), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.momentum.round(12) + 0.0
+        array([[0., 0., 0.],
+               [0., 0., 0.]])
+        """
         return self._column("momentum")
 
     @property
     def angular_momentum(self) -> NDArray[np.float64]:
-        """Total angular momentum about the origin, shape (T, 3), or (B, T, 3)."""
+        """Total angular momentum about the origin, shape (T, 3), or (B, T, 3), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.angular_momentum.round(12) + 0.0
+        array([[0.        , 0.        , 0.21650635],
+               [0.        , 0.        , 0.21650635]])
+        """
         return self._column("angular_momentum")
 
     @property
     def center_of_mass(self) -> NDArray[np.float64]:
-        """Centre of mass, shape (T, 3), or (B, T, 3)."""
+        """Centre of mass, shape (T, 3), or (B, T, 3), in the units of the scene.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.center_of_mass.round(12) + 0.0
+        array([[0., 0., 0.],
+               [0., 0., 0.]])
+        """
         return self._column("center_of_mass")
 
     def body(self, body: str | int) -> BodyMotion:
@@ -265,13 +346,17 @@ class Recorded(Exported[ColumnName], Shown, ABC):
             ensemble; vectors with a last axis of 3. Angles are in radians, x the reference direction, z the pole. What
             they are for circular, planar, parabolic and radial orbits is said in `visviva.orbits.Elements`. Rows that a
             failed copy of an ensemble does not have are NaN, as its states are; and those of a body after it has merged
-            into another, which then has the mass of both.
+            into another, which then has the mass of both. Lengths, times and masses are in the units of the scene.
 
         Raises
         ------
         visviva.InvalidInput
             If there is no such body; if a body is at the very place of what it orbits, or neither has mass; if the
             scene has no gravity and no `G` is given; if positions or velocities were not recorded.
+
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
 
         Examples
         --------
@@ -290,7 +375,15 @@ class Recorded(Exported[ColumnName], Shown, ABC):
 
     @property
     def recorded(self) -> tuple[str, ...]:
-        """Names of the recorded columns."""
+        """Names of the recorded columns.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
+        >>> out.recorded
+        ('position', 'velocity')
+        """
         return tuple(self._result["columns"])
 
     @property
@@ -301,6 +394,13 @@ class Recorded(Exported[ColumnName], Shown, ABC):
         ------
         visviva.InvalidInput
             If none were asked for.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> scene = vv.problems.kepler(e=0.5).scene
+        >>> len(scene.run(t=20.0, events=[vv.events.apsis(1, 0)]).events)
+        6
         """
         if "events" not in self._result:
             raise InvalidInput("events", "no events were looked for; run again with events=[...] of visviva.events")
@@ -313,12 +413,19 @@ class Recorded(Exported[ColumnName], Shown, ABC):
 
     @property
     def collisions(self) -> CollisionTable:
-        """The collisions of spheres.
+        """The collisions of spheres, each column of shape (K, …).
 
         Raises
         ------
         visviva.InvalidInput
             If none were asked for.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> balls = vv.Particles([1.0, 1.0], [[-2.0, 0, 0], [2.0, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0]], radius=0.5)
+        >>> vv.Scene(balls).run(t=4.0, collisions="bounce").collisions.t
+        array([1.5])
         """
         if "collisions" not in self._result:
             raise InvalidInput(
@@ -330,12 +437,26 @@ class Recorded(Exported[ColumnName], Shown, ABC):
 
     @property
     def stats(self) -> Stats:
-        """What the run cost; of an ensemble, in total."""
+        """What the run cost; of an ensemble, in total.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.problems.figure_eight().scene.run(t=1.0, method="leapfrog", dt=0.01).stats.steps
+        100
+        """
         return Stats._from_core(self._result["stats"])
 
     @property
     def plan(self) -> Plan:
-        """What ran, what was skipped, and why."""
+        """What ran, what was skipped, and why.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.problems.figure_eight().scene.run(t=1.0, method="leapfrog", dt=0.01).plan.method
+        'leapfrog'
+        """
         return Plan._from_core(told(self._result["plan"]))
 
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
@@ -369,6 +490,18 @@ class Recorded(Exported[ColumnName], Shown, ABC):
 
     def save(self, path: str | PathLike[str]) -> None:
         """Write everything to one ``.npz`` file that this and every later version loads.
+
+        Parameters
+        ----------
+        path : path-like
+            The file, exactly as named.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For what is no path.
+        OSError
+            Where the file cannot be written.
 
         Examples
         --------

@@ -95,6 +95,10 @@ class RigidBodies(Shown):
     --------
     RigidBody : one of them.
 
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.3–5.5.
+
     Examples
     --------
     A brick that flies, and a top that stands on a fixed point 1 below its center of mass:
@@ -278,7 +282,15 @@ class RigidBodies(Shown):
 
     @property
     def fixed_point(self) -> NDArray[np.float64]:
-        """Where in space the fixed points are, (K, 3); NaN of free bodies."""
+        """Where in space the fixed points are, shape (K, 3), in the units of the scene; NaN of free bodies.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> top = vv.RigidBody(15.0, [0.25, 0.25, 0.5], position=[0.0, 0.0, 1.0], pivot=[0.0, 0.0, -1.0])
+        >>> top.fixed_point
+        array([[0., 0., 0.]])
+        """
         if self.pivot is None:
             return np.full((len(self), 3), np.nan)
         arm = rotate(self.orientation, np.where(self.pivoted[:, None], self.pivot, 0.0))
@@ -310,10 +322,12 @@ class RigidBodies(Shown):
         return body_index("name", name, self.names, len(self))
 
     def core_arguments(self) -> dict[str, NDArray[Any]]:
-        """What the core takes: C-contiguous arrays, float64 but for `pivoted`.
+        """What the core takes: C-contiguous arrays of shape (K, …), float64 but for `pivoted`.
 
         Orientations and angular velocities are those of the body's axes; moments and centers belong to the principal
         ones, which `axes` brings to the body's.
+
+        Units: those of the scene.
 
         Examples
         --------
@@ -326,6 +340,8 @@ class RigidBodies(Shown):
 
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> RigidBodies:
         """The bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
+
+        Units: those of the scene.
 
         Parameters
         ----------
@@ -360,6 +376,8 @@ class RigidBodies(Shown):
 
         A reflected body is the mirrored one, of which all places in the body change sign.
 
+        Units: the matrix is without dimension.
+
         Parameters
         ----------
         rotation : array_like, shape (3, 3)
@@ -387,7 +405,7 @@ class RigidBodies(Shown):
         )
 
     def reversed(self) -> RigidBodies:
-        """The bodies with their velocities and spins turned round.
+        """The bodies with their velocities and spins, shape (K, 3), turned round.
 
         Examples
         --------
@@ -405,6 +423,11 @@ class RigidBodies(Shown):
         ----------
         length, mass, time : float
             How many new units make one old unit. Powers of two change no bit of any mantissa.
+
+        Returns
+        -------
+        RigidBodies
+            With arrays of the same shapes.
 
         Raises
         ------

@@ -30,6 +30,8 @@ def RigidBody(  # noqa: N802
 ) -> RigidBodies:
     """One rigid body, as `RigidBodies` of one: every argument without its first axis.
 
+    Units: those of the scene.
+
     Parameters
     ----------
     mass : float
@@ -58,6 +60,10 @@ def RigidBody(  # noqa: N802
     ------
     visviva.InvalidInput
         As `RigidBodies`.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.3–5.5.
 
     Examples
     --------

@@ -23,6 +23,8 @@ __all__ = ["AppliedTorque", "CompiledTorque", "RotationalDrag"]
 class AppliedTorque(BodyForce):
     """A constant torque, along axes of space or along those of the body.
 
+    Units: those of the scene; a torque is mass · length² / time².
+
     Parameters
     ----------
     torque : array_like, shape (3,)
@@ -36,6 +38,10 @@ class AppliedTorque(BodyForce):
     ------
     visviva.InvalidInput
         For NaN or infinity, another shape, or another frame.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.5 (Euler's equations).
 
     Examples
     --------
@@ -61,6 +67,8 @@ class AppliedTorque(BodyForce):
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
         """The torque turned with space, or as it is in the body; an axial vector.
+
+        Units: the matrix is without dimension.
 
         Parameters
         ----------
@@ -88,6 +96,8 @@ class AppliedTorque(BodyForce):
 class RotationalDrag(BodyForce):
     """Drag against turning: the torque −coefficient ω.
 
+    Units: those of the scene; `coefficient` is mass · length² / time.
+
     Parameters
     ----------
     coefficient : float
@@ -99,6 +109,10 @@ class RotationalDrag(BodyForce):
     ------
     visviva.InvalidInput
         For a negative number, NaN or infinity.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.5 (Euler's equations).
 
     Examples
     --------
@@ -123,6 +137,8 @@ class RotationalDrag(BodyForce):
 class CompiledTorque(BodyForce):
     """A torque by a compiled function of the time, the orientation and the angular velocity.
 
+    Units: those of the scene; angular velocities in radians per time.
+
     Parameters
     ----------
     function : int, numba CFunc, ctypes function or scipy.LowLevelCallable
@@ -141,6 +157,10 @@ class CompiledTorque(BodyForce):
     -----
     It is called from several threads at once and must keep nothing from call to call. A compiled function is at its
     address in this process only: it can be neither pickled nor saved.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 5.5 (Euler's equations).
 
     Examples
     --------
@@ -166,7 +186,19 @@ class CompiledTorque(BodyForce):
 
     @property
     def address(self) -> int:
-        """Where the function is."""
+        """Where the function is.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> import ctypes
+        >>> numbers = ctypes.POINTER(ctypes.c_double)
+        >>> @ctypes.CFUNCTYPE(None, ctypes.c_double, numbers, numbers, numbers)
+        ... def motor(t, orientation, angular_velocity, torque):
+        ...     torque[0], torque[1], torque[2] = 0.0, 0.0, 0.5
+        >>> vv.CompiledTorque(motor, body=0).address == ctypes.cast(motor, ctypes.c_void_p).value
+        True
+        """
         return of_orientation(self.function)
 
     def core_arguments(self) -> dict[str, Any]:
@@ -175,7 +207,10 @@ class CompiledTorque(BodyForce):
         return {"kind": self.kind, "address": self.address, "body": known["body"]}
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
-        """Refuse: the function is of the axes of space that it was written for."""
+        """Refuse: the function is of the axes of space that it was written for.
+
+        A matrix, shape (3, 3), without dimension, does not turn it.
+        """
         if np.array_equal(rotation, np.eye(3)):
             return self
         raise InvalidInput("forces", "CompiledTorque cannot be rotated: what it computes is along the axes it knows")

@@ -25,6 +25,8 @@ class AttachedSpring(BodyForce):
     With d from the other end to the point and its length ``|d|``, the force on the point is
     ``−(stiffness (|d| − length) + damping d|d|/dt) d/|d|``; the other end has the opposite one.
 
+    Units: those of the scene; `stiffness` is mass / time², `damping` mass / time.
+
     Parameters
     ----------
     body : int or str
@@ -52,6 +54,10 @@ class AttachedSpring(BodyForce):
     visviva.InvalidInput
         For a negative number, NaN or infinity, not exactly one other end, a `to_point` without `to`, or a spring
         between points of the same body.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2 and § 1.5.
 
     Examples
     --------
@@ -118,6 +124,8 @@ class AttachedSpring(BodyForce):
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The spring with its anchor displaced.
 
+        Units: those of the scene.
+
         Parameters
         ----------
         position, velocity : array_like, shape (3,)
@@ -150,6 +158,8 @@ class AttachedSpring(BodyForce):
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
         """The spring with its anchor turned; of a mirrored body, points change sign.
+
+        Units: the matrix is without dimension.
 
         Parameters
         ----------

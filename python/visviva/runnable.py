@@ -44,8 +44,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         Parameters
         ----------
         t : float or array_like, shape (T,)
-            The end time, or the output times in the order of the motion, forwards or backwards. An
-            end time alone records the start and the end.
+            The end time, or the output times in the order of the motion, forwards or backwards, in the units of the
+            scene. An end time alone records the start and the end.
         method : str or Method, optional
             One of `visviva.methods`, or its name. ``"auto"`` takes a closed form where there is one, else ``"taylor"``
             for up to eight massive bodies under gravity alone, else ``"verner98"``. A method named here always runs.
@@ -160,6 +160,13 @@ class Runnable(Shown, ABC, Generic[_Result]):
     @asked_by(PlanRequest)
     def plan(self, request: PlanRequest) -> Plan:
         """What `run` would do with the same arguments, without doing it.
+
+        Parameters
+        ----------
+        t : float or array_like, shape (T,)
+            The end time, or the output times, in the units of the scene.
+        method, dt, time_transformation, rtol, atol, max_step, max_steps, record, events, collisions, restitution
+            As of `run`.
 
         Returns
         -------

@@ -72,6 +72,8 @@ _ELSEWHERE = {
 class Scene(Runnable[Trajectory], Framed):
     """Particles and the forces on them, at a time.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     *parts : Particles, RigidBodies or Force, or sequence of them
@@ -247,6 +249,8 @@ class Scene(Runnable[Trajectory], Framed):
     ) -> EnsembleScene:
         """Many copies of the scene that differ in their states, or in the parameters of their forces.
 
+        Units: those of the scene.
+
         Parameters
         ----------
         position, velocity : array_like, shape (B, N, 3), optional
@@ -313,8 +317,8 @@ class Scene(Runnable[Trajectory], Framed):
 
         Parameters
         ----------
-        t : float or array_like
-            The end of the run, or its output times, as of ``run``.
+        t : float or array_like, shape (T,)
+            The end of the run, or its output times, as of ``run``, in the units of the scene.
         accuracy : float
             The error that may be made, from 5e-13: of the energy, relative to it; of positions, relative to the size of
             the system.
@@ -333,6 +337,10 @@ class Scene(Runnable[Trajectory], Framed):
         visviva.ConvergenceError
             If no method holds it, or a trial ends early.
 
+        References
+        ----------
+        Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), IX.8 and X.3.
+
         Examples
         --------
         >>> import visviva as vv
@@ -349,7 +357,7 @@ class Scene(Runnable[Trajectory], Framed):
         return advise(self._keywords, asked, accuracy, of, closed=self._turns_freely and self.plan(t).closed_form)
 
     def acceleration(self) -> NDArray[np.float64]:
-        """Accelerations of the bodies at the scene's state and time, shape (N, 3).
+        """Accelerations of the bodies at the scene's state and time, shape (N, 3), in the units of the scene.
 
         Raises
         ------
@@ -380,6 +388,8 @@ class Scene(Runnable[Trajectory], Framed):
     def invariants(self, about: ArrayLike | str | None = None) -> Invariants:
         """Momentum, angular momentum, energy, centre of mass and König's split at the scene's state.
 
+        Units: those of the scene.
+
         Parameters
         ----------
         about : array_like, shape (3,), or "center_of_mass", optional
@@ -393,6 +403,10 @@ class Scene(Runnable[Trajectory], Framed):
         ------
         visviva.InvalidInput
             For another reference point.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
         Examples
         --------
@@ -413,6 +427,8 @@ class Scene(Runnable[Trajectory], Framed):
     ) -> Elements:
         """The osculating elements of bodies at the scene's state: the way back from `Particles.from_elements`.
 
+        Units: those of the scene; angles in radians.
+
         Parameters
         ----------
         bodies, about, G : optional
@@ -427,6 +443,10 @@ class Scene(Runnable[Trajectory], Framed):
         ------
         visviva.InvalidInput
             As of `Trajectory.elements`.
+
+        References
+        ----------
+        Murray & Dermott, *Solar System Dynamics* (1999), § 2.8; § 9.7 for Jacobi coordinates.
 
         Examples
         --------

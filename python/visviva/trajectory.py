@@ -39,6 +39,8 @@ _DERIVED = {name: needs_velocity for name, _, _, needs_velocity in _core.columns
 class Trajectory(Recorded):
     """The motion of a scene at the output times. Made by `Scene.run` and `load`.
 
+    Units: those of the scene; angles in radians.
+
     Attributes
     ----------
     scene : Scene
@@ -178,6 +180,8 @@ class Trajectory(Recorded):
     def angular_momentum_about(self, about: ArrayLike | str) -> NDArray[np.float64]:
         """Angular momentum about a fixed point or about the moving centre of mass, shape (T, 3).
 
+        Units: those of the scene.
+
         Parameters
         ----------
         about : array_like, shape (3,), or "center_of_mass"
@@ -186,6 +190,10 @@ class Trajectory(Recorded):
         ------
         visviva.InvalidInput
             If position or velocity was not recorded.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
         Examples
         --------
@@ -208,6 +216,8 @@ class Trajectory(Recorded):
     def conservation(self, about: ArrayLike | str | None = None) -> Conservation:
         """How well the invariants held: drift of each, as a table.
 
+        Units: those of the scene.
+
         Parameters
         ----------
         about : array_like, shape (3,), or "center_of_mass", optional
@@ -217,6 +227,10 @@ class Trajectory(Recorded):
         ------
         visviva.InvalidInput
             If a quantity was neither recorded nor can be computed; the message says what to record.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.2.
 
         Examples
         --------
@@ -298,7 +312,7 @@ class Trajectory(Recorded):
         plane : str, optional
             As in `plot`; ``"xyz"`` if not given and there are boxes.
         trail : float
-            For how much of the run, from 0 to 1, the way of each body is shown behind it.
+            For how much of the run, from 0 to 1 without dimension, the way of each body is shown behind it.
         frames : int
             At most so many.
         fps : int

@@ -105,6 +105,11 @@ class Units:
     source : str
         Where the numbers come from.
 
+    References
+    ----------
+    IAU 2012 resolution B2, IAU 2015 resolutions B2 and B3; CODATA 2022: Mohr, Newell, Taylor & Tiesinga, Rev. Mod.
+    Phys. 97 (2025) 025002.
+
     Examples
     --------
     >>> import visviva as vv

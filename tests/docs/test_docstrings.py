@@ -38,21 +38,33 @@ def test_examples(name: str) -> None:
 
 
 def documented() -> dict[str, Any]:
-    """Every public class, function and method by its name, each once; what was made from a registry has one class."""
+    """Every public class, function and method by its name, each once; what was made from a registry has one class.
+
+    What a class has of a base that nobody is shown is told under the first class that has it.
+    """
+    rooms = {where: getattr(visviva, where) if where else visviva for where in ("", *visviva._ROOMS)}
+    public = {id(getattr(room, name)) for room in rooms.values() for name in room.__all__}
     found: dict[str, Any] = {}
     seen: set[int] = set()
-    for where in ("", *visviva._ROOMS):
-        room = getattr(visviva, where) if where else visviva
+    for where, room in rooms.items():
         for name in room.__all__:
             thing = getattr(room, name)
             if id(thing) in seen or not (inspect.isclass(thing) or inspect.isroutine(thing)):
                 continue
             seen.add(id(thing))
             found[f"{where}.{name}".lstrip(".")] = thing
-            for attribute, value in vars(thing).items() if inspect.isclass(thing) else ():
-                plain = getattr(value, "__func__", value)
-                if not attribute.startswith("_") and (inspect.isfunction(plain) or isinstance(value, property)):
-                    found[f"{where}.{name}.{attribute}".lstrip(".")] = value if isinstance(value, property) else plain
+            for base in thing.__mro__ if inspect.isclass(thing) else ():
+                if base is not thing and (id(base) in public or not base.__module__.startswith("visviva")):
+                    continue
+                for attribute, value in vars(base).items():
+                    plain = value if isinstance(value, property) else getattr(value, "__func__", value)
+                    path = f"{where}.{name}.{attribute}".lstrip(".")
+                    hidden = attribute.startswith("_") and attribute != "__call__"
+                    if hidden or id(plain) in seen or path in found:
+                        continue
+                    if inspect.isfunction(plain) or isinstance(plain, property):
+                        seen.add(id(plain))
+                        found[path] = plain
     return found
 
 
@@ -63,6 +75,26 @@ NO_EXAMPLE = {f"CompiledTorque.{name}" for name in ("core_arguments", "rotated",
 REFUSE_NOTHING = {
     *NO_EXAMPLE, "AppliedTorque.rotated", "AttachedSpring.rotated", "RigidBodies.rotated", "WorkPrecision.joined",
     "forces.Force.rotated", "generalized.Expression.arctan2", "OdeResult.get",
+}  # fmt: skip
+#: How units are said; a few units in the last place are none, nor is a field of that name.
+UNITS = re.compile(
+    r"(?<!few )\b[Uu]nits\b(?!`)|[Dd]imension|\bradians\b|\b[Ii]n (degrees|days|seconds)\b|\beV\b|µm|Å|\bBytes\b"
+)
+#: Modules of formulas and methods, by how their names begin: what they have is published somewhere.
+FORMULAS = (
+    "_audit", "_event_table", "_field_problems", "_frames", "_from_elements", "advice", "audit", "body_turning",
+    "collision_table", "collisions", "comparison", "conservation", "datasets", "drag", "expression_force", "forces",
+    "generalized", "initial_value", "invariants", "orbits", "potentials", "problems", "rigid", "scattering",
+    "systems", "units",
+)  # fmt: skip
+#: They hold, name, read or convert; or each has its own source, as methods and problems have.
+NO_SOURCE = {
+    "coordinate", "forces.Force", "Option", "Point", "Scene.with_state", "WorkPrecision", "Drift",
+    "generalized.GeneralizedEnsemble", "generalized.GeneralizedEnsembleTrajectory", "generalized.GeneralizedEventTable",
+    "generalized.GeneralizedPlan", "potentials.Potential", "potentials.potential_by_name",
+    "rigid.from_scipy", "rigid.load_mesh", "rigid.methods", "rigid.to_scipy",
+    "scattering.Bins", "scattering.Bombardment", "scattering.CrossSection", "scattering.DeflectionStatus",
+    "scattering.Fraction", "scattering.Ion", "scattering.Spectrum", "scattering.Spread",
 }  # fmt: skip
 
 
@@ -75,6 +107,7 @@ def test_every_public_name_is_documented(name: str) -> None:
     if isinstance(thing, property):
         return
     assert ">>>" in told or name in NO_EXAMPLE
+    assert "+SKIP" not in told
     if inspect.isclass(thing):
         return
     arguments = [each for each in inspect.signature(thing).parameters if each not in ("self", "cls")]
@@ -88,6 +121,66 @@ def test_every_public_name_is_documented(name: str) -> None:
         assert re.search(r"(Returns|Yields)\n---", told)
 
 
+def sections(told: str) -> dict[str, str]:
+    """What a docstring says under each of its headings; under "" what comes before the first."""
+    first, *parts = re.split(r"(?m)^(\w[\w ]*)\n-{3,}$\n", told)
+    return {"": first, **dict(zip(parts[::2], parts[1::2], strict=True))}
+
+
+def types(thing: Any) -> str:
+    """The types of what a function takes and gives, of a property gives; of a class what its docstring has."""
+    if inspect.isclass(thing):
+        told = sections(inspect.getdoc(thing) or "")
+        return " ".join(re.findall(r"(?m)^\S.* : (.*)$", told.get("Parameters", "") + told.get("Attributes", "")))
+    return str(inspect.get_annotations(getattr(thing, "fget", thing)))
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
+def test_arrays_have_shapes(name: str) -> None:
+    """Each entry of an array says its shape, or all do at once; where numbers broadcast, what comes of them says it."""
+    told = sections(inspect.getdoc(DOCUMENTED[name]) or "")
+    for heading in ("Parameters", "Attributes", "Returns", "Yields"):
+        for entry in re.findall(r"(?m)^\S.*(?:\n .*)*", told.get(heading, "")):
+            first = entry.partition("\n")[0]
+            if "array" in first and (" : " in first or heading in ("Returns", "Yields")):
+                told_elsewhere = told[""] + (told.get("Returns", "") if heading == "Parameters" else "")
+                assert re.search("(?i)shape|broadcast", entry + told_elsewhere), entry
+    # So does whatever else is about arrays: what gives a result that has some, an example that prints one.
+    said = "".join(text for heading, text in told.items() if heading not in ("Raises", "Examples"))
+    printed = re.sub(r"(?m)^(>>>|\.\.\.).*", "", told.get("Examples", ""))
+    if re.search("(?i)array", types(DOCUMENTED[name]) + said + printed) and name not in NO_EXAMPLE:
+        assert re.search("(?i)shape|broadcast", said)
+
+
+@pytest.mark.parametrize("name", DOCUMENTED)
+def test_quantities_have_units(name: str) -> None:
+    """In words: those of the scene or of the caller, a dimension, radians, eV, or that there is none."""
+    if re.search("float|(?i:array)", types(DOCUMENTED[name])):
+        told = sections(inspect.getdoc(DOCUMENTED[name]) or "")
+        assert any(UNITS.search(text) for heading, text in told.items() if heading != "Examples")
+
+
+@pytest.mark.parametrize("name", [name for name, thing in DOCUMENTED.items() if isinstance(thing, property)])
+def test_properties_have_examples(name: str) -> None:
+    """Their own, or a line in that of their class."""
+    owner, _, attribute = name.rpartition(".")
+    examples = re.findall(r"(?m)^(?:>>>|\.\.\.) .*", inspect.getdoc(DOCUMENTED[owner]) or "")
+    assert ">>>" in (inspect.getdoc(DOCUMENTED[name]) or "") or re.search(rf"\.{attribute}\b", "\n".join(examples))
+
+
+@pytest.mark.parametrize("name", [name for name, thing in DOCUMENTED.items() if not isinstance(thing, property)])
+def test_formulas_have_sources(name: str) -> None:
+    """In the docstring; of a method that of its class is enough."""
+    thing, owner = DOCUMENTED[name], DOCUMENTED.get(name.rpartition(".")[0])
+    if (
+        not thing.__module__.removeprefix("visviva.").startswith(FORMULAS)
+        or {name, name.rpartition(".")[0]} & NO_SOURCE
+    ):
+        return
+    told = (inspect.getdoc(thing) or "") + (inspect.getdoc(owner) or "" if inspect.isclass(owner) else "")
+    assert re.search(r"(?m)^References\n---|\(\d{4}\)|\d(rd|nd) ed\.|§", told)
+
+
 def test_as_many_names_as_there_are() -> None:
-    assert len(DOCUMENTED) > 500
-    assert {*NO_EXAMPLE, *REFUSE_NOTHING} <= {*DOCUMENTED}
+    assert len(DOCUMENTED) > 600
+    assert {*NO_EXAMPLE, *REFUSE_NOTHING, *NO_SOURCE} <= {*DOCUMENTED}

@@ -24,13 +24,19 @@ if TYPE_CHECKING:
 class CollisionOutcome(Record):
     """Two bodies after a collision.
 
+    Units: those of the caller, one consistent system.
+
     Attributes
     ----------
     velocity1, velocity2 : ndarray, shape (..., 3)
     impulse : ndarray, shape (..., 3)
         What the first body has received; the second has received as much the other way.
-    energy_loss : ndarray
+    energy_loss : ndarray, shape (...)
         Kinetic energy that is gone, −Q: the same in every frame; negative where energy was released.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 17; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.11.
 
     Examples
     --------
@@ -58,9 +64,11 @@ def elastic(
 ) -> CollisionOutcome:
     """Velocities after an elastic collision.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
@@ -74,12 +82,17 @@ def elastic(
     Returns
     -------
     CollisionOutcome
+        With the axes of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a mass that is not positive, neither or both of normal and direction, a vector without direction, or shapes
         that do not broadcast.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 17; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.11.
 
     Examples
     --------
@@ -104,13 +117,15 @@ def inelastic(
 ) -> CollisionOutcome:
     """Velocities after a collision that releases or takes up a given energy.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive, and unchanged.
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
-    q_value : array_like
+    q_value : array_like, shape (...)
         Energy that is released (Q > 0) or taken up (Q < 0); at least −½μu², the energy of relative motion, where they
         stick. With a normal at least −½μ(u·n)².
     normal : array_like, shape (..., 3), optional
@@ -121,11 +136,16 @@ def inelastic(
     Returns
     -------
     CollisionOutcome
+        With the axes of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a Q-value below the threshold, which the message gives; else as `elastic`.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.11 (collisions with a Q-value).
 
     Examples
     --------
@@ -153,13 +173,15 @@ def restitution(
     Along the line of centres they part with ε times the speed with which they met, (v₂' − v₁')·n = ε (v₁ − v₂)·n;
     across it nothing changes.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
-    coefficient : array_like
+    coefficient : array_like, shape (...)
         ε, from 0 (no speed along the line of centres is left) to 1 (elastic).
     normal : array_like, shape (..., 3)
         Line of centres at contact, such as position1 − position2; of any length and either sense. See
@@ -168,12 +190,17 @@ def restitution(
     Returns
     -------
     CollisionOutcome
+        With the axes of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a mass that is not positive, a coefficient outside [0, 1], a normal without direction, or shapes that do not
         broadcast.
+
+    References
+    ----------
+    E. T. Whittaker, *Analytical Dynamics*, 4th ed. (1937), ch. VIII (impact).
 
     Examples
     --------
@@ -198,15 +225,17 @@ def impulse(
 ) -> NDArray[np.float64]:
     """Impulse that the first body receives, J = −μ(1 + ε)((v₁ − v₂)·n) n; the second receives −J.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
     velocity1, velocity2 : array_like, shape (..., 3)
         Before.
     normal : array_like, shape (..., 3)
         Line of centres at contact, of any length and either sense.
-    coefficient : array_like, optional
+    coefficient : array_like, shape (...), optional
         Of restitution, from 0 to 1, elastic by default.
 
     Returns
@@ -218,6 +247,10 @@ def impulse(
     ------
     InvalidInput
         As `restitution`.
+
+    References
+    ----------
+    E. T. Whittaker, *Analytical Dynamics*, 4th ed. (1937), ch. VIII (impact).
 
     Examples
     --------
@@ -234,6 +267,8 @@ def line_of_centers(
 ) -> NDArray[np.float64]:
     """Line of centres of two spheres at the moment at which they touch.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     velocity1, velocity2 : array_like, shape (..., 3)
@@ -241,7 +276,7 @@ def line_of_centers(
     impact : array_like, shape (..., 3)
         Position of the first as seen from the second, at any time before, of which only what is across the relative
         velocity counts: the impact parameter with its direction.
-    distance : array_like
+    distance : array_like, shape (...)
         Of the centres at contact: both radii together.
 
     Returns
@@ -254,6 +289,10 @@ def line_of_centers(
     InvalidInput
         For spheres that miss each other or do not move against each other, a distance that is not positive, or shapes
         that do not broadcast.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 18, problem 1 (rigid spheres).
 
     Examples
     --------
@@ -277,23 +316,29 @@ def contact_time(
 ) -> NDArray[np.float64]:
     """Time from now at which two spheres in straight motion touch.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     position1, position2, velocity1, velocity2 : array_like, shape (..., 3)
         Of the centres, now.
-    distance : array_like
+    distance : array_like, shape (...)
         Of the centres at contact: both radii together.
 
     Returns
     -------
     ndarray
         The first root of |r + vt| = distance that is not in the past; infinite for spheres that miss each other or move
-        apart. Known to round-off also where they nearly miss.
+        apart. Known to round-off also where they nearly miss. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For spheres that overlap now, a distance that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    M. P. Allen & D. J. Tildesley, *Computer Simulation of Liquids* (1987), § 3.6.1 (hard spheres).
 
     Examples
     --------

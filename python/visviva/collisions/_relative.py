@@ -19,20 +19,27 @@ if TYPE_CHECKING:
 def reduced_mass(mass1: ArrayLike, mass2: ArrayLike) -> NDArray[np.float64]:
     """Mass with which two bodies move about each other, μ = m₁m₂/(m₁+m₂).
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
 
     Returns
     -------
     ndarray
-        Never above the smaller mass, and the smaller mass where the other is infinitely larger.
+        Never above the smaller mass, and the smaller mass where the other is infinitely larger. Of the shape of the
+        arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a mass that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 13; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.1.
 
     Examples
     --------
@@ -52,9 +59,11 @@ def to_relative(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre of mass, and the first body as seen from the second, of two positions or of two velocities.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
     vector1, vector2 : array_like, shape (..., 3)
         Positions or velocities.
@@ -68,6 +77,10 @@ def to_relative(
     ------
     InvalidInput
         For a mass that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 13; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.1.
 
     Examples
     --------
@@ -85,9 +98,11 @@ def from_relative(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Positions or velocities of two bodies from their centre of mass and the first as seen from the second.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
-    mass1, mass2 : array_like
+    mass1, mass2 : array_like, shape (...)
         Positive.
     center, relative : array_like, shape (..., 3)
         R and r as of `to_relative`.
@@ -101,6 +116,10 @@ def from_relative(
     ------
     InvalidInput
         For a mass that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 13; Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.1.
 
     Examples
     --------

@@ -31,12 +31,26 @@ class Bodies:
 
     @property
     def particles(self) -> Particles:
-        """The bodies, with their names."""
+        """The bodies, with their names.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.datasets.outer_solar_system().particles
+        Particles(6 bodies: Sun, Jupiter, Saturn, Uranus, Neptune, Pluto)
+        """
         return Particles(self.mass, self.position, self.velocity, self.names)
 
     @property
     def scene(self) -> Scene:
-        """The bodies under their gravity, as the arrays have them."""
+        """The bodies under their gravity, as the arrays have them, positions of shape (6, 3) or (9, 3).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> len(vv.datasets.outer_solar_system().scene.particles)
+        6
+        """
         return Scene(self.particles, Gravity(self.G))
 
 

@@ -40,6 +40,8 @@ _TABLE = (
 class RutherfordComparison(Record):
     """Counts against Rutherford's law, one scale fitted to each metal.
 
+    Units: angles in degrees; ratios are without dimension.
+
     Attributes
     ----------
     metal : str
@@ -51,6 +53,10 @@ class RutherfordComparison(Record):
         errors of the experiment were relative.
     ratio : ndarray, shape (11,)
         Counted over scale / sin⁴(φ/2).
+
+    References
+    ----------
+    H. Geiger & E. Marsden, Phil. Mag. 25 (1913) 604, table II. The law: E. Rutherford, Phil. Mag. 21 (1911) 669.
 
     Examples
     --------
@@ -86,6 +92,10 @@ class GeigerMarsden(Record):
         Scintillations, corrected by the authors for the decay of the source and the natural effect.
     source : str
         The paper and the table.
+
+    References
+    ----------
+    H. Geiger & E. Marsden, Phil. Mag. 25 (1913) 604, table II.
 
     Examples
     --------
@@ -131,8 +141,12 @@ def geiger_marsden_1913() -> GeigerMarsden:
     Returns
     -------
     GeigerMarsden
-        Angles, counts and the source. The counts fall 4000-fold while N·sin⁴(φ/2) stays within a
-        factor 1.6; it drifts upward at small angles.
+        Angles, counts and the source. The counts fall 4000-fold while N·sin⁴(φ/2) stays within a factor 1.6; it drifts
+        upward at small angles. Arrays have shape (11,), angles are in degrees.
+
+    References
+    ----------
+    H. Geiger & E. Marsden, Phil. Mag. 25 (1913) 604, table II.
 
     Examples
     --------

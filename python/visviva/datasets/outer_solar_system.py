@@ -81,6 +81,11 @@ class OuterSolarSystem(Bodies):
     scene : Scene
         The bodies under their gravity, as the arrays have them.
 
+    References
+    ----------
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), section I.2.4; Applegate et al., Astron.
+    J. 92 (1986) 176.
+
     Examples
     --------
     >>> import visviva as vv
@@ -105,11 +110,17 @@ def outer_solar_system(
     Returns
     -------
     OuterSolarSystem
+        Of six bodies, positions of shape (6, 3), in astronomical units, days and masses of the Sun.
 
     Raises
     ------
     visviva.InvalidInput
         For another name.
+
+    References
+    ----------
+    Hairer, Lubich & Wanner, *Geometric Numerical Integration*, 2nd ed. (2006), section I.2.4; Applegate et al., Astron.
+    J. 92 (1986) 176.
 
     Examples
     --------

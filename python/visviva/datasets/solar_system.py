@@ -94,6 +94,11 @@ class SolarSystem(Bodies):
     scene : Scene
         The bodies under their gravity, the Sun at rest at the origin.
 
+    References
+    ----------
+    Standish & Williams, *Orbital Ephemerides of the Sun, Moon, and Planets*, Explanatory Supplement to the Astronomical
+    Almanac, ch. 8; Standish, JPL IOM 312.F-98-048 (1998).
+
     Examples
     --------
     >>> import visviva as vv

@@ -70,6 +70,10 @@ class RadarAttitudes(Record):
     angular_velocity : ndarray, shape (17, 3)
         Along the body's axes, in radians per day.
 
+    References
+    ----------
+    Takahashi, Busch & Scheeres, Astron. J. 146 (2013) 95; Hudson & Ostro, Science 270 (1995) 84.
+
     Examples
     --------
     >>> import visviva as vv
@@ -85,7 +89,14 @@ class RadarAttitudes(Record):
 
     @property
     def orientation(self) -> NDArray[np.float64]:
-        """Quaternions (x, y, z, w), from the body to space, (17, 4)."""
+        """Quaternions (x, y, z, w), from the body to space, shape (17, 4), without dimension.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.datasets.toutatis().radar.orientation.shape
+        (17, 4)
+        """
         return quaternion_from_euler(self.euler_angles)
 
 
@@ -106,6 +117,10 @@ class ToutatisComparison(Record):
         The angle between the two angular velocities, as the body has them, in degrees.
     spin_ratio : ndarray, shape (17,)
         The angular velocity of the free rotation over that of radar.
+
+    References
+    ----------
+    Takahashi, Busch & Scheeres, Astron. J. 146 (2013) 95; Hudson & Ostro, Science 270 (1995) 84.
 
     Examples
     --------
@@ -153,6 +168,10 @@ class Toutatis(Record):
     source : str
         Who published the numbers.
 
+    References
+    ----------
+    Takahashi, Busch & Scheeres, Astron. J. 146 (2013) 95; Hudson & Ostro, Science 270 (1995) 84.
+
     Examples
     --------
     >>> import visviva as vv
@@ -170,7 +189,14 @@ class Toutatis(Record):
 
     @property
     def orientation(self) -> NDArray[np.float64]:
-        """The quaternion (x, y, z, w) at the epoch, from the body to space, (4,)."""
+        """The quaternion (x, y, z, w) at the epoch, from the body to space, shape (4,), without dimension.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.datasets.toutatis().orientation.shape
+        (4,)
+        """
         return quaternion_from_euler(self.euler_angles)
 
     def motion(self, t: ArrayLike) -> FreeRotation:
@@ -178,13 +204,13 @@ class Toutatis(Record):
 
         Parameters
         ----------
-        t : float or array_like
-            Days since the epoch.
+        t : float or array_like, shape (T,)
+            Days since the epoch. Any other shape takes the place of (T,) in all that is given.
 
         Returns
         -------
         FreeRotation
-            See `visviva.rigid.free_rotation`.
+            See `visviva.rigid.free_rotation`. Times are in days, angles in radians.
 
         Raises
         ------
@@ -209,7 +235,7 @@ class Toutatis(Record):
         -------
         ToutatisComparison
             Attitudes differ by 1.3° to 16°: errors of the images and of the fit, and what the torques of the Sun and
-            the Earth did, which a free rotation leaves out.
+            the Earth did, which a free rotation leaves out. Arrays have shape (17,), angles are in degrees.
 
         Examples
         --------

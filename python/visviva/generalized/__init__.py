@@ -3,6 +3,8 @@
 `Lagrangian` and `Hamiltonian` take an expression of SymPy, or a plain function of Python that is called once. The core
 makes a graph of it, derives the equations there, and runs them; nothing is compiled, and parameters change without a
 new derivation. The names here are those of `visviva` itself.
+
+Units are those of the parameters. Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. ch. 1, 2, 6 and 8.
 """
 
 from visviva.generalized._accessory import AccessoryProblem

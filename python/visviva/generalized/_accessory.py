@@ -42,13 +42,19 @@ _READ = np.array([0.25, 0.5, 0.75, 1.0])
 class AccessoryProblem:
     """The second variation of the action among all variations that vanish at both ends of a path.
 
+    Units: those of the system: times, and one over a time squared.
+
     Attributes
     ----------
     eigenvalue : float
         The smallest λ with −d/dt(P η̇ + Cᵀη) + C η̇ + R η = λ P η, where P, C and R are the second derivatives of L by
         velocities, by places and velocities, and by places: δ²S ≥ λ ∫ ηᵀP η dt. A time to the power −2.
-    conjugate_points : ndarray
+    conjugate_points : ndarray, shape (K,)
         Times after the first and before the last that are conjugate to the first, as often as they are multiple.
+
+    References
+    ----------
+    I. M. Gelfand & S. V. Fomin, *Calculus of Variations* (1963), sections 26 to 29.
 
     Examples
     --------
@@ -63,12 +69,28 @@ class AccessoryProblem:
 
     @property
     def index(self) -> int:
-        """How many independent variations make the action smaller to second order."""
+        """How many independent variations make the action smaller to second order.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> swing = vv.systems.oscillator(k=1.0, m=1.0, position=[1.0]).run(t=np.linspace(0.0, 4.0, 81))
+        >>> swing.system.accessory_problem(swing).index
+        1
+        """
         return len(self.conjugate_points)
 
     @property
     def minimum(self) -> bool:
-        """Whether the action is least among paths nearby between the same ends."""
+        """Whether the action is least among paths nearby between the same ends.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> swing = vv.systems.oscillator(k=1.0, m=1.0, position=[1.0]).run(t=np.linspace(0.0, 4.0, 81))
+        >>> swing.system.accessory_problem(swing).minimum  # beyond half a period
+        False
+        """
         return self.eigenvalue > 0.0
 
 

@@ -37,6 +37,8 @@ _EPS = float(np.finfo(float).eps)
 class PathIntegral:
     """An integral along a path; ``float`` gives its value.
 
+    Units: those of an action in the system, energy times time.
+
     Attributes
     ----------
     value : float
@@ -45,6 +47,10 @@ class PathIntegral:
     interpolation : float
         How much polynomials of two degrees less between the known times change the value: more than what the path
         itself is off, where its times are close enough to tell its shape. 0 where straight lines were asked for.
+
+    References
+    ----------
+    L. D. Landau & E. M. Lifshitz, *Mechanics*, 3rd ed., (2.1).
 
     Examples
     --------
@@ -60,7 +66,15 @@ class PathIntegral:
 
     @property
     def error(self) -> float:
-        """Both together."""
+        """Both together, in the units of the value.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> free = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2, ["x"])
+        >>> free.action(([0.0, 2.0], [0.0, 1.0])).error < 1e-14
+        True
+        """
         return self.quadrature + self.interpolation
 
     def __float__(self) -> float:

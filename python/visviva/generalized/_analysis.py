@@ -36,6 +36,8 @@ _BALANCED = 1e-8
 class Linearization(Record):
     """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0.
 
+    Units: those of the system; frequencies in radians per time.
+
     Attributes
     ----------
     position : ndarray, shape (n,)
@@ -43,7 +45,7 @@ class Linearization(Record):
         M, C (with gyroscopic terms) and K.
     eigenvalues : ndarray of complex, shape (2n,)
         λ of motions as exp(λ t).
-    frequencies : ndarray
+    frequencies : ndarray, shape (at most n,)
         Angular frequencies of what oscillates, ascending.
     modes : ndarray, shape (n, n), or None
         Rows with ξᵀ M ξ = 1, in the order of the squared frequencies; None with damping or gyroscopic terms.
@@ -51,6 +53,10 @@ class Linearization(Record):
         Squared frequencies, those of unstable modes negative.
     rounding : ndarray, shape (n, n)
         By how much K may be off: what it changes by where place and parameters change in their last digits.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
     Examples
     --------
@@ -71,7 +77,7 @@ class Linearization(Record):
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
-        """Angular frequencies of what oscillates, ascending."""
+        """Angular frequencies of what oscillates, ascending, shape (at most n,), in radians per time."""
         if self.squares is not None:
             real: NDArray[np.float64] = np.sqrt(self.squares[self.squares > 0.0])
             return real
@@ -88,6 +94,8 @@ class Linearization(Record):
 
     def at(self, t: ArrayLike, displacement: ArrayLike, velocity: ArrayLike) -> NDArray[np.float64]:
         """Small motions at any time, exactly.
+
+        Units: those of the system; frequencies in radians per time.
 
         Parameters
         ----------
@@ -136,11 +144,17 @@ class Linearization(Record):
 class PoincareSection(Record):
     """Where a motion passes through a section.
 
+    Units: those of the system.
+
     Attributes
     ----------
     t : ndarray, shape (C,)
     position, momentum : ndarray, shape (C, n)
     coordinates : tuple of str
+
+    References
+    ----------
+    M. Hénon, Physica D 5 (1982) 412.
 
     Examples
     --------

@@ -25,6 +25,8 @@ __all__ = ["CanonicalTest", "canonical_test"]
 class CanonicalTest:
     """What became of MᵀJM − J, M being the derivatives of (Q, P) by (q, p); true where it vanishes.
 
+    Units: residuals are relative, without dimension.
+
     Attributes
     ----------
     holds : bool
@@ -35,6 +37,10 @@ class CanonicalTest:
         The largest entry of MᵀJM − J there, relative to what it is made of.
     matrix : ndarray, shape (2n, 2n)
         Each entry of MᵀJM − J where it is largest.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., (9.55).
 
     Examples
     --------

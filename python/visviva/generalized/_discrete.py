@@ -28,6 +28,8 @@ class DiscreteAction:
 
     Made by `Lagrangian.discrete_action`.
 
+    Units: those of the system: an action, momenta and times.
+
     Attributes
     ----------
     method : str
@@ -44,6 +46,10 @@ class DiscreteAction:
         that of the segment after. Without further forces it is the derivative of the action with respect to the place.
     relative_residual : ndarray, shape (T − 2, n)
         Its size relative to what it is made of: a few units of round-off along a run of this method.
+
+    References
+    ----------
+    J. E. Marsden & M. West, Acta Numerica 10 (2001) 357, section 1.3.
 
     Examples
     --------

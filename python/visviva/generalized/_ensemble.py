@@ -130,6 +130,8 @@ class GeneralizedEnsemble(Shown):
     ) -> GeneralizedEnsembleTrajectory:
         """Run all copies; each has the bits that it has alone.
 
+        Units: those of the system.
+
         Parameters
         ----------
         t, method, rtol, atol, dt, max_step, max_steps, events, progress
@@ -140,6 +142,7 @@ class GeneralizedEnsemble(Shown):
         Returns
         -------
         GeneralizedEnsembleTrajectory
+            With arrays of shape (B, T, n).
 
         Raises
         ------
@@ -174,6 +177,8 @@ class GeneralizedEnsemble(Shown):
 @known_keywords
 class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
     """The motions of an ensemble.
+
+    Units: those of the system, which are those of its parameters; angles in radians.
 
     Attributes
     ----------
@@ -263,29 +268,54 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Coordinates, shape (B, T, n)."""
+        """Coordinates, shape (B, T, n), in the units of the system."""
         return self._states[..., : self._n]
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (B, T, n)."""
+        """Velocities, shape (B, T, n), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+        >>> out.velocity.shape
+        (2, 2, 1)
+        """
         lagrangian = self.ensemble.system._source.kind == "lagrangian"
         return self._states[..., self._n :] if lagrangian else self._column(0, self._n)
 
     @property
     def momentum(self) -> NDArray[np.float64]:
-        """Momenta, shape (B, T, n)."""
+        """Momenta, shape (B, T, n), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+        >>> out.momentum.shape
+        (2, 2, 1)
+        """
         hamiltonian = self.ensemble.system._source.kind == "hamiltonian"
         return self._states[..., self._n :] if hamiltonian else self._column(0, self._n)
 
     @property
     def energy(self) -> NDArray[np.float64]:
-        """Jacobi's integral, or H, shape (B, T)."""
+        """Jacobi's integral, or H, shape (B, T), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
+        >>> out.energy.round(6)
+        array([[-9.760991, -9.760991],
+               [-9.614453, -9.614453]])
+        """
         return self._column(self._n, self._n + 1)[..., 0]
 
     @property
     def events(self) -> GeneralizedEventTable:
-        """The events that were found, copy after copy; ``out[i].events`` are those of one.
+        """The events that were found, copy after copy, each column of shape (K, …); ``out[i].events`` are those of one.
 
         Raises
         ------
@@ -306,7 +336,16 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
 
     @property
     def reactions(self) -> NDArray[np.float64]:
-        """Multipliers of the constraints, shape (B, T, c)."""
+        """Multipliers of the constraints, shape (B, T, c), in units of energy over those of the constraint.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.atwood().ensemble(parameters={"m1": [2.0, 3.0]}).run(t=0.2)
+        >>> out.reactions[:, 0].round(6)
+        array([[-13.08 ],
+               [-14.715]])
+        """
         return self._column(self._n + 1, None)
 
     def plot(

@@ -38,15 +38,21 @@ _MADE_OF_THEM = 0.1
 class Equilibrium:
     """A place where the system stays.
 
+    Units: those of the system.
+
     Attributes
     ----------
     position : ndarray, shape (n,)
     stable : bool
         Whether small motions about it stay small, as the linear equations tell.
-    frequencies : ndarray
-        Angular frequencies of small oscillations, ascending.
+    frequencies : ndarray, shape (at most n,)
+        Angular frequencies of small oscillations, ascending, in radians per time.
     momentum : ndarray, shape (n,)
         The momenta there, which need not be zero.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
     Examples
     --------

@@ -144,6 +144,8 @@ def _symbols(system: States, nodes: Nodes) -> Symbols:
 class GeneralizedEventTable(Lines):
     """The events of a run in generalized coordinates, in the order of the motion; of an ensemble, copy after copy.
 
+    Units: those of the system, which are those of its parameters; angles in radians.
+
     Attributes
     ----------
     which : ndarray of int64, shape (K,)

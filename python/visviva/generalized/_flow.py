@@ -40,6 +40,8 @@ class Flow:
     ) -> PoincareSection:
         """Where the motion passes through a section, to round-off; also where it does so twice within one step.
 
+        Units: those of the system.
+
         Parameters
         ----------
         section : str, sympy.Expr or callable
@@ -113,6 +115,8 @@ class Flow:
 
         Lines through unstable equilibria, the separatrices, are drawn stronger; stable equilibria are dots.
 
+        Units: those of the system.
+
         Parameters
         ----------
         position, momentum : (float, float)
@@ -143,6 +147,8 @@ class Flow:
 
     def flow_jacobian(self: Any, t: float, *, rtol: float = 1e-12) -> NDArray[np.float64]:
         """Derivatives of the state at a time with respect to the state at the start, by the variational equations.
+
+        Units: those of the system, a row those of a number of the state over those of each.
 
         Parameters
         ----------
@@ -176,6 +182,8 @@ class Flow:
 
     def lyapunov_exponents(self: Any, t: float, *, interval: float = 1.0, rtol: float = 1e-12) -> NDArray[np.float64]:
         """Lyapunov's exponents over a time, the largest first.
+
+        Units: one over the time of the system, in its units.
 
         Parameters
         ----------
@@ -217,6 +225,8 @@ class Flow:
 
     def boundary_value(self, t: float, position: ArrayLike, *, rtol: float = 1e-12) -> Self:
         """The system with the velocities (or momenta) at the start that lead to a place at a time.
+
+        Units: those of the system.
 
         Parameters
         ----------

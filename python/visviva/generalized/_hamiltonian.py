@@ -30,6 +30,8 @@ __all__ = ["Hamiltonian"]
 class Hamiltonian(GeneralizedSystem):
     """A system by its Hamiltonian H(q, p, t).
 
+    Units: those of the system, which are those of its parameters; angles in radians.
+
     Parameters
     ----------
     H : sympy.Expr or callable
@@ -84,18 +86,39 @@ class Hamiltonian(GeneralizedSystem):
 
     @property
     def momentum(self) -> NDArray[np.float64]:
-        """Momenta at the start, shape (n,)."""
+        """Momenta at the start, shape (n,), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.henon_heiles().momentum
+        array([0. , 0.5])
+        """
         return self._second
 
     @property
     def energy(self) -> float:
-        """H at the start."""
+        """H at the start, in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> round(vv.systems.henon_heiles().energy, 12)
+        0.13
+        """
         n = len(self.coordinates)
         return float(self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0, n])
 
     @property
     def equations(self) -> tuple[list[Any], list[Any]]:
-        """q̇ and ṗ as expressions of SymPy."""
+        """q̇ and ṗ as expressions of SymPy.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.henon_heiles().equations
+        ([p_x, p_y], [-2*x*(y + 1/2), -x**2 + y**2/3 - 2*y*(1/2 - y/3)])
+        """
         return self._shown("conjugates"), self._shown("slopes")
 
     def lagrangian(self) -> Lagrangian:
@@ -122,6 +145,8 @@ class Hamiltonian(GeneralizedSystem):
 
         Each is told once: of states along a coordinate that nothing depends on, one. Of a curve of equilibria in
         others, the states that the search comes to are told.
+
+        Units: those of the system.
 
         Parameters
         ----------

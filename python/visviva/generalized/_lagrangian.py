@@ -31,6 +31,8 @@ __all__ = ["Lagrangian"]
 class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     """A system by its Lagrangian L(q, q̇, t).
 
+    Units: those of the system, which are those of its parameters; angles in radians.
+
     Parameters
     ----------
     L : sympy.Expr or callable
@@ -123,17 +125,38 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities at the start, shape (n,)."""
+        """Velocities at the start, shape (n,), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum(velocity=[1.5]).velocity
+        array([1.5])
+        """
         return self._second
 
     @property
     def momentum(self) -> NDArray[np.float64]:
-        """Generalized momenta ∂L/∂q̇ at the start, shape (n,)."""
+        """Generalized momenta ∂L/∂q̇ at the start, shape (n,), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum(l=2.0, velocity=[1.5]).momentum  # m l² θ̇
+        array([6.])
+        """
         return self._columns_at_start()[: len(self.coordinates)]
 
     @property
     def energy(self) -> float:
-        """Jacobi's integral Σ q̇ ∂L/∂q̇ − L at the start."""
+        """Jacobi's integral Σ q̇ ∂L/∂q̇ − L at the start, in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum(g=10.0, position=[0.0], velocity=[2.0]).energy
+        -8.0
+        """
         return float(self._columns_at_start()[len(self.coordinates)])
 
     def _columns_at_start(self) -> NDArray[np.float64]:
@@ -143,18 +166,41 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
 
     @property
     def mass_matrix(self) -> Any:
-        """∂²L/∂q̇∂q̇ as a matrix of SymPy."""
+        """∂²L/∂q̇∂q̇ as a matrix of SymPy.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.spring_pendulum().mass_matrix
+        Matrix([
+        [m,      0],
+        [0, m*r**2]])
+        """
         n = len(self.coordinates)
         return sympy().Matrix(n, n, self._shown("mass_matrix"))
 
     @property
     def momenta(self) -> list[Any]:
-        """∂L/∂q̇ as expressions of SymPy."""
+        """∂L/∂q̇ as expressions of SymPy.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum().momenta
+        [l**2*m*v_theta]
+        """
         return self._shown("conjugates")
 
     @property
     def kinetic_split(self) -> tuple[Any, Any, Any]:
-        """L by degrees of the velocities: its parts L2, L1 and L0, as expressions of SymPy; h = L2 − L0."""
+        """L by degrees of the velocities: its parts L2, L1 and L0, as expressions of SymPy; h = L2 − L0.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.rod().kinetic_split
+        (-Omega**2*m*r**2/2 + m*(Omega**2*r**2 + v_r**2)/2, 0, Omega**2*m*r**2/2)
+        """
         nodes, roots = self._model.by_degree()
         second, first, rest = self._trees(nodes, roots)
         return second, first, rest
@@ -181,6 +227,8 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     def routhian(self, momenta: Mapping[Any, float] | None = None) -> Lagrangian:
         """The system without cyclic coordinates, as a Lagrangian with their momenta as parameters ``p_<name>``.
 
+        Units: those of the system.
+
         Parameters
         ----------
         momenta : dict, optional
@@ -203,7 +251,14 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
 
     @property
     def degrees_of_freedom(self) -> int:
-        """Coordinates less constraints, which are independent of each other."""
+        """Coordinates less constraints, which are independent of each other.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.atwood().degrees_of_freedom
+        1
+        """
         return len(self.coordinates) - self._constraints()
 
     def _check_start(self) -> None:

@@ -74,6 +74,8 @@ class Laws:
         The reactions are d/dt ∂L/∂q̇ − ∂L/∂q − Q; displacements δq of length 1 with ∂g/∂q δq = 0 (and a δq = 0 of
         nonholonomic constraints) are virtual. Without constraints there are no reactions, and all of them are.
 
+        Units: none: what is told is relative, without dimension.
+
         Parameters
         ----------
         trajectory : GeneralizedTrajectory

@@ -41,8 +41,9 @@ _NAMES = {"lagrangian": ("momentum", "velocity", "velocities"), "hamiltonian": (
 class LegendreTransform:
     """The Hamiltonian of a Lagrangian, or the Lagrangian of a Hamiltonian, evaluated by numbers.
 
-    Made by the method ``legendre_transform`` of either. Called with places and momenta (or velocities), it gives
-    H (or L). It is refused where the function is not convex, since p then has several velocities or none.
+    Made by the method ``legendre_transform`` of either. Called with places and momenta (or velocities), of shape (...,
+    n), it gives H (or L), of shape (...), in the units of the system. It is refused where the function is not convex,
+    since p then has several velocities or none.
 
     Attributes
     ----------
@@ -88,6 +89,8 @@ class LegendreTransform:
     def __call__(self, position: ArrayLike, second: ArrayLike, *, t: float | None = None) -> _Array:
         """Give Σ p q̇ − L, or Σ p q̇ − H.
 
+        Units: those of the system.
+
         Parameters
         ----------
         position : array_like, shape (..., n)
@@ -124,6 +127,8 @@ class LegendreTransform:
     def conjugate(self, position: ArrayLike, second: ArrayLike, *, t: float | None = None) -> _Array:
         """Give the velocities that have these momenta, or the momenta that have these velocities.
 
+        Units: those of the system.
+
         Parameters
         ----------
         position, second, t
@@ -149,6 +154,8 @@ class LegendreTransform:
 
     def gradient(self, position: ArrayLike, second: ArrayLike, *, t: float | None = None) -> tuple[_Array, _Array]:
         """Give the derivatives by position and by the other argument: of H they are −ṗ and q̇ without further forces.
+
+        Units: those of the system.
 
         Parameters
         ----------

@@ -85,6 +85,10 @@ class Expression:
 
     Given to the function that is passed to `Lagrangian` or `Hamiltonian` in the place of numbers.
 
+    References
+    ----------
+    A. Griewank & A. Walther, *Evaluating Derivatives*, 2nd ed. (2008).
+
     Examples
     --------
     >>> import numpy as np, visviva as vv
@@ -198,6 +202,8 @@ class Expression:
     def hypot(self, other: object) -> Expression:
         """Give the length of the vector (self, other): what ``np.hypot`` calls.
 
+        Units: those of both components.
+
         Parameters
         ----------
         other : Expression or float
@@ -236,7 +242,7 @@ class Expression:
         raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
 
     def arctan2(self, other: object) -> Expression:
-        """Give the angle of the point (other, self) from the first axis: what ``np.arctan2`` calls.
+        """Give the angle of the point (other, self) from the first axis, in radians: what ``np.arctan2`` calls.
 
         Parameters
         ----------
@@ -246,6 +252,7 @@ class Expression:
         Returns
         -------
         Expression
+            A number of the system, shape ().
 
         Examples
         --------

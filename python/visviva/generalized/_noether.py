@@ -41,6 +41,8 @@ _MOST_PARTS = 256
 class NoetherSymmetry:
     """Whether a transformation is a symmetry of a Lagrangian, and what it conserves. Made by `Lagrangian.noether`.
 
+    Units: residuals are relative, without dimension.
+
     Attributes
     ----------
     system : Lagrangian
@@ -52,6 +54,11 @@ class NoetherSymmetry:
         The largest of what had to vanish there, relative to what it is made of.
     reason : str
         What tells that it is none, or of which kind it is.
+
+    References
+    ----------
+    E. Noether, Nachr. Ges. Wiss. Göttingen (1918) 235; H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd
+    ed., § 13.7.
 
     Examples
     --------
@@ -86,6 +93,13 @@ class NoetherSymmetry:
         ------
         InvalidInput
             Where L changes by the rate of a function that was not given.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> plane = vv.Lagrangian(lambda q, v, t: (v[0] ** 2 + v[1] ** 2) / 2, ["x", "y"], position=[1.0, 0.0])
+        >>> plane.noether(lambda q, v, t: [-q[1], q[0]]).expression
+        -v_x*y + v_y*x
         """
         if self._gauge is not None:
             raise InvalidInput(

@@ -127,6 +127,8 @@ class Runs(States):
     ) -> GeneralizedTrajectory:
         """Run from the start.
 
+        Units: those of the system, which are those of its parameters; angles in radians.
+
         Parameters
         ----------
         t : float or array_like, shape (T,)
@@ -241,10 +243,17 @@ class Runs(States):
     ) -> GeneralizedPlan:
         """What `run` would do, and why.
 
+        Units: those of the system.
+
         Parameters
         ----------
         t, method, rtol, atol, dt, max_step, max_steps, events
             As in `run`.
+
+        Returns
+        -------
+        GeneralizedPlan
+            Print it. Output times have shape (T,), as of `run`.
 
         Raises
         ------

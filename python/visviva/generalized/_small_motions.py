@@ -27,6 +27,8 @@ class SmallMotions:
     def linearize(self: Any, at: ArrayLike | None = None) -> Linearization:
         """Small motions about an equilibrium.
 
+        Units: those of the system.
+
         Parameters
         ----------
         at : array_like, shape (n,), optional
@@ -51,6 +53,8 @@ class SmallMotions:
         Each is told once: of places along a coordinate that nothing depends on, one. Of a curve of equilibria in
         others, the places that the search comes to are told.
 
+        Units: those of the system.
+
         Parameters
         ----------
         near : array_like, shape (S, n), optional
@@ -72,6 +76,8 @@ class SmallMotions:
 
     def normal_modes(self: Any, near: ArrayLike | None = None) -> Linearization:
         """Normal modes about the equilibrium nearest to a place.
+
+        Units: those of the system.
 
         Parameters
         ----------
@@ -99,6 +105,8 @@ class SmallMotions:
 
     def period(self: Any, *, turn: float | None = None) -> float:
         """The period of a motion of one degree of freedom, by quadrature.
+
+        Units: those of the time of the system.
 
         Parameters
         ----------
@@ -129,6 +137,8 @@ class SmallMotions:
 
     def action_variable(self: Any, *, turn: float | None = None) -> float:
         """The action variable ∮ p dq / 2π of a motion of one degree of freedom.
+
+        Units: those of an action, energy times time, in those of the system.
 
         Parameters
         ----------

@@ -108,6 +108,8 @@ class States(Shown):
     ) -> Self:
         """The same system from another start, or with other parameters; nothing is derived again.
 
+        Units: those of the system.
+
         Parameters
         ----------
         position, velocity, momentum : array_like, shape (n,), optional
@@ -148,6 +150,8 @@ class States(Shown):
         parameters: Mapping[Any, ArrayLike] | None = None,
     ) -> GeneralizedEnsemble:
         """Many copies, from starts or with parameters of their own.
+
+        Units: those of the system.
 
         Parameters
         ----------

@@ -27,6 +27,8 @@ __all__ = ["GeneralizedSystem"]
 class GeneralizedSystem(Runs, Flow):
     """A mechanical system in generalized coordinates, and a state of it: base of `Lagrangian` and `Hamiltonian`.
 
+    Units: those of the system, which are those of its parameters; angles in radians.
+
     Attributes
     ----------
     coordinates : tuple of str
@@ -37,6 +39,10 @@ class GeneralizedSystem(Runs, Flow):
         Coordinates at the start.
     t0 : float
         The time there.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.4, § 2.7 and § 8.1.
 
     Examples
     --------
@@ -50,17 +56,38 @@ class GeneralizedSystem(Runs, Flow):
 
     @property
     def cyclic(self) -> list[str]:
-        """Coordinates that nothing depends on: their momenta are conserved."""
+        """Coordinates that nothing depends on: their momenta are conserved.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.spherical_pendulum().cyclic
+        ['phi']
+        """
         return [self.coordinates[index] for index in self._structure["cyclic"]]
 
     @property
     def autonomous(self) -> bool:
-        """Whether nothing depends on the time."""
+        """Whether nothing depends on the time.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.pendulum().autonomous, vv.systems.moving_pivot().autonomous
+        (True, False)
+        """
         return bool(self._structure["autonomous"])
 
     @property
     def conserved(self) -> list[str]:
-        """What the graph tells to be conserved: ``energy`` (Jacobi's integral, or H), momenta of cyclic coordinates."""
+        """What the graph tells to be conserved: ``energy`` (Jacobi's integral, or H), momenta of cyclic coordinates.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.spherical_pendulum().conserved
+        ['energy', 'momentum of phi']
+        """
         energy = ["energy"] if self._structure["conserves_energy"] else []
         return [*energy, *(f"momentum of {name}" for name in self.cyclic)]
 
@@ -81,6 +108,8 @@ class GeneralizedSystem(Runs, Flow):
 
     def evaluate(self, *expressions: Any, trajectory: GeneralizedTrajectory | None = None) -> NDArray[np.float64]:
         """Values of further expressions, at the start or along a trajectory.
+
+        Units: those of the system.
 
         Parameters
         ----------

@@ -69,6 +69,8 @@ def exported(
 class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
+    Units: those of the system, which are those of its parameters; angles in radians.
+
     Attributes
     ----------
     system : Lagrangian or Hamiltonian
@@ -87,6 +89,10 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     longest_step : float
 
     ``out["theta"]`` is a coordinate over time.
+
+    References
+    ----------
+    H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 1.4, § 2.7 and § 8.1.
 
     Examples
     --------
@@ -179,35 +185,66 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
 
     @property
     def position(self) -> NDArray[np.float64]:
-        """Coordinates, shape (T, n)."""
+        """Coordinates, shape (T, n), in the units of the system."""
         return self._states[:, : len(self.system.coordinates)]
 
     @property
     def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (T, n); of a Hamiltonian ∂H/∂p."""
+        """Velocities, shape (T, n), in the units of the system; of a Hamiltonian ∂H/∂p.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.velocity.shape
+        (2, 1)
+        """
         n = len(self.system.coordinates)
         return self._states[:, n:] if self.system._source.kind == "lagrangian" else self._column(0, n)
 
     @property
     def momentum(self) -> NDArray[np.float64]:
-        """Momenta, shape (T, n); of a Lagrangian ∂L/∂q̇."""
+        """Momenta, shape (T, n), in the units of the system; of a Lagrangian ∂L/∂q̇.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.momentum.shape
+        (2, 1)
+        """
         n = len(self.system.coordinates)
         return self._states[:, n:] if self.system._source.kind == "hamiltonian" else self._column(0, n)
 
     @property
     def energy(self) -> NDArray[np.float64]:
-        """Jacobi's integral, or H, shape (T,)."""
+        """Jacobi's integral, or H, shape (T,), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.energy.round(9)
+        array([-8.60908493, -8.60908493])
+        """
         n = len(self.system.coordinates)
         return self._column(n, n + 1)[:, 0]
 
     @property
     def reactions(self) -> NDArray[np.float64]:
-        """Multipliers of the constraints, shape (T, c)."""
+        """Multipliers of the constraints, shape (T, c), in units of energy over those of the constraint.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.atwood(m1=3.0, m2=2.0, g=10.0).run(t=0.5).reactions[-1].round(12)
+        array([-24.])
+        """
         return self._column(len(self.system.coordinates) + 1, None)
 
     @property
     def events(self) -> GeneralizedEventTable:
-        """The events that were found.
+        """The events that were found, each column of shape (K, …).
 
         Raises
         ------
@@ -227,7 +264,15 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
 
     @property
     def final(self) -> GeneralizedSystem:
-        """The system at the last time, or at the event that ended the run, ready to run on."""
+        """The system at the last time, or at the event that ended the run, ready to run on.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.final.t0, bool((out.final.position == out.position[-1]).all())
+        (1.0, True)
+        """
         n = len(self.system.coordinates)
         if self.status is Status.STOPPED:
             found, _ = self._found
@@ -242,6 +287,8 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         """The largest change of what is conserved, relative to it or, where that is larger, to what it is a sum of.
 
         An energy near zero is the difference of others: its changes are relative to Σ p q̇, twice the kinetic one.
+
+        Units: changes are relative, without dimension.
 
         Returns
         -------
@@ -365,7 +412,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         plane : str, optional
             What is shown: ``"xy"``, ``"xz"``, ``"yz"`` or ``"xyz"``; space where points have a third number, else xy.
         trail : float
-            For how much of the run, from 0 to 1, the way of each point is shown behind it.
+            For how much of the run, from 0 to 1 without dimension, the way of each point is shown behind it.
         frames : int
             At most so many.
         fps : int

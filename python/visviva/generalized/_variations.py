@@ -27,6 +27,8 @@ class Variations:
         Along a run backward in time it has the other sign: dt < 0 there, as in the principal function S(q₁, t₁; q₀, t₀)
         with dS = p₁ dq₁ − p₀ dq₀ − E₁ dt₁ + E₀ dt₀, for t₁ before t₀ too. So have the variations.
 
+        Units: those of an action in the system, energy times time.
+
         Parameters
         ----------
         path : GeneralizedTrajectory or (array_like, array_like)
@@ -70,6 +72,8 @@ class Variations:
         It is p η at the last time less that at the first for a motion without further forces and constraints: 0 where η
         vanishes there (Hamilton's principle). Where they are, it is less their work along η.
 
+        Units: those of an action in the system, with η in those of the coordinates.
+
         Parameters
         ----------
         path, degree
@@ -103,6 +107,8 @@ class Variations:
     def second_variation(self: Any, path: Any, variation: Any, *, degree: int = 5) -> PathIntegral:
         """What the action changes by to second order: δ²S[η] = d²/dε² S[q + ε η] at ε = 0.
 
+        Units: as of `first_variation`.
+
         Parameters
         ----------
         path, variation, degree
@@ -135,6 +141,8 @@ class Variations:
 
     def discrete_action(self: Any, path: Any, *, method: DiscreteMethodName | None = None) -> DiscreteAction:
         """The action of a path of places, segment by segment, as a variational integrator sums it, and its derivatives.
+
+        Units: those of an action in the system, energy times time.
 
         Parameters
         ----------

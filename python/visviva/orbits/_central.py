@@ -61,6 +61,8 @@ def effective_potential(
 ) -> NDArray[np.float64]:
     """Find the effective potential V(r) + l²/2mr², in which r moves as on a line.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -82,6 +84,10 @@ def effective_potential(
     InvalidInput
         For an argument out of its range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.3; Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
+
     Examples
     --------
     >>> import visviva as vv
@@ -101,6 +107,8 @@ def path_equation(
     mass: ArrayLike = 1.0,
 ) -> NDArray[np.float64]:
     """Find d²u/dθ² = −u − m F(1/u)/(l²u²), which the path u(θ) = 1/r(θ) obeys.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -123,6 +131,10 @@ def path_equation(
     InvalidInput
         For an argument out of its range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.5.
+
     Examples
     --------
     On a circle u is constant:
@@ -142,6 +154,10 @@ def path_equation(
 class CircularOrbits(Shown):
     """Circles in a potential; what :func:`circular_orbit` and :func:`circular_orbits` return.
 
+    Every attribute has the shape of what was asked; of all circles of an angular momentum, shape (K,).
+
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     radius, energy, angular_momentum, angular_velocity : ndarray
@@ -154,6 +170,10 @@ class CircularOrbits(Shown):
         Of an unstable circle the rate at which a disturbance grows; 0 of a stable one.
     apsidal_angle : ndarray
         π ω over the radial frequency, from pericenter to apocenter of an orbit nearby; NaN where there is none.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.3 and § 3.6.
 
     Examples
     --------
@@ -185,6 +205,8 @@ def circular_orbit(
 ) -> CircularOrbits:
     """Find what a circle of a given radius needs, and whether it lasts.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -203,6 +225,10 @@ def circular_orbit(
     ------
     InvalidInput
         Where the force repels, for an argument out of its range, and shapes that do not broadcast.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.3 and § 3.6.
 
     Examples
     --------
@@ -226,6 +252,8 @@ def circular_orbits(
 ) -> CircularOrbits:
     """Find every circle of a given angular momentum: the stationary places of the effective potential.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -238,12 +266,16 @@ def circular_orbits(
     Returns
     -------
     CircularOrbits
-        One entry for each circle, by radius; none where nothing attracts.
+        One entry for each circle, by radius; none where nothing attracts. Attributes have shape (K,).
 
     Raises
     ------
     InvalidInput
         For an argument out of its range.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.3 and § 3.6.
 
     Examples
     --------
@@ -264,6 +296,8 @@ def circular_orbits(
 class RadialRange:
     """A range of distance in which a motion may be.
 
+    Units: those of the caller's lengths.
+
     Attributes
     ----------
     r_min, r_max : float
@@ -271,6 +305,10 @@ class RadialRange:
     kind : str
         ``"bound"``, ``"circular"``, ``"escapes"``, ``"reaches_the_center"``, ``"reaches_the_center_or_escapes"``, or
         ``"leaves_the_table"`` where the potential is known no farther.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -290,6 +328,8 @@ def range_of_motion(
     potential: Potential | Sequence[Potential], *, energy: float, angular_momentum: float, mass: float = 1.0
 ) -> tuple[RadialRange, ...]:
     """Find every range of distance that energy and angular momentum allow, with all turning points.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -317,6 +357,10 @@ def range_of_motion(
     -----
     At a turning point r²(E − V) = l²/2m. The left side is stationary where V + r V′/2 = E, and that function of the
     distance has pieces that are monotone at any energy; so each turning point is one root between two known signs.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------

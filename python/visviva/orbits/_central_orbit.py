@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 class CentralOrbit(Record):
     """An orbit in a central potential; what :func:`central_orbit` returns.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     potentials : tuple of Potential
@@ -40,6 +42,10 @@ class CentralOrbit(Record):
         Turning points, radial period, apsidal angle, precession and kind of this orbit.
     time_since_pericenter, angle_since_pericenter : float
         At the start, from the nearest pericenter, with its sign; NaN of a circle, and where there is no pericenter.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -62,36 +68,74 @@ class CentralOrbit(Record):
 
     @property
     def turning_points(self) -> tuple[float, float]:
-        """Least and greatest distance; see `RadialMotion`."""
+        """Least and greatest distance, in the caller's units; see `RadialMotion`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0])
+        >>> [round(r, 9) for r in orbit.turning_points]
+        [1.0, 2.571428571]
+        """
         return float(self.motion.r_min), float(self.motion.r_max)
 
     @property
     def radial_period(self) -> float:
-        """From one pericenter to the next."""
+        """From one pericenter to the next, a time in the caller's units.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0])
+        >>> round(orbit.radial_period, 9)
+        14.99332061
+        """
         return float(self.motion.radial_period)
 
     @property
     def apsidal_angle(self) -> float:
-        """From pericenter to apocenter."""
+        """From pericenter to apocenter, in radians.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> sun = vv.potentials.Coulomb(-1.0)
+        >>> orbit = vv.orbits.central_orbit(sun, position=[1.0, 0.0, 0.0], velocity=[0.0, 1.2, 0.0])
+        >>> round(orbit.apsidal_angle, 9)
+        3.141592654
+        """
         return float(self.motion.apsidal_angle)
 
     @property
     def precession(self) -> float:
-        """By how much the pericenter moves on in a radial period."""
+        """By how much the pericenter moves on in a radial period, in radians.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> field = [vv.potentials.Coulomb(-1.0), vv.potentials.PowerLaw(-0.05, 2.0)]
+        >>> orbit = vv.orbits.central_orbit(field, position=[9 / 13, 0.0, 0.0], velocity=[0.0, 13 / 9, 0.0])
+        >>> round(orbit.precession, 9)
+        0.339873537
+        """
         return float(self.motion.precession)
 
     def position(self, t: ArrayLike) -> NDArray[np.float64]:
         """Give positions at times since the start, of either sign and in any order.
 
+        Units: those of the orbit.
+
         Parameters
         ----------
-        t : array_like
+        t : array_like, any shape
             Times.
 
         Returns
         -------
-        ndarray, (…, 3)
-            About the center.
+        ndarray, shape (…, 3)
+            About the center; the leading axes are those of ``t``.
 
         Raises
         ------
@@ -115,6 +159,8 @@ class CentralOrbit(Record):
 
     def velocity(self, t: ArrayLike) -> NDArray[np.float64]:
         """Give velocities at times since the start; as `position`.
+
+        Units: those of the orbit.
 
         Parameters
         ----------
@@ -153,7 +199,7 @@ class CentralOrbit(Record):
         Parameters
         ----------
         t : array_like
-            Times since the start.
+            Times since the start, in the units of the orbit.
 
         Returns
         -------
@@ -179,6 +225,8 @@ class CentralOrbit(Record):
 
     def radius(self, angle: ArrayLike) -> NDArray[np.float64]:
         """Give the distance r(θ) at angles since the start: the path.
+
+        Units: angles in radians, distances in those of the orbit.
 
         Parameters
         ----------
@@ -260,11 +308,13 @@ def central_orbit(
 ) -> CentralOrbit:
     """Find the orbit through a state, in a central potential.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
         V(r); several are added.
-    position, velocity : array_like, (3,)
+    position, velocity : array_like, shape (3,)
         State relative to the center.
     mass : float, optional
         m > 0.
@@ -280,6 +330,10 @@ def central_orbit(
         For a wrong shape, NaN or infinity, a mass that is not positive, or a position at the center.
     ConvergenceError
         As `radial_motion`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------

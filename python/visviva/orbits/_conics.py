@@ -23,6 +23,8 @@ class Conic(Shown):
 
     Every attribute has the shape of the conics asked for (a number for one).
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     mass, strength : ndarray
@@ -46,6 +48,10 @@ class Conic(Shown):
         l/2m.
     turning_angle : ndarray
         The angle 2 arcsin(1/e) by which a hyperbola turns the velocity; π for a parabola, NaN if bound.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7; Landau & Lifshitz, *Mechanics*, 3rd ed., § 15.
 
     Examples
     --------
@@ -80,13 +86,15 @@ class Conic(Shown):
 def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Conic:
     """Find the constants of the conic through a state, for a body of mass m in V(r) = −γ/r.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     mass : array_like
         m > 0.
     strength : array_like
         γ in energy times length: positive attracts (G M m), negative repels.
-    position, velocity : array_like, (…, 3)
+    position, velocity : array_like, shape (…, 3)
         State relative to the centre.
 
     Returns
@@ -98,6 +106,10 @@ def conic(mass: ArrayLike, strength: ArrayLike, position: ArrayLike, velocity: A
     ------
     InvalidInput
         For a wrong shape, NaN or infinity, a mass that is not positive, γ = 0, or a position at the centre.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7; Landau & Lifshitz, *Mechanics*, 3rd ed., § 15.
 
     Examples
     --------
@@ -116,6 +128,8 @@ def conic_from_constants(
     mass: ArrayLike, strength: ArrayLike, *, angular_momentum: ArrayLike, energy: ArrayLike
 ) -> Conic:
     """Find the conic of given angular momentum and energy, for a body of mass m in V(r) = −γ/r.
+
+    Units: those of the caller, one consistent system; angles in radians.
 
     Parameters
     ----------
@@ -138,6 +152,10 @@ def conic_from_constants(
     InvalidInput
         For an argument out of its range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7; Landau & Lifshitz, *Mechanics*, 3rd ed., § 15.
+
     Examples
     --------
     >>> import visviva as vv
@@ -153,6 +171,8 @@ def conic_from_constants(
 @known_keywords
 def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
     """Find the period 2π√(a³/μ) of ellipses.
+
+    Units: μ is in length³ / time², in the caller's units of both.
 
     Parameters
     ----------
@@ -171,6 +191,10 @@ def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
     InvalidInput
         For an argument that is not positive and finite, or shapes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.8 (Kepler's third law).
+
     Examples
     --------
     >>> import visviva as vv
@@ -184,6 +208,8 @@ def period(mu: ArrayLike, semi_major_axis: ArrayLike) -> NDArray[np.float64]:
 @known_keywords
 def semi_major_axis(mu: ArrayLike, period: ArrayLike) -> NDArray[np.float64]:
     """Find the semi-major axis ∛(μ(T/2π)²) of ellipses of given periods.
+
+    Units: μ is in length³ / time², in the caller's units of both.
 
     Parameters
     ----------
@@ -202,6 +228,10 @@ def semi_major_axis(mu: ArrayLike, period: ArrayLike) -> NDArray[np.float64]:
     InvalidInput
         For an argument that is not positive and finite, or shapes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.8 (Kepler's third law).
+
     Examples
     --------
     >>> import numpy as np, visviva as vv
@@ -217,6 +247,8 @@ def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDA
     """Find the time to fall from rest at one distance from the centre to another.
 
     √(R³/2μ)(θ + sin θ cos θ) with r = R cos²θ; to the centre itself π√(R³/8μ).
+
+    Units: μ is in length³ / time², in the caller's units of both.
 
     Parameters
     ----------
@@ -236,6 +268,10 @@ def free_fall_time(mu: ArrayLike, start: ArrayLike, end: ArrayLike = 0.0) -> NDA
     ------
     InvalidInput
         For an argument out of its range, NaN or infinity, or shapes that do not broadcast.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., ch. 3, exercise 11, and § 3.8.
 
     Examples
     --------

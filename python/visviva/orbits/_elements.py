@@ -33,6 +33,8 @@ class Elements(OfOrbits, Shown):
     has its node at x: the argument of its pericenter is counted from there. A parabola has an infinite semi-major axis
     and period; its pericenter is its size. Radial motion has no plane, so its three angles are NaN.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     mu : ndarray
@@ -82,6 +84,11 @@ class Elements(OfOrbits, Shown):
     `to_xarray` and `to_pandas` have a row for each orbit: of a run's elements under its times and the names of the
     bodies (and the number of the copy), of others under their place in the arrays.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.9; Murray & Dermott, *Solar System Dynamics*
+    (1999), § 2.8.
+
     Examples
     --------
     >>> import visviva as vv
@@ -127,17 +134,41 @@ class Elements(OfOrbits, Shown):
 
     @property
     def longitude_of_ascending_node(self) -> NDArray[np.float64]:
-        """`node`."""
+        """`node`, of the shape of the orbits asked for, in radians.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.orbits.elements(1.0, [1.0, 0.5, 0.0], [0.0, 1.0, 0.25])
+        >>> round(float(found.longitude_of_ascending_node), 9)
+        0.463647609
+        """
         return self.node
 
     @property
     def longitude_of_pericenter(self) -> NDArray[np.float64]:
-        """Node + argument of pericenter."""
+        """Node + argument of pericenter, of the shape of the orbits asked for, in radians.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.orbits.elements(1.0, [1.0, 0.5, 0.0], [0.0, 1.0, 0.25])
+        >>> round(float(found.longitude_of_pericenter), 9)
+        -1.183869477
+        """
         return self.node + self.argument_of_pericenter
 
     @property
     def mean_longitude(self) -> NDArray[np.float64]:
-        """Longitude of pericenter + mean anomaly."""
+        """Longitude of pericenter + mean anomaly, of the shape of the orbits asked for, in radians.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.orbits.elements(1.0, [1.0, 0.5, 0.0], [0.0, 1.0, 0.25])
+        >>> round(float(found.mean_longitude), 9)
+        -0.454523801
+        """
         return self.longitude_of_pericenter + self.mean_anomaly
 
     def state(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -147,10 +178,12 @@ class Elements(OfOrbits, Shown):
         a long ellipse an ulp of π is one of √(μ/a) in the velocity. Where some elements were replaced and no longer
         agree with the others, the pericenter, e, the three angles and the true anomaly count.
 
+        Units: those of the elements: lengths, and lengths over times.
+
         Returns
         -------
-        position, velocity : ndarray
-            (…, 3) each.
+        position, velocity : ndarray, shape (…, 3)
+            The leading axes are those of the orbits.
 
         Raises
         ------
@@ -187,11 +220,13 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
 
     Each is right to a few ulps times its own conditioning, also near e = 0 and e = 1: they are found in double-double.
 
+    Units: μ is in length³ / time², in the caller's units of both; angles in radians.
+
     Parameters
     ----------
     mu : array_like
         Strength of the acceleration −μ r/|r|³: G(m₁ + m₂), negative for repulsion, not 0.
-    position, velocity : array_like, (…, 3)
+    position, velocity : array_like, shape (…, 3)
         State relative to the centre.
 
     Returns
@@ -203,6 +238,11 @@ def elements(mu: ArrayLike, position: ArrayLike, velocity: ArrayLike) -> Element
     ------
     InvalidInput
         For a wrong shape, NaN or infinity, a position at the centre, or μ = 0, for which there is no conic.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.9; Murray & Dermott, *Solar System Dynamics*
+    (1999), § 2.8.
 
     Examples
     --------
@@ -231,6 +271,8 @@ def state(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Find the states of orbits with given elements.
 
+    Units: μ is in length³ / time², in the caller's units of both; angles in radians.
+
     Parameters
     ----------
     mu : array_like
@@ -249,13 +291,18 @@ def state(
 
     Returns
     -------
-    position, velocity : ndarray
-        (…, 3) each, with the axes of the arguments, broadcast.
+    position, velocity : ndarray, shape (…, 3)
+        With the axes of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an argument out of its range, NaN or infinity, or shapes that do not broadcast.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7–3.9; Murray & Dermott, *Solar System Dynamics*
+    (1999), § 2.8.
 
     Examples
     --------
@@ -296,18 +343,20 @@ def propagate(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Move states along their orbits by given times, in closed form.
 
+    Units: μ is in length³ / time², in the caller's units of both.
+
     Parameters
     ----------
-    mu : array_like
+    mu : array_like, shape (…)
         Strength of the acceleration −μ r/|r|³: G(m₁ + m₂), negative for repulsion, 0 for a straight line.
-    position, velocity : array_like, (…, 3)
+    position, velocity : array_like, shape (…, 3)
         State relative to the centre at time 0.
     t : array_like
         Times since then, of any shape and sign; every orbit is asked for all of them.
 
     Returns
     -------
-    position, velocity : ndarray
+    position, velocity : ndarray, shape (…, 3)
         The axes of ``t``, then the leading axes of the orbits, then 3. At ``t = 0`` they are the given bits. A body
         that falls straight into the centre comes back on its way; at the instant of the collision both are 0.
 
@@ -321,7 +370,8 @@ def propagate(
     Measured against 100 to 420 digits, the given numbers being taken as exact, up to 10⁹ periods: of 32 000 random
     orbits of every kind all but 15 are within 6 half-ulps of |r| and |v| (median 1), and within 10 where the motion is
     not radial or nearly so (25). Just after the epoch, where |v| passes through zero, its error is in half-ulps of the
-    velocity at the epoch instead. Method: universal variables (Stiefel & Scheifele 1971) counted from an apsis.
+    velocity at the epoch instead. Method: universal variables (Stiefel & Scheifele, *Linear and Regular Celestial
+    Mechanics* (1971)) counted from an apsis.
 
     Examples
     --------

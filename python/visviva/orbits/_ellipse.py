@@ -18,6 +18,8 @@ def eccentric_from_mean(mean: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.
 
     E is in the same turn as M, to an ulp or two times dE/dM, also near e = 1 and M = 0.
 
+    Units: angles in radians; e is without dimension.
+
     Parameters
     ----------
     mean : array_like
@@ -35,6 +37,11 @@ def eccentric_from_mean(mean: ArrayLike, eccentricity: ArrayLike) -> NDArray[np.
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Murray & Dermott, *Solar System Dynamics* (1999), § 2.4; J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd
+    ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -49,6 +56,8 @@ def mean_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     """Give the mean anomaly M of the eccentric anomaly E on an ellipse.
 
     M = E − e sin E.
+
+    Units: angles in radians; e is without dimension.
 
     Parameters
     ----------
@@ -67,6 +76,11 @@ def mean_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Murray & Dermott, *Solar System Dynamics* (1999), § 2.4; J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd
+    ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -81,6 +95,8 @@ def true_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     """Give the true anomaly ν of the eccentric anomaly E on an ellipse.
 
     tan(ν/2) = √((1+e)/(1−e)) tan(E/2). Whole turns are kept.
+
+    Units: angles in radians; e is without dimension.
 
     Parameters
     ----------
@@ -99,6 +115,11 @@ def true_from_eccentric(eccentric: ArrayLike, eccentricity: ArrayLike) -> NDArra
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    Murray & Dermott, *Solar System Dynamics* (1999), § 2.4; J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd
+    ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -113,6 +134,8 @@ def eccentric_from_true(true_anomaly: ArrayLike, eccentricity: ArrayLike) -> NDA
     """Give the eccentric anomaly E of the true anomaly ν on an ellipse.
 
     tan(ν/2) = √((1+e)/(1−e)) tan(E/2). Whole turns are kept.
+
+    Units: angles in radians; e is without dimension.
 
     Parameters
     ----------
@@ -130,6 +153,11 @@ def eccentric_from_true(true_anomaly: ArrayLike, eccentricity: ArrayLike) -> NDA
     ------
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
+
+    References
+    ----------
+    Murray & Dermott, *Solar System Dynamics* (1999), § 2.4; J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd
+    ed. (1988), ch. 6.
 
     Examples
     --------

@@ -18,6 +18,8 @@ def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive:
 
     With ``repulsive``, M = e sinh H + H.
 
+    Units: none: M, H and e are without dimension.
+
     Parameters
     ----------
     mean : array_like
@@ -37,6 +39,10 @@ def hyperbolic_from_mean(mean: ArrayLike, eccentricity: ArrayLike, *, repulsive:
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -53,6 +59,8 @@ def mean_from_hyperbolic(
     """Give the mean anomaly M of the hyperbolic anomaly H on a hyperbola.
 
     M = e sinh H − H (repulsion: e sinh H + H).
+
+    Units: none: M, H and e are without dimension.
 
     Parameters
     ----------
@@ -73,6 +81,10 @@ def mean_from_hyperbolic(
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -89,6 +101,8 @@ def true_from_hyperbolic(
     """Give the true anomaly ν of the hyperbolic anomaly H on a hyperbola.
 
     tan(ν/2) = √((e+1)/(e−1)) tanh(H/2) (repulsion: the inverse root).
+
+    Units: ν is in radians; H and e are without dimension.
 
     Parameters
     ----------
@@ -109,6 +123,10 @@ def true_from_hyperbolic(
     InvalidInput
         For an eccentricity out of range, NaN or infinity, or shapes that do not broadcast.
 
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -125,6 +143,8 @@ def hyperbolic_from_true(
     """Give the hyperbolic anomaly H of the true anomaly ν on a hyperbola.
 
     tan(ν/2) = √((e+1)/(e−1)) tanh(H/2) (repulsion: the inverse root).
+
+    Units: ν is in radians; H and e are without dimension.
 
     Parameters
     ----------
@@ -144,6 +164,10 @@ def hyperbolic_from_true(
     ------
     InvalidInput
         For an eccentricity or angle out of range, NaN or infinity, or shapes that do not broadcast.
+
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
 
     Examples
     --------

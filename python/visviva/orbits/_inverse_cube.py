@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 class PrecessingConic:
     """A conic that turns about the center, or a spiral; what :func:`precessing_conic` returns.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     beta_squared : float
@@ -35,6 +37,11 @@ class PrecessingConic:
         π/β and 2π(1/β − 1); NaN where the pericenter does not come again.
     radial_period : float
         2π√(ma³/γ) with a = (r_min + r_max)/2, whatever κ is; infinite where the pericenter does not come again.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 3.7; Whittaker, *Analytical Dynamics*, 4th ed. (1937), §
+    48 (Cotes' spirals).
 
     Examples
     --------
@@ -58,6 +65,8 @@ class PrecessingConic:
 
     def radius(self, angle: ArrayLike) -> NDArray[np.float64]:
         """Give the distance r(θ) at angles since the start.
+
+        Units: angles in radians, distances in those of the orbit.
 
         Parameters
         ----------
@@ -97,6 +106,8 @@ def precessing_conic(
 ) -> PrecessingConic:
     """Find the orbit under F = −γ/r² − κ/r³ through a state, in closed form.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     mass : float
@@ -105,7 +116,7 @@ def precessing_conic(
         γ: positive attracts.
     cubic : float
         κ: positive attracts.
-    position, velocity : array_like, (3,)
+    position, velocity : array_like, shape (3,)
         State relative to the center, not along each other.
 
     Returns

@@ -18,6 +18,8 @@ def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
 
     M = √(μ/2q³) t, t since the pericenter at distance q.
 
+    Units: none: M and D are without dimension.
+
     Parameters
     ----------
     mean : array_like
@@ -32,6 +34,10 @@ def parabolic_from_mean(mean: ArrayLike) -> NDArray[np.float64]:
     ------
     InvalidInput
         For a number out of range, NaN or infinity.
+
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
 
     Examples
     --------
@@ -48,6 +54,8 @@ def mean_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
 
     M = D + D³/3. Then M = √(μ/2q³) t, t since the pericenter at distance q.
 
+    Units: none: M and D are without dimension.
+
     Parameters
     ----------
     parabolic : array_like
@@ -62,6 +70,10 @@ def mean_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     ------
     InvalidInput
         For a number out of range, NaN or infinity.
+
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
 
     Examples
     --------
@@ -78,6 +90,8 @@ def true_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
 
     tan(ν/2) = D.
 
+    Units: ν is in radians; D is without dimension.
+
     Parameters
     ----------
     parabolic : array_like
@@ -92,6 +106,10 @@ def true_from_parabolic(parabolic: ArrayLike) -> NDArray[np.float64]:
     ------
     InvalidInput
         For a number out of range, NaN or infinity.
+
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
 
     Examples
     --------
@@ -108,6 +126,8 @@ def parabolic_from_true(true_anomaly: ArrayLike) -> NDArray[np.float64]:
 
     tan(ν/2) = D.
 
+    Units: ν is in radians; D is without dimension.
+
     Parameters
     ----------
     true_anomaly : array_like
@@ -122,6 +142,10 @@ def parabolic_from_true(true_anomaly: ArrayLike) -> NDArray[np.float64]:
     ------
     InvalidInput
         For an angle out of range, NaN or infinity.
+
+    References
+    ----------
+    J. M. A. Danby, *Fundamentals of Celestial Mechanics*, 2nd ed. (1988), ch. 6.
 
     Examples
     --------

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 class RadialMotion(Record):
     """Radial motions; what :func:`radial_motion` returns. Every attribute has the shape of what was asked.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     r_min, r_max : ndarray
@@ -41,6 +43,10 @@ class RadialMotion(Record):
         What the integrals of `radial_period` and `apsidal_angle` may lack, as estimated.
     kind : ndarray of str
         As in `RadialRange`, or ``"no_motion"``.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -71,6 +77,8 @@ def radial_motion(
 ) -> RadialMotion:
     """Find turning points, radial period, apsidal angle and precession.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -95,6 +103,10 @@ def radial_motion(
         For an argument out of its range, and where there are several ranges and `near` is not given.
     ConvergenceError
         If an integral does not come to 1e-12: too near to the top of a barrier, or the potential is not smooth enough.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -129,6 +141,8 @@ def radial_period(
 ) -> NDArray[np.float64]:
     """Find the time from one pericenter to the next; see `radial_motion`.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -143,12 +157,16 @@ def radial_period(
     Returns
     -------
     ndarray
-        A time; infinite where the motion escapes.
+        A time; infinite where the motion escapes. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput, ConvergenceError
         As `radial_motion`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -172,6 +190,8 @@ def apsidal_angle(
 ) -> NDArray[np.float64]:
     """Find the angle from pericenter to apocenter; see `radial_motion`.
 
+    Units: those of the caller, one consistent system; the angle in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -186,12 +206,16 @@ def apsidal_angle(
     Returns
     -------
     ndarray
-        Radians; NaN where there is no such angle.
+        Radians; NaN where there is no such angle. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput, ConvergenceError
         As `radial_motion`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -215,6 +239,8 @@ def precession(
 ) -> NDArray[np.float64]:
     """Find the angle by which the pericenter moves on in a radial period; see `radial_motion`.
 
+    Units: those of the caller, one consistent system; the angle in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -229,12 +255,17 @@ def precession(
     Returns
     -------
     ndarray
-        Radians in a radial period; NaN where the pericenter does not come again.
+        Radians in a radial period; NaN where the pericenter does not come again. Of the shape of the arguments,
+        broadcast.
 
     Raises
     ------
     InvalidInput, ConvergenceError
         As `radial_motion`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -259,6 +290,8 @@ def time_of_flight(
 ) -> NDArray[np.float64]:
     """Find the time between two distances of one range, without a turn between.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -279,6 +312,10 @@ def time_of_flight(
         For distances that are not in one range of motion (the message gives the ranges).
     ConvergenceError
         As `radial_motion`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------
@@ -305,6 +342,8 @@ def swept_angle(
 ) -> NDArray[np.float64]:
     """Find the angle about the center between two distances of one range; as `time_of_flight`.
 
+    Units: those of the caller, one consistent system; the angle in radians.
+
     Parameters
     ----------
     potential : Potential or sequence of Potential
@@ -319,12 +358,16 @@ def swept_angle(
     Returns
     -------
     ndarray
-        Radians.
+        Radians. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput, ConvergenceError
         As `time_of_flight`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 14.
 
     Examples
     --------

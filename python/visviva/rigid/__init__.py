@@ -3,7 +3,9 @@
 Conventions: quaternions are (x, y, z, w), the scalar last, as SciPy has them; they rotate from the body to space. Euler
 angles are z–x–z (φ, θ, ψ) about axes that move with the body (``"ZXZ"``) unless another convention is named. Angles are
 in radians, the vector axis is the last, and any leading axes broadcast. Wherever a quaternion is taken, so is a
-``scipy.spatial.transform.Rotation``.
+``scipy.spatial.transform.Rotation``. Units are yours, one consistent system.
+
+Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. ch. 4–5; Landau & Lifshitz, *Mechanics* 3rd ed. ch. VI.
 """
 
 from visviva.rigid._cones import ConeAngles, cone_angles

@@ -27,6 +27,10 @@ class ConeAngles(NamedTuple):
     axis : float
         Between the body's axis and the angular momentum: the cone of the precession.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.6.
+
     Examples
     --------
     >>> import visviva as vv
@@ -43,6 +47,8 @@ class ConeAngles(NamedTuple):
 @known_keywords
 def cone_angles(moments: ArrayLike, angular_velocity: ArrayLike) -> ConeAngles:
     """Give the half-angles of the cones on which a free symmetric body rolls (Poinsot).
+
+    Units: any; the angles are in radians.
 
     Parameters
     ----------

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 def euler_angles(quaternion: ArrayLike, convention: str = "ZXZ") -> NDArray[np.float64]:
     """Give the Euler angles of rotations.
 
+    Units: angles in radians; quaternions are without dimension.
+
     Parameters
     ----------
     quaternion : array_like, shape (…, 4)
@@ -60,6 +62,8 @@ def euler_angles(quaternion: ArrayLike, convention: str = "ZXZ") -> NDArray[np.f
 def quaternion_from_euler(angles: ArrayLike, convention: str = "ZXZ") -> NDArray[np.float64]:
     """Give the quaternions of Euler angles.
 
+    Units: angles in radians; quaternions are without dimension.
+
     Parameters
     ----------
     angles : array_like, shape (…, 3)
@@ -77,6 +81,10 @@ def quaternion_from_euler(angles: ArrayLike, convention: str = "ZXZ") -> NDArray
     InvalidInput
         For an unknown convention.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5 (the parameters of Euler).
+
     Examples
     --------
     >>> import visviva as vv
@@ -92,6 +100,8 @@ def angular_velocity_from_euler(
     angles: ArrayLike, rates: ArrayLike, *, frame: Literal["body", "space"] = "body", convention: str = "ZXZ"
 ) -> NDArray[np.float64]:
     """Give the angular velocity of Euler angles that change at such rates.
+
+    Units: angles in radians, rates in radians per time.
 
     Parameters
     ----------
@@ -111,6 +121,10 @@ def angular_velocity_from_euler(
     ------
     InvalidInput
         For an unknown convention or frame, or axes that do not broadcast.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.9; Landau & Lifshitz, *Mechanics*, 3rd ed., § 35.
 
     Examples
     --------
@@ -132,6 +146,8 @@ def euler_rates(
 ) -> NDArray[np.float64]:
     """Give the rates of Euler angles under an angular velocity.
 
+    Units: angles in radians, rates in radians per time.
+
     Parameters
     ----------
     angles, angular_velocity : array_like, shape (…, 3)
@@ -150,6 +166,10 @@ def euler_rates(
     ------
     InvalidInput
         At a pole, where the rates of the outer angles cannot be told apart; else as `angular_velocity_from_euler`.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.9; Landau & Lifshitz, *Mechanics*, 3rd ed., § 35.
 
     Examples
     --------

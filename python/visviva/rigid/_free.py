@@ -29,6 +29,8 @@ class FreeRotation(Rotation):
 
     Of a single time, arrays have no axis over the times. All are read-only.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     t : ndarray, shape (T,)
@@ -41,6 +43,10 @@ class FreeRotation(Rotation):
         Quaternions (x, y, z, w), from the body to space; |q| is 1 to 4 ε.
     body_angular_momentum : ndarray, shape (T, 3)
         Along the body's principal axes.
+
+    References
+    ----------
+    Jacobi, J. reine angew. Math. 39 (1850) 293; Landau & Lifshitz, *Mechanics*, 3rd ed., § 37.
 
     Examples
     --------
@@ -116,7 +122,7 @@ class FreeRotation(Rotation):
         plane : str, optional
             What is shown: ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"``, the default.
         trail : float
-            For how much of the time, from 0 to 1, the ways of the axes are shown behind them.
+            For how much of the time, from 0 to 1 without dimension, the ways of the axes are shown behind them.
         frames : int
             At most so many.
         fps : int
@@ -161,14 +167,16 @@ def free_rotation(
     same, however far it is from the start. Spheres, symmetric bodies, rods, both sides of the separatrix and the
     separatrix itself are all taken as they are.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     moments : array_like, shape (3,)
         The principal moments of inertia, in any order; one may be 0 (a rod).
     angular_velocity : array_like, shape (3,)
         At time 0, along the body's principal axes.
-    t : float or array_like
-        Times since then, of either sign and in any order.
+    t : float or array_like, shape (T,)
+        Times since then, of either sign and in any order. Any other shape takes the place of (T,) in all that is given.
     orientation : array_like, shape (4,), optional
         The quaternion (x, y, z, w) from the body to space at time 0; without it, the body's axes are those of space.
 

@@ -21,10 +21,16 @@ if TYPE_CHECKING:
 class SteadyPrecession(NamedTuple):
     """The two rates at which a top precesses steadily; the fast one may be infinite.
 
+    Units: radians per time.
+
     Attributes
     ----------
     slow, fast : float
         Rates about the vertical, signed as the spin is. The slow one is M g R/(C ω) for a fast top.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.7.
 
     Examples
     --------
@@ -51,6 +57,8 @@ def _from_the_vertical(theta: float) -> float:
 class Nutation:
     """How the axis of a top nods; what `HeavyTop.nutation` returns.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     theta_min, theta_max : float
@@ -66,6 +74,10 @@ class Nutation:
     turning : float
         The height u = p_φ/p_ψ at which the precession turns round; not always one that is reached, and infinite or NaN
         without spin.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.7.
 
     Examples
     --------
@@ -91,6 +103,8 @@ class HeavyTop:
 
     Angles are Euler's, z–x–z: θ from the vertical up to the axis, φ about the vertical, ψ about the axis. The spin is
     ω₃ = ψ̇ + φ̇ cos θ, which stays what it is.
+
+    Units: those of the caller, one consistent system; angles in radians.
 
     Parameters
     ----------
@@ -136,11 +150,13 @@ class HeavyTop:
 
     @property
     def sleeping_threshold(self) -> float:
-        """The spin above which the top stays upright: (C ω₃)² = 4 A M g R."""
+        """The spin above which the top stays upright, (C ω₃)² = 4 A M g R, in radians per time."""
         return _core.top_sleeping_threshold(self._numbers)
 
     def least_spin(self, theta: float) -> float:
         """Give the least spin of a steady precession at an angle: 2√(A M g R cos θ)/C, and 0 from the horizontal down.
+
+        Units: angles in radians, rates in radians per time.
 
         Parameters
         ----------
@@ -167,6 +183,8 @@ class HeavyTop:
 
     def steady_precession(self, theta: float, spin: float) -> SteadyPrecession:
         """Give both rates of steady precession: A cos θ Ω² − C ω₃ Ω + M g R = 0.
+
+        Units: angles in radians, rates in radians per time.
 
         Parameters
         ----------
@@ -201,6 +219,8 @@ class HeavyTop:
         It is the limit of the slow steady precession for (C ω₃)² ≫ A M g R, off by about A M g R cos θ/(C ω₃)² of
         itself; see `steady_precession` for the rate itself.
 
+        Units: angles in radians, rates in radians per time.
+
         Parameters
         ----------
         spin : float
@@ -230,6 +250,8 @@ class HeavyTop:
 
     def momenta(self, theta: float, *, psi_dot: float, phi_dot: float = 0.0) -> TopMomenta:
         """Give the momenta p_φ = A φ̇ sin²θ + p_ψ cos θ and p_ψ = C (ψ̇ + φ̇ cos θ), which stay what they are.
+
+        Units: those of the top; angles in radians.
 
         Parameters
         ----------
@@ -262,6 +284,8 @@ class HeavyTop:
         """Give the potential in which the axis nods: (p_φ − p_ψ cos θ)²/(2A sin²θ) + M g R cos θ.
 
         The axis is where it does not exceed E′ = E − p_ψ²/(2C); `nutation` gives the ends of that range.
+
+        Units: those of the top; angles in radians.
 
         Parameters
         ----------
@@ -302,6 +326,8 @@ class HeavyTop:
     def nutation_frequency(self, theta: float, spin: float) -> SteadyPrecession:
         """Give the frequencies of small nutations about the slow and the fast steady precession.
 
+        Units: angles in radians, rates in radians per time.
+
         Parameters
         ----------
         theta : float
@@ -334,6 +360,8 @@ class HeavyTop:
 
     def nutation(self, theta: float, *, psi_dot: float, theta_dot: float = 0.0, phi_dot: float = 0.0) -> Nutation:
         """Give the nutation of a top from where it is and how it turns.
+
+        Units: those of the top; angles in radians.
 
         Parameters
         ----------
@@ -384,7 +412,7 @@ class HeavyTop:
         theta : float
             Angle of the axis from the vertical, in [0, π].
         psi_dot, theta_dot, phi_dot : float
-            Rates of Euler's angles.
+            Rates of Euler's angles, in radians per time.
 
         Returns
         -------
@@ -423,10 +451,13 @@ class HeavyTop:
         Theta functions give the angles and their rates: each state costs the same, however far it is from the start,
         through the poles, on the separatrix, of a sleeping top and of one that does not spin.
 
+        Units: those of the top; angles in radians.
+
         Parameters
         ----------
-        t : float or array_like
-            Times since the start, of either sign and in any order.
+        t : float or array_like, shape (T,)
+            Times since the start, of either sign and in any order. Any other shape takes the place of (T,) in all that
+            is given.
         theta : float
             Angle of the axis from the vertical at the start, in [0, π].
         psi_dot, theta_dot, phi_dot : float

@@ -22,6 +22,8 @@ _ROUNDING = 1e-12
 class PrincipalAxes(NamedTuple):
     """Principal moments and the axes that they belong to.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Attributes
     ----------
     moments : ndarray, shape (3,)
@@ -29,6 +31,10 @@ class PrincipalAxes(NamedTuple):
     axes : ndarray, shape (3, 3)
         As columns, right-handed: ``axes @ np.diag(moments) @ axes.T`` is the tensor, and the rotation matrix from the
         principal axes to those of the tensor.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.4.
 
     Examples
     --------
@@ -45,6 +51,8 @@ class PrincipalAxes(NamedTuple):
 @known_keywords
 def inertia_tensor(mass: ArrayLike, position: ArrayLike) -> NDArray[np.float64]:
     """Give the inertia tensor of particles about the origin, Σ m (r² − r rᵀ).
+
+    Units: those of the caller; a tensor is in mass · length².
 
     Parameters
     ----------
@@ -66,6 +74,10 @@ def inertia_tensor(mass: ArrayLike, position: ArrayLike) -> NDArray[np.float64]:
     See Also
     --------
     particles : the same with the center of mass, and about it.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3.
 
     Examples
     --------
@@ -103,6 +115,8 @@ def symmetric(tensor: ArrayLike) -> NDArray[np.float64]:
 def principal_axes(tensor: ArrayLike) -> PrincipalAxes:
     """Give the principal moments of inertia and the principal axes.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     tensor : array_like, shape (3, 3)
@@ -121,6 +135,10 @@ def principal_axes(tensor: ArrayLike) -> PrincipalAxes:
         For a tensor that is not symmetric, or moments that are those of no body: negative, or one of them larger than
         the other two together, by more than rounding (1e-12).
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.4.
+
     Examples
     --------
     >>> import visviva as vv
@@ -138,6 +156,8 @@ def principal_axes(tensor: ArrayLike) -> PrincipalAxes:
 @known_keywords
 def parallel_axis(tensor: ArrayLike, mass: float, offset: ArrayLike) -> NDArray[np.float64]:
     """Give a tensor about another point, from that about the center of mass (Steiner): I + m (a² − a aᵀ).
+
+    Units: those of the caller; a tensor is in mass · length².
 
     Parameters
     ----------
@@ -158,6 +178,10 @@ def parallel_axis(tensor: ArrayLike, mass: float, offset: ArrayLike) -> NDArray[
     InvalidInput
         For a mass that is not positive, a tensor that is not symmetric, NaN or infinity, or another shape.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3.
+
     Examples
     --------
     >>> import numpy as np, visviva as vv
@@ -173,6 +197,8 @@ def parallel_axis(tensor: ArrayLike, mass: float, offset: ArrayLike) -> NDArray[
 @known_keywords
 def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float64]:
     """Give the tensor of a body that is rotated, R I Rᵀ; from the body's axes to space.
+
+    Units: the quaternion is without dimension, the tensor in mass · length².
 
     Parameters
     ----------
@@ -190,6 +216,10 @@ def rotate_tensor(tensor: ArrayLike, quaternion: ArrayLike) -> NDArray[np.float6
     ------
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6, a tensor that is not symmetric, or another shape.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.4.
 
     Examples
     --------

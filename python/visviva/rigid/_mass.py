@@ -34,6 +34,8 @@ class MassProperties:
 
     Two bodies are one by ``+``; ``-`` takes a part out of a body, and refuses what no body is left of.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     mass : float
@@ -47,6 +49,10 @@ class MassProperties:
     ------
     InvalidInput
         For a mass that is not positive, a tensor that is not symmetric, NaN or infinity, or another shape.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3.
 
     Examples
     --------
@@ -81,6 +87,8 @@ class MassProperties:
     def about(self, point: ArrayLike) -> NDArray[np.float64]:
         """Give the tensor about a point of the coordinates, by Steiner's theorem.
 
+        Units: those of the caller; a tensor is in mass · length².
+
         Parameters
         ----------
         point : array_like, shape (3,)
@@ -107,6 +115,8 @@ class MassProperties:
 
     def moved(self, offset: ArrayLike) -> MassProperties:
         """Give the body somewhere else.
+
+        Units: those of the caller; a tensor is in mass · length².
 
         Parameters
         ----------
@@ -135,6 +145,8 @@ class MassProperties:
     def rotated(self, quaternion: ArrayLike) -> MassProperties:
         """Give the body rotated about the origin.
 
+        Units: the quaternion is without dimension, the tensor in mass · length².
+
         Parameters
         ----------
         quaternion : array_like, shape (4,)
@@ -162,6 +174,13 @@ class MassProperties:
 
     def principal_axes(self) -> PrincipalAxes:
         """Give the principal moments about the center and their axes; see `principal_axes`.
+
+        Units: those of the caller; a tensor is in mass · length².
+
+        Returns
+        -------
+        PrincipalAxes
+            ``moments``, shape (3,), and ``axes``, shape (3, 3).
 
         Examples
         --------
@@ -211,6 +230,8 @@ def _together(bodies: Sequence[MassProperties], signs: Sequence[float]) -> MassP
 def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> MassProperties:
     """Give bodies together as one.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     bodies : sequence of MassProperties
@@ -219,12 +240,16 @@ def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> Mass
     Returns
     -------
     MassProperties
-        About the common center of mass.
+        About the common center of mass. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For anything else.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3.
 
     Examples
     --------
@@ -244,6 +269,8 @@ def composite(bodies: list[MassProperties] | tuple[MassProperties, ...]) -> Mass
 def particles(mass: ArrayLike, position: ArrayLike) -> MassProperties:
     """Give the mass properties of particles that keep their distances.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     mass : array_like, shape (N,)
@@ -260,6 +287,10 @@ def particles(mass: ArrayLike, position: ArrayLike) -> MassProperties:
     ------
     InvalidInput
         As `inertia_tensor`, and where there is no mass.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3.
 
     Examples
     --------

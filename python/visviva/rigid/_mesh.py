@@ -25,6 +25,8 @@ def mesh(
 ) -> MassProperties:
     """Give the mass properties of the solid that a closed mesh of triangles encloses.
 
+    Units: those of the caller; a tensor is in mass · length².
+
     Parameters
     ----------
     vertices : array_like, shape (V, 3)
@@ -53,6 +55,11 @@ def mesh(
     (``VISVIVA_THREADS``), with the same bits on any number of them. That the mesh is closed is told by the areas that
     it has where its corners are scattered at random, which miss an open edge once in 2¹²¹ meshes; edges are counted
     only to say what is wrong.
+
+    References
+    ----------
+    F. Tonon, *Explicit exact formulas for the 3-D tetrahedron inertia tensor in terms of its vertex coordinates*, J.
+    Math. Stat. 1 (2005) 8.
 
     Examples
     --------
@@ -83,7 +90,9 @@ def mesh(
 
 @known_keywords
 def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
-    """Read vertices and faces from a file (STL, OBJ, PLY, …); needs ``trimesh``.
+    r"""Read vertices and faces from a file (STL, OBJ, PLY, …); needs ``trimesh``.
+
+    Units: those of the file.
 
     Parameters
     ----------
@@ -93,7 +102,7 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     Returns
     -------
     tuple of ndarray
-        Vertices (V, 3) and faces (F, 3), for `mesh`.
+        Vertices, shape (V, 3), and faces, shape (F, 3), for `mesh`.
 
     Raises
     ------
@@ -104,8 +113,14 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
 
     Examples
     --------
-    >>> import visviva as vv
-    >>> vertices, faces = vv.rigid.load_mesh("part.stl")  # doctest: +SKIP
+    >>> import pathlib, tempfile, visviva as vv
+    >>> from importlib.util import find_spec
+    >>> path = pathlib.Path(tempfile.mkdtemp()) / "corner.obj"
+    >>> text = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
+    >>> length = path.write_text(text)
+    >>> if find_spec("trimesh"):
+    ...     vertices, faces = vv.rigid.load_mesh(path)
+    ...     assert vertices.shape == (4, 3) and faces.shape == (4, 3)
     """
     file = path_text("path", path)
     try:

@@ -20,6 +20,8 @@ if TYPE_CHECKING:
 def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     """Rotate by b, then by a.
 
+    Units: none: rotations are without dimension.
+
     Parameters
     ----------
     a, b : array_like, shape (…, 4)
@@ -35,6 +37,10 @@ def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6, or axes that do not broadcast.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5 (the parameters of Euler).
+
     Examples
     --------
     >>> import visviva as vv
@@ -49,6 +55,8 @@ def quaternion_product(a: ArrayLike, b: ArrayLike) -> NDArray[np.float64]:
 def rotate(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
     """Rotate vectors: those of the body, seen in space.
 
+    Units: those of the vectors; quaternions are without dimension.
+
     Parameters
     ----------
     quaternion : array_like, shape (…, 4)
@@ -65,6 +73,10 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
     ------
     InvalidInput
         As `quaternion_product`.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5 (the parameters of Euler).
 
     Examples
     --------
@@ -79,6 +91,8 @@ def rotate(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
 def rotate_back(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]:
     """Rotate vectors the opposite way: those of space, seen in the body.
 
+    Units: those of the vectors; quaternions are without dimension.
+
     Parameters
     ----------
     quaternion : array_like, shape (…, 4)
@@ -95,6 +109,10 @@ def rotate_back(quaternion: ArrayLike, vector: ArrayLike) -> NDArray[np.float64]
     ------
     InvalidInput
         As `quaternion_product`.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5 (the parameters of Euler).
 
     Examples
     --------
@@ -114,6 +132,8 @@ def _rotated(quaternion: ArrayLike, vector: ArrayLike, back: bool) -> NDArray[np
 def matrix(quaternion: ArrayLike) -> NDArray[np.float64]:
     """Give the matrices of rotations; their columns are the body's axes in space.
 
+    Units: none: rotations are without dimension.
+
     Parameters
     ----------
     quaternion : array_like, shape (…, 4)
@@ -129,6 +149,10 @@ def matrix(quaternion: ArrayLike) -> NDArray[np.float64]:
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5 (the parameters of Euler).
+
     Examples
     --------
     >>> import visviva as vv
@@ -143,6 +167,8 @@ def matrix(quaternion: ArrayLike) -> NDArray[np.float64]:
 @known_keywords
 def quaternion_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
     """Give the quaternions of rotation matrices.
+
+    Units: none: rotations are without dimension.
 
     Parameters
     ----------
@@ -177,6 +203,8 @@ def quaternion_from_matrix(matrix: ArrayLike) -> NDArray[np.float64]:
 def rotation_vector(quaternion: ArrayLike) -> NDArray[np.float64]:
     """Give the vectors about which to rotate, by their lengths.
 
+    Units: angles in radians; quaternions are without dimension.
+
     Parameters
     ----------
     quaternion : array_like, shape (…, 4)
@@ -192,6 +220,10 @@ def rotation_vector(quaternion: ArrayLike) -> NDArray[np.float64]:
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5–4.7.
+
     Examples
     --------
     >>> import visviva as vv
@@ -204,6 +236,8 @@ def rotation_vector(quaternion: ArrayLike) -> NDArray[np.float64]:
 @known_keywords
 def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.float64]:
     """Give the quaternions of rotations about vectors, by their lengths.
+
+    Units: angles in radians; quaternions are without dimension.
 
     Parameters
     ----------
@@ -220,6 +254,10 @@ def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.fl
     InvalidInput
         For NaN or infinity, or another shape.
 
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 4.5–4.7.
+
     Examples
     --------
     >>> import numpy as np, visviva as vv
@@ -232,6 +270,8 @@ def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.fl
 @known_keywords
 def from_scipy(rotation: Any) -> NDArray[np.float64]:
     """Give the quaternions of a ``scipy.spatial.transform.Rotation``.
+
+    Units: none: rotations are without dimension.
 
     Parameters
     ----------
@@ -263,6 +303,8 @@ def from_scipy(rotation: Any) -> NDArray[np.float64]:
 @known_keywords
 def to_scipy(quaternion: ArrayLike) -> Any:
     """Give a ``scipy.spatial.transform.Rotation`` of quaternions; needs SciPy.
+
+    Units: none: rotations are without dimension.
 
     Parameters
     ----------

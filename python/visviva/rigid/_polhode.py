@@ -22,6 +22,8 @@ _Kind = Literal["steady", "symmetric", "about_smallest", "about_largest", "separ
 class Polhode:
     """The path of the angular momentum in the body; what :func:`polhode` returns.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     kind : str
@@ -46,6 +48,10 @@ class Polhode:
     largest : ndarray, shape (3,)
         The largest angular momentum along each axis of the body, with the sign that it has at time 0.
 
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 37.
+
     Examples
     --------
     >>> import visviva as vv
@@ -69,6 +75,8 @@ class Polhode:
 @known_keywords
 def polhode(moments: ArrayLike, angular_velocity: ArrayLike) -> Polhode:
     """Describe the free rotation of a body: its kind, period and rates.
+
+    Units: those of the caller, one consistent system; angles in radians.
 
     Parameters
     ----------
@@ -121,6 +129,8 @@ def polhode(moments: ArrayLike, angular_velocity: ArrayLike) -> Polhode:
 def period(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
     """Give the time after which the angular velocity of a free body is the same again, along its own axes.
 
+    Units: those of the caller's time.
+
     Parameters
     ----------
     moments, angular_velocity : array_like, shape (3,)
@@ -136,6 +146,10 @@ def period(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
     InvalidInput
         As `free_rotation`.
 
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 37.
+
     Examples
     --------
     >>> import visviva as vv
@@ -148,6 +162,8 @@ def period(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
 @known_keywords
 def flip_time(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
     """Give the time between two flips of the middle axis (Dzhanibekov's effect): half the `period`.
+
+    Units: those of the caller's time.
 
     Parameters
     ----------
@@ -163,6 +179,10 @@ def flip_time(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
     ------
     InvalidInput
         As `free_rotation`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 37.
 
     Examples
     --------
@@ -191,6 +211,10 @@ def precession_rate(moments: ArrayLike, angular_velocity: ArrayLike) -> float:
     ------
     InvalidInput
         As `free_rotation`.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 37.
 
     Examples
     --------

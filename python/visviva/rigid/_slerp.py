@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 def slerp(start: ArrayLike, end: ArrayLike, fraction: ArrayLike) -> NDArray[np.float64]:
     """Interpolate between orientations by spherical linear interpolation: one turn at a steady rate, the shorter way.
 
+    Units: none: rotations and fractions are without dimension.
+
     Parameters
     ----------
     start, end : array_like, shape (…, 4)

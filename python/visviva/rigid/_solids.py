@@ -36,6 +36,8 @@ def is_shell(shell: object) -> bool:
 def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> MassProperties:
     """Give a box with sides a, b, c along x, y, z; as a shell, its six faces.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, a, b, c : float
@@ -46,12 +48,16 @@ def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> Ma
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2.
 
     Examples
     --------
@@ -66,6 +72,8 @@ def box(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> Ma
 def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
     """Give a sphere, solid, hollow, or with ``inner_radius=radius`` a thin shell.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius : float
@@ -76,12 +84,16 @@ def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProp
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length out of range.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2.
 
     Examples
     --------
@@ -96,6 +108,8 @@ def sphere(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProp
 def hemisphere(mass: float, radius: float, *, shell: bool = False) -> MassProperties:
     """Give half of a sphere; its center of mass is 3/8 of the radius (of a shell 1/2) from the disc.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius : float
@@ -106,12 +120,16 @@ def hemisphere(mass: float, radius: float, *, shell: bool = False) -> MassProper
     Returns
     -------
     MassProperties
-        About the center of mass.
+        About the center of mass. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3: the integral of the tensor over the body.
 
     Examples
     --------
@@ -126,6 +144,8 @@ def hemisphere(mass: float, radius: float, *, shell: bool = False) -> MassProper
 def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False) -> MassProperties:
     """Give an ellipsoid with the semi-axes a, b, c along x, y, z; as a shell, its surface.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, a, b, c : float
@@ -137,7 +157,7 @@ def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False)
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
@@ -148,6 +168,10 @@ def ellipsoid(mass: float, a: float, b: float, c: float, *, shell: bool = False)
     -----
     Of the surface, ∫ x² dS/S = a²(1 + ⟨N²⟩)/4 with the mean square of what the unit normal has along x; by Carlson's
     R_D (DLMF 19.33 has the area).
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2; of the surface, DLMF (https://dlmf.nist.gov), § 19.33.
 
     Examples
     --------
@@ -166,6 +190,8 @@ def cylinder(
 ) -> MassProperties:
     """Give a cylinder: solid, a pipe with an inner radius, or as a shell the wall with both discs.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius, height : float
@@ -178,12 +204,16 @@ def cylinder(
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length out of range, or a shell with an inner radius.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2.
 
     Examples
     --------
@@ -201,6 +231,8 @@ def cylinder(
 def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> MassProperties:
     """Give a cone with its apex up; its center of mass is 1/4 of the height (of a shell 1/3) above its base.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius, height : float
@@ -211,12 +243,16 @@ def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> M
     Returns
     -------
     MassProperties
-        About the center of mass.
+        About the center of mass. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2.
 
     Examples
     --------
@@ -231,6 +267,8 @@ def cone(mass: float, radius: float, height: float, *, shell: bool = False) -> M
 def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -> MassProperties:
     """Give a cylinder of that height between two half spheres.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius, height : float
@@ -241,12 +279,16 @@ def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3: the integral of the tensor over the body.
 
     Examples
     --------
@@ -261,6 +303,8 @@ def capsule(mass: float, radius: float, height: float, *, shell: bool = False) -
 def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool = False) -> MassProperties:
     """Give a ring of circular cross-section about z.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, major_radius, minor_radius : float
@@ -272,12 +316,16 @@ def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool 
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length out of range.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3: the integral of the tensor over the body.
 
     Examples
     --------
@@ -292,6 +340,8 @@ def torus(mass: float, major_radius: float, minor_radius: float, *, shell: bool 
 def tetrahedron(mass: float, vertices: ArrayLike, *, shell: bool = False) -> MassProperties:
     """Give a tetrahedron; as a shell, its four faces.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass : float
@@ -304,7 +354,7 @@ def tetrahedron(mass: float, vertices: ArrayLike, *, shell: bool = False) -> Mas
     Returns
     -------
     MassProperties
-        With its center of mass where it is.
+        With its center of mass where it is. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
@@ -315,6 +365,11 @@ def tetrahedron(mass: float, vertices: ArrayLike, *, shell: bool = False) -> Mas
     -----
     Second moments of a tetrahedron are those of m/20 at each corner and 4m/5 at the center, of a triangle those of m/12
     and 3m/4 (Tonon 2005).
+
+    References
+    ----------
+    F. Tonon, *Explicit exact formulas for the 3-D tetrahedron inertia tensor in terms of its vertex coordinates*, J.
+    Math. Stat. 1 (2005) 8.
 
     Examples
     --------

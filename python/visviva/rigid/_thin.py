@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 def rod(mass: float, length: float) -> MassProperties:
     """Give a thin rod along z, which has no moment about itself.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, length : float
@@ -23,12 +25,16 @@ def rod(mass: float, length: float) -> MassProperties:
     Returns
     -------
     MassProperties
-        About the middle.
+        About the middle. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Landau & Lifshitz, *Mechanics*, 3rd ed., § 32, problem 2.
 
     Examples
     --------
@@ -43,6 +49,8 @@ def rod(mass: float, length: float) -> MassProperties:
 def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProperties:
     """Give a thin disc across z, with a hole of the inner radius; with ``inner_radius=radius`` a thin ring.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, radius : float
@@ -53,12 +61,17 @@ def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProper
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length out of range.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3; Landau & Lifshitz, *Mechanics*, 3rd ed., § 32,
+    problem 2 (limits of the cylinder and the box).
 
     Examples
     --------
@@ -73,6 +86,8 @@ def disc(mass: float, radius: float, *, inner_radius: float = 0.0) -> MassProper
 def plate(mass: float, a: float, b: float) -> MassProperties:
     """Give a thin rectangle with sides a, b along x, y.
 
+    Units: those of the caller; the tensor is in mass · length².
+
     Parameters
     ----------
     mass, a, b : float
@@ -81,12 +96,17 @@ def plate(mass: float, a: float, b: float) -> MassProperties:
     Returns
     -------
     MassProperties
-        About the center.
+        About the center. With ``center``, shape (3,), and ``tensor``, shape (3, 3).
 
     Raises
     ------
     InvalidInput
         For a mass or a length that is not positive.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.3; Landau & Lifshitz, *Mechanics*, 3rd ed., § 32,
+    problem 2 (limits of the cylinder and the box).
 
     Examples
     --------

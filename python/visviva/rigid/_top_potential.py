@@ -17,12 +17,18 @@ __all__ = ["TopMomenta", "effective_potential", "weight"]
 class TopMomenta(NamedTuple):
     """The two momenta of a top that stay what they are.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     p_phi : float
         About the vertical.
     p_psi : float
         About the top's axis, C ω₃.
+
+    References
+    ----------
+    Goldstein, Poole & Safko, *Classical Mechanics*, 3rd ed., § 5.7.
 
     Examples
     --------

@@ -22,6 +22,8 @@ _ORIGIN = (0.0, 0.0, 0.0)
 class ScrewAxis(NamedTuple):
     """The motion of a body at one time: a rotation about an axis and a velocity along it.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Attributes
     ----------
     point : ndarray, shape (…, 3)
@@ -34,6 +36,10 @@ class ScrewAxis(NamedTuple):
         The velocity along the direction, which all points share.
     pitch : ndarray, shape (…)
         How far the body goes along the axis in one radian, ω·v/ω²; infinite where it does not turn.
+
+    References
+    ----------
+    R. S. Ball, *A Treatise on the Theory of Screws* (1900).
 
     Examples
     --------
@@ -59,6 +65,8 @@ def velocity_at(
     point: ArrayLike, velocity: ArrayLike, angular_velocity: ArrayLike, about: ArrayLike = _ORIGIN
 ) -> NDArray[np.float64]:
     """Give the velocity of points of a rigid body, v + ω × (r − r₀).
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -116,6 +124,8 @@ def _of_joined(function: Callable[[NDArray[np.float64]], NDArray[np.float64]]) -
 @known_keywords
 def screw_axis(velocity: ArrayLike, angular_velocity: ArrayLike, about: ArrayLike = _ORIGIN) -> ScrewAxis:
     """Give the axis about which a body turns at one time, and along which it moves.
+
+    Units: those of the caller, one consistent system; angles in radians.
 
     Parameters
     ----------

@@ -2,7 +2,11 @@
 
 Angles are in radians. ``energy`` is that of relative motion, ½μu²; ``beam_energy`` is the projectile's in the
 laboratory, where the target is at rest. ``mass_ratio`` is m₁/m₂, projectile over target. Arguments of the kinematics
-broadcast against each other; the functions of one array keep its shape.
+broadcast against each other; the functions of one array keep its shape. Energies and lengths are in the units of the
+potential; those of a `Foil` in eV, Å and µm.
+
+Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.10–3.11; Landau & Lifshitz, *Mechanics*, 3rd ed.,
+§16–20.
 """
 
 from visviva.scattering._beam import Beam, Spectrum, Spread

@@ -22,11 +22,13 @@ __all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
 class Spectrum:
     """Energies of a beam, each with its part of the projectiles.
 
+    Units: energies in those of the potential; weights are without dimension.
+
     Parameters
     ----------
-    energy : array_like
+    energy : array_like, shape (L,)
         Positive.
-    weight : array_like
+    weight : array_like, shape (L,)
         Positive, one for each energy; only their ratios count.
 
     Raises
@@ -62,6 +64,8 @@ class Spectrum:
 class Spread:
     """How energies or directions of a beam lie about their middle.
 
+    Units: energies in those of the beam, directions in radians.
+
     Attributes
     ----------
     shape : {"gaussian", "uniform"}
@@ -87,6 +91,8 @@ class Spread:
     @known_keywords
     def gaussian(sigma: float) -> Spread:
         """Make a Gaussian.
+
+        Units: energies in those of the beam, directions in radians.
 
         Parameters
         ----------
@@ -157,6 +163,8 @@ def as_spread(name: str, given: object) -> Spread | None:
 class Beam:
     """A beam on a disc around one centre: what results must have in common to be added.
 
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
+
     Attributes
     ----------
     potential : Potential
@@ -181,6 +189,10 @@ class Beam:
         Rings of impact parameters with parts of the events of their own; None where events fill the disc evenly.
     channels : tuple of Channel
         Reactions with their parts of the events; what is left of them is elastic.
+
+    References
+    ----------
+    J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011), for the random numbers.
 
     Examples
     --------

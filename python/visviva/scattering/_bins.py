@@ -31,12 +31,15 @@ class Bins:
     Edges follow from the name by arithmetic that is the same on every machine; the first and the last are exactly those
     given. What lies outside is counted as ``underflow`` and ``overflow``.
 
+    Units: those of the quantity: angles in radians, energies and lengths as those of the potential, of a foil eV and
+    µm.
+
     Attributes
     ----------
     spacing : {"linear", "logarithmic", "solid_angle"}
         What neighbouring bins have in common: width, ratio of the ends, or solid angle.
     n : int
-        How many, 1 to 65536.
+        How many, 1 to 65536; edges have shape (n + 1,).
     low, high : float or None
         From where to where; None is 0, or the greatest value that the quantity can have.
 
@@ -66,6 +69,9 @@ class Bins:
     def linear(n: int, low: float | None = None, high: float | None = None) -> Bins:
         """Make bins of equal width.
 
+        Units: those of the quantity: angles in radians, energies and lengths as those of the potential, of a foil eV
+        and µm.
+
         Parameters
         ----------
         n : int
@@ -94,6 +100,9 @@ class Bins:
     @known_keywords
     def logarithmic(n: int, low: float, high: float | None = None) -> Bins:
         """Make bins of which each ends at the same multiple of where it begins.
+
+        Units: those of the quantity: angles in radians, energies and lengths as those of the potential, of a foil eV
+        and µm.
 
         Parameters
         ----------

@@ -23,17 +23,19 @@ class Channel:
     The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the centre-of-mass frame
     that are left: ½μ'w'² = ½μw² + Q.
 
+    Units: energies in those of the beam, masses in those of its masses; probabilities are without dimension.
+
     Parameters
     ----------
     q_value : float
         Energy that is released (Q > 0) or taken up (Q < 0), in the unit of `beam_energy`.
-    probability : float or pair of array_like
+    probability : float or pair of array_like, shape (P,)
         The part of all events, in [0, 1]; or (impact parameters, the part at each), linear between them and beyond the
         ends as at the ends. What all channels of a run leave of 1 is scattered elastically. Of parts that differ with
         the impact parameter `Tally.expected` knows ``cm_angle`` and ``impact_parameter`` only.
     products : tuple of float, optional
         Masses of what projectile and target become, in the unit of `masses`; by default they stay what they are.
-    excitation_function : pair of array_like, optional
+    excitation_function : pair of array_like, shape (P,), optional
         (Energies of the projectile in the laboratory, the factor at each), in [0, 1], linear between them and beyond
         the ends as at the ends: `probability` is multiplied by it. A beam may come below the threshold of a channel
         where the factor is 0. Of such a channel and an energy spread `Tally.expected` knows ``impact_parameter`` only.

@@ -40,6 +40,8 @@ def cross_section(
 ) -> NDArray[np.float64]:
     """Differential cross section dσ/dΩ, all branches together.
 
+    Units: energies and lengths are those of the potential, angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -57,7 +59,7 @@ def cross_section(
     -------
     ndarray
         Area per steradian. Infinite at rainbows and glories and, for a potential that ends nowhere, at angle 0; 0 where
-        nothing goes. What is captured goes nowhere.
+        nothing goes. What is captured goes nowhere. Of the shape of the arguments, broadcast.
 
     Raises
     ------
@@ -94,6 +96,8 @@ def total_cross_section(
 ) -> float:
     """Total cross section, of a potential that ends somewhere or with a cut.
 
+    Units: those of the potential: energies, and areas of its lengths; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -114,6 +118,10 @@ def total_cross_section(
     ------
     InvalidInput
         If both cuts are given; or none, and the potential ends nowhere, so that the area is infinite.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §18.
 
     Examples
     --------
@@ -144,6 +152,8 @@ def total_cross_section(
 def capture_cross_section(potential: Potential, *, energy: ArrayLike) -> NDArray[np.float64]:
     """Area of all impact parameters that fall into the center, π b_c².
 
+    Units: those of the potential: energies, and areas of its lengths; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -154,12 +164,17 @@ def capture_cross_section(potential: Potential, *, energy: ArrayLike) -> NDArray
     Returns
     -------
     ndarray
-        0 where nothing is captured.
+        0 where nothing is captured. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         As `deflect`.
+
+    References
+    ----------
+    P. Langevin, Ann. Chim. Phys. 5 (1905) 245; L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §18 (fall to the
+    center).
 
     Examples
     --------
@@ -183,6 +198,8 @@ def transport_cross_section(
 ) -> NDArray[np.float64]:
     """Transport cross section Q^(l)(E) = 2π ∫ (1 − cos^l ψ) b db: of momentum for l = 1, of viscosity for l = 2.
 
+    Units: those of the potential: energies, and areas of its lengths; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -197,7 +214,7 @@ def transport_cross_section(
     Returns
     -------
     ndarray
-        Areas, to about ten digits.
+        Areas, to about ten digits. Of the shape of the arguments, broadcast.
 
     Raises
     ------
@@ -234,6 +251,8 @@ def collision_integral(
 ) -> NDArray[np.float64]:
     """Reduced collision integral Ω^(l,s)*, the kinetic theory's mean of a transport cross section.
 
+    Units: `temperature` and `diameter` in those of the potential.
+
     Parameters
     ----------
     potential : Potential
@@ -250,7 +269,7 @@ def collision_integral(
     Returns
     -------
     ndarray
-        Without dimension; 1 for hard spheres of that diameter.
+        Without dimension; 1 for hard spheres of that diameter. Of the shape of the arguments, broadcast.
 
     Raises
     ------
@@ -290,6 +309,8 @@ def nuclear_stopping(
 ) -> NDArray[np.float64]:
     """Nuclear stopping S_n = ∫ T dσ: what elastic collisions with resting targets cost, per target and area.
 
+    Units: those of the potential, energy times its length²; masses in one unit, any.
+
     Parameters
     ----------
     potential : Potential
@@ -304,12 +325,16 @@ def nuclear_stopping(
     Returns
     -------
     ndarray
-        Energy times area: 2 m₁m₂/(m₁+m₂)² E Q^(1).
+        Energy times area: 2 m₁m₂/(m₁+m₂)² E Q^(1). Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         As `transport_cross_section`.
+
+    References
+    ----------
+    J. F. Ziegler, J. P. Biersack, U. Littmark, *The Stopping and Range of Ions in Solids* (1985).
 
     Examples
     --------

@@ -48,6 +48,8 @@ class DeflectionStatus(IntEnum):
 class Deflection(Shown):
     """Deflections of pairs of an energy and an impact parameter, as arrays of their common shape.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Attributes
     ----------
     energy, impact_parameter : ndarray
@@ -73,6 +75,10 @@ class Deflection(Shown):
         As given.
     potential : Potential
         As given.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §18.
 
     Examples
     --------
@@ -110,17 +116,36 @@ class Deflection(Shown):
 
     @property
     def conditioning(self) -> NDArray[np.float64]:
-        """|b dψ/db|: the change of the angle for a relative change of the impact parameter."""
+        """|b dψ/db|, of the common shape, in radians.
+
+        The change of the angle for a relative change of the impact parameter.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.scattering.deflect(vv.potentials.Coulomb(1.0), energy=0.5, impact_parameter=[0.5, 1.0])
+        >>> found.conditioning.round(9)
+        array([0.8, 1. ])
+        """
         return np.abs(self.impact_parameter * self.derivative)
 
     @property
     def time_delay(self) -> NDArray[np.float64]:
         """The time lost against free motion with the same energy and impact parameter; negative where it is won.
 
+        Of the common shape, in the caller's units.
+
         Raises
         ------
         InvalidInput
             If `deflect` was not given a ``reduced_mass``, on which the speed depends.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> ball = vv.potentials.HardSphere(1.0)
+        >>> vv.scattering.deflect(ball, energy=0.5, impact_parameter=[0.0, 0.6], reduced_mass=1.0).time_delay.round(9)
+        array([-2. , -1.6])
         """
         if self.reduced_mass is None:
             raise InvalidInput("reduced_mass", "expected a number, as times depend on it, got None; pass it to deflect")
@@ -175,6 +200,8 @@ def deflect(
     threads: int | None = None,
 ) -> Deflection:
     """Deflection of a projectile by a central potential: its angle, and what comes with it.
+
+    Units: those of the potential, energies and lengths; angles in radians.
 
     Parameters
     ----------
@@ -251,6 +278,8 @@ def deflection_angle(
 ) -> NDArray[np.float64]:
     """Angle of deflection by a central potential, as `deflect` finds it, and nothing else.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -265,12 +294,16 @@ def deflection_angle(
     Returns
     -------
     ndarray
-        ψ: positive for repulsion, not folded; NaN where captured.
+        ψ: positive for repulsion, not folded; NaN where captured. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         As `deflect`.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §18.
 
     Examples
     --------

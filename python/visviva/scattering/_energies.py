@@ -29,6 +29,8 @@ def energy_transfer(
 ) -> NDArray[np.float64]:
     """Part of the beam energy that the target takes.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -45,13 +47,18 @@ def energy_transfer(
     Returns
     -------
     ndarray
-        4 m₁m₂/(m₁+m₂)² · sin²(ψ/2) of an elastic collision, in [0, 1].
+        4 m₁m₂/(m₁+m₂)² · sin²(ψ/2) of an elastic collision, in [0, 1]. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -74,6 +81,8 @@ def energy_kept(
 ) -> NDArray[np.float64]:
     """Part of the beam energy that the projectile has afterwards, without a subtraction from 1.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -90,13 +99,18 @@ def energy_kept(
     Returns
     -------
     ndarray
-        1 + Q/E₀ less what the target takes.
+        1 + Q/E₀ less what the target takes. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -120,6 +134,8 @@ def kinematic_factor(
 ) -> NDArray[np.float64]:
     """Part of the beam energy that the projectile has at a laboratory angle.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     lab_angle : array_like
@@ -138,13 +154,17 @@ def kinematic_factor(
     Returns
     -------
     ndarray
-        E₁/E₀; the kinematic factor of backscattering.
+        E₁/E₀; the kinematic factor of backscattering. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle beyond the greatest one, which the message gives; for ``'slow'`` where there is one energy only;
         else as `lab_angle`.
+
+    References
+    ----------
+    W. K. Chu, J. W. Mayer, M.-A. Nicolet, *Backscattering Spectrometry* (1978), ch. 2.
 
     Examples
     --------
@@ -169,6 +189,8 @@ def greatest_lab_angle(
 ) -> NDArray[np.float64]:
     """Greatest laboratory angle of the projectile.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     mass_ratio : array_like
@@ -183,13 +205,18 @@ def greatest_lab_angle(
     Returns
     -------
     ndarray
-        asin(m₂/m₁) of a heavy projectile; π where every angle is reached.
+        asin(m₂/m₁) of a heavy projectile; π where every angle is reached. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a ratio, energy or product that is not positive, an energy below the threshold, or shapes that do not
         broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -212,6 +239,8 @@ def greatest_recoil_angle(
 ) -> NDArray[np.float64]:
     """Greatest laboratory angle of the target.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     mass_ratio : array_like, optional
@@ -226,13 +255,18 @@ def greatest_recoil_angle(
     Returns
     -------
     ndarray
-        π/2 of an elastic collision.
+        π/2 of an elastic collision. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a ratio, energy or product that is not positive, an energy below the threshold, or shapes that do not
         broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -249,6 +283,8 @@ def threshold_energy(
 ) -> NDArray[np.float64]:
     """Least beam energy of a collision that takes up energy.
 
+    Units: the energy is in those of `q_value`; ratios are without dimension.
+
     Parameters
     ----------
     mass_ratio : array_like
@@ -261,12 +297,17 @@ def threshold_energy(
     Returns
     -------
     ndarray
-        −Q (m₃+m₄)/(m₃+m₄−m₁), which is −Q (m₁+m₂)/m₂ for unchanged masses; 0 for Q ≥ 0.
+        −Q (m₃+m₄)/(m₃+m₄−m₁), which is −Q (m₁+m₂)/m₂ for unchanged masses; 0 for Q ≥ 0. Of the shape of the arguments,
+        broadcast.
 
     Raises
     ------
     InvalidInput
         For a ratio or product that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    R. D. Evans, *The Atomic Nucleus* (1955), ch. 12 §2.
 
     Examples
     --------
@@ -286,6 +327,8 @@ def two_branch_energy(
     There the projectile is as fast in the centre-of-mass frame as the frame itself. A light projectile that takes up
     energy has two branches from the threshold to here; a heavy one that releases energy has them beyond.
 
+    Units: the energy is in those of `q_value`; ratios are without dimension.
+
     Parameters
     ----------
     mass_ratio : array_like
@@ -298,12 +341,16 @@ def two_branch_energy(
     Returns
     -------
     ndarray
-        Q m₄/(m₁ − m₄); NaN where there is no such energy.
+        Q m₄/(m₁ − m₄); NaN where there is no such energy. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For a ratio or product that is not positive, or shapes that do not broadcast.
+
+    References
+    ----------
+    R. D. Evans, *The Atomic Nucleus* (1955), ch. 12 §2.
 
     Examples
     --------
@@ -317,7 +364,9 @@ def two_branch_energy(
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
 class Moderation(Record):
-    """Averages over one elastic collision that is isotropic in the centre-of-mass frame.
+    """Averages over one elastic collision that is isotropic in the centre-of-mass frame, of the shape of the ratios.
+
+    Units: none: ratios and averages are without dimension.
 
     Attributes
     ----------
@@ -330,6 +379,10 @@ class Moderation(Record):
         ⟨ln(E₀/E₁)⟩ = 1 + ((1 − q)/q) ln(1 − q).
     mean_cosine : ndarray
         ⟨cos θ₁⟩ in the laboratory: 2m₁/3m₂, or 1 − (m₂/m₁)²/3 for a heavy projectile.
+
+    References
+    ----------
+    S. Glasstone, M. C. Edlund, *The Elements of Nuclear Reactor Theory* (1952), ch. VI.
 
     Examples
     --------
@@ -350,6 +403,8 @@ class Moderation(Record):
 def moderation(*, mass_ratio: ArrayLike) -> Moderation:
     """Averages over one elastic collision that is isotropic in the centre-of-mass frame.
 
+    Units: none: ratios and averages are without dimension.
+
     Parameters
     ----------
     mass_ratio : array_like
@@ -358,11 +413,16 @@ def moderation(*, mass_ratio: ArrayLike) -> Moderation:
     Returns
     -------
     Moderation
+        Of the shape of the ratios.
 
     Raises
     ------
     InvalidInput
         For a ratio that is not positive.
+
+    References
+    ----------
+    S. Glasstone, M. C. Edlund, *The Elements of Nuclear Reactor Theory* (1952), ch. VI.
 
     Examples
     --------

@@ -50,6 +50,8 @@ def scattering_events(
 ) -> dict[str, NDArray[Any]]:
     """The very events that `monte_carlo` counts, one by one.
 
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
+
     Parameters
     ----------
     potential, beam_energy, masses, b_max, seed, threads, progress
@@ -64,7 +66,7 @@ def scattering_events(
 
     Returns
     -------
-    dict of ndarray
+    dict of ndarray, shape (n_events,)
         Of each event ``"event"`` (its index), ``"component"`` (which of the spectrum's energies), ``"beam_energy"`` and
         ``"incidence"`` (of the projectile before: energy, and angle from the axis), ``"deflection"`` (ψ, signed and not
         folded), and the quantities that `monte_carlo` can count; NaN of a captured one, except
@@ -79,6 +81,10 @@ def scattering_events(
     Interrupted
         After Ctrl-C. The file holds the events written until then, from ``first_event`` without a gap; the message
         says how many.
+
+    References
+    ----------
+    J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011), for the random numbers.
 
     Examples
     --------

@@ -55,7 +55,7 @@ class Foil:
         Between an ion and an atom: the name of a screening function (``"zbl"``, ``"moliere"``, ``"kr_c"``,
         ``"lenz_jensen"``, ``"thomas_fermi"``; see `potentials.ScreenedCoulomb.between`), ``"coulomb"`` for bare nuclei,
         or V(r) itself in eV and Å, of each element in turn where there are several.
-    stopping : {"joined", "bethe", "lindhard_scharff", "none"} or tuple of array_like, optional
+    stopping : {"joined", "bethe", "lindhard_scharff", "none"} or two array_like, shape (P,), optional
         What electrons take. ``"lindhard_scharff"``: in proportion to the speed, right for slow ions. ``"bethe"``: right
         for fast ones, 2mv² ≫ I, continued in proportion to the speed below its greatest value. ``"joined"``, for all
         energies: 1/S is the sum of both inverses, with Bethe's logarithm continued as Biersack and Haggmark did; within
@@ -187,7 +187,7 @@ class Foil:
             forced collision ``"cm_angle"``; one name, several, or ``{name: edges}``, where a whole number in place of
             edges is a number of equal bins, and `Bins` are bins by name.
         bins : int, Bins, array_like or mapping, optional
-            Of each tally that is given by its name only: as of `monte_carlo`.
+            Of each tally that is given by its name only: as of `monte_carlo`. Edges have shape (B + 1,).
         incidence : float, optional
             Angle between the beam and the foil's normal.
         lowest_energy : float, optional
@@ -328,6 +328,11 @@ class Foil:
         energy : array_like
             In eV.
 
+        Returns
+        -------
+        ndarray
+            Of the shape of `energy`, in eV/µm.
+
         Raises
         ------
         InvalidInput
@@ -353,6 +358,11 @@ class Foil:
             In eV.
         lowest_energy : float
             In eV, where the way ends.
+
+        Returns
+        -------
+        ndarray
+            Of the shape of `energy`, in µm.
 
         Raises
         ------

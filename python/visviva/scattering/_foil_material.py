@@ -79,7 +79,7 @@ class Ion:
     Parameters
     ----------
     atomic_number : float
-        Of its nucleus.
+        Of its nucleus, without dimension.
     mass : float
         In u.
 
@@ -166,7 +166,7 @@ class Material:
 
     @property
     def number_density(self) -> float:
-        """Atoms in a cubic ångström."""
+        """Atoms in a cubic ångström, in units of Å⁻³."""
         parts = np.array(self.fraction) / sum(self.fraction)
         return float(self.density * 0.602214076 / (parts @ np.array(self.mass)))
 

@@ -134,6 +134,10 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
     n_events : int
         Of the run.
 
+    References
+    ----------
+    F. James, *Statistical Methods in Experimental Physics*, 2nd ed. (2006), ch. 4 (binomial and multinomial counts).
+
     Examples
     --------
     >>> import visviva as vv
@@ -159,21 +163,39 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
 
     @property
     def counts(self) -> NDArray[np.uint64]:
-        """Events per bin."""
+        """Events per bin, shape (B,), numbers without dimension."""
         return self.sums[1:-1, 0]
 
     @property
     def underflow(self) -> int:
-        """Events below the first edge."""
+        """Events below the first edge.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out["transmitted_angle"].underflow
+        0
+        """
         return int(self.sums[0, 0])
 
     @property
     def overflow(self) -> int:
-        """Events above the last edge."""
+        """Events above the last edge.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out["transmitted_angle"].overflow
+        0
+        """
         return int(self.sums[-1, 0])
 
     def values(self) -> NDArray[np.float64]:
         """How many ions each bin stands for: counts, or with a forced collision the sums of their weights.
+
+        Arrays of shape (B,), without dimension.
 
         Examples
         --------
@@ -186,7 +208,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[0])
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of these: the number of events is fixed.
+        """Variances of these, shape (B,), without dimension: the number of events is fixed.
 
         Examples
         --------
@@ -238,13 +260,17 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         Transmitted, reflected, stopped, and missed ones (without the collision that was to be forced): events, weights
         and squares, the last two in `units`.
     units : tuple of float
-        Of weights and of squares; 1 where nothing is forced.
+        Of weights and of squares, without dimension; 1 where nothing is forced.
     tallies : tuple of FoilTally
         In the order asked for.
     collisions_across : float
         How many collisions a straight way through takes on the average, at the beam's energy.
     table_error : float
         The largest error of sin²(ψ/2) of the tables, of all places that were tried.
+
+    References
+    ----------
+    F. James, *Statistical Methods in Experimental Physics*, 2nd ed. (2006), ch. 4 (binomial and multinomial counts).
 
     Examples
     --------
@@ -271,7 +297,15 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
 
     @property
     def n_events(self) -> int:
-        """Ions that came."""
+        """Ions that came.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out.n_events
+        1000
+        """
         return sum(end - first for _, first, end in self.events)
 
     @property
@@ -282,6 +316,13 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         ------
         InvalidInput
             If the events are of several seeds.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out.next_event
+        1000
         """
         if len({seed for seed, _, _ in self.events}) > 1:
             raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
@@ -304,7 +345,15 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
 
     @property
     def missed(self) -> int:
-        """Events whose way ended before the collision that was to be forced; 0 where nothing is forced."""
+        """Events whose way ended before the collision that was to be forced; 0 where nothing is forced.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out.missed
+        0
+        """
         return int(self.sums[3, 0])
 
     def fraction(self, fate: str) -> Fraction:

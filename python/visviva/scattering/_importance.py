@@ -32,6 +32,8 @@ class Strata:
     In each ring b² is uniform, and each of its events stands for equally many of a beam that fills the disc evenly.
     Even a ring of 1e-150 of the radius of the disc keeps the relative precision of impact parameters.
 
+    Units: radii in those of the potential's lengths; fractions are without dimension.
+
     Parameters
     ----------
     edges : array_like, shape (S + 1,)
@@ -43,6 +45,10 @@ class Strata:
     ------
     InvalidInput
         For what are no such numbers.
+
+    References
+    ----------
+    J. M. Hammersley, D. C. Handscomb, *Monte Carlo Methods* (1964), ch. 5 (stratified and importance sampling).
 
     Examples
     --------
@@ -73,7 +79,7 @@ class Strata:
 
     @property
     def weights(self) -> NDArray[np.float64]:
-        """How many events of the plain disc one of each ring stands for, shape (S,).
+        """How many events of the plain disc one of each ring stands for, shape (S,), without dimension.
 
         The ring's part of the disc by its part of the 2⁵³ draws: exactly those that lead there, so nothing is biased by
         rounding a fraction.
@@ -84,6 +90,8 @@ class Strata:
     @known_keywords
     def logarithmic(n: int, smallest: float, b_max: float) -> Strata:
         """Make rings whose radii have equal ratios, with equal parts of the events: as many for each decade of b.
+
+        Units: radii in those of the potential's lengths; fractions are without dimension.
 
         Parameters
         ----------
@@ -135,6 +143,10 @@ class LargeAngles:
     ------
     InvalidInput
         For what are no such numbers.
+
+    References
+    ----------
+    J. M. Hammersley, D. C. Handscomb, *Monte Carlo Methods* (1964), ch. 5 (stratified and importance sampling).
 
     Examples
     --------

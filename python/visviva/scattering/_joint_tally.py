@@ -31,11 +31,13 @@ __all__ = ["JointTally"]
 class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
+
     Attributes
     ----------
     name : tuple of str
         The quantities.
-    edges : tuple of ndarray
+    edges : tuple of ndarray, shapes (B₁ + 1,) and (B₂ + 1,)
         Strictly increasing, of each quantity.
     flow : ndarray of uint64, shape (B₁ + 2, B₂ + 2)
         Events: along each axis below the first edge, the bins, and above the last edge.
@@ -47,6 +49,10 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
         Which events: sorted (seed, first, end) with end excluded.
     by_stratum : ndarray of uint64, shape (S, (B₁ + 2)·(B₂ + 2) + 1), or None
         With `importance` the events of each stratum: those of ``flow``, row by row, and captured.
+
+    References
+    ----------
+    F. James, *Statistical Methods in Experimental Physics*, 2nd ed. (2006), ch. 4 (binomial and multinomial counts).
 
     Examples
     --------
@@ -71,11 +77,13 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
 
     @property
     def counts(self) -> NDArray[np.uint64]:
-        """Events in the bins, shape (B₁, B₂)."""
+        """Events in the bins, shape (B₁, B₂), numbers without dimension."""
         return self.flow[1:-1, 1:-1]
 
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
+
+        Shape (B₁, B₂), without dimension.
 
         Examples
         --------
@@ -89,7 +97,7 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
         return self._weighted(1)
 
     def variances(self) -> NDArray[np.float64]:
-        """Variances of the values: as `Tally.variances`.
+        """Variances of the values, shape (B₁, B₂), without dimension: as `Tally.variances`.
 
         Examples
         --------
@@ -158,7 +166,8 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
         Returns
         -------
         xarray.Dataset
-            As that of `Tally.to_xarray`, with two axes; with `importance` ``values`` and ``variances``, too.
+            As that of `Tally.to_xarray`, with two axes; with `importance` ``values`` and ``variances``, too. Columns
+            have shape (B₁, B₂).
 
         Raises
         ------

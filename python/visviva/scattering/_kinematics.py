@@ -23,6 +23,8 @@ def lab_angle(
 ) -> NDArray[np.float64]:
     """Laboratory angle of the projectile after a collision.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -40,12 +42,18 @@ def lab_angle(
     -------
     ndarray
         tan θ₁ = sin ψ / (γ + cos ψ), with the right quadrant; in [0, π]. γ is m₁/m₂, over √(1 + 2Q/μu²) with a Q-value.
+        Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd ed., §3.11; with a Q-value: R. D. Evans, *The Atomic
+    Nucleus* (1955), ch. 12 §2.
 
     Examples
     --------
@@ -70,6 +78,8 @@ def recoil_angle(
 ) -> NDArray[np.float64]:
     """Laboratory angle of the target after a collision, on the other side of the beam.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -86,13 +96,18 @@ def recoil_angle(
     Returns
     -------
     ndarray
-        (π − ψ)/2 of an elastic collision; in [0, π].
+        (π − ψ)/2 of an elastic collision; in [0, π]. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -115,6 +130,8 @@ def opening_angle(
 ) -> NDArray[np.float64]:
     """Angle between projectile and target after a collision, θ₁ + θ₂.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -131,13 +148,19 @@ def opening_angle(
     Returns
     -------
     ndarray
-        In [0, π]; π/2 for equal masses and no Q, more for a light projectile, less for a heavy one.
+        In [0, π]; π/2 for equal masses and no Q, more for a light projectile, less for a heavy one. Of the shape of the
+        arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -162,6 +185,8 @@ def lab_jacobian(
 
     A cross section in the laboratory is the one of the centre-of-mass frame times this, summed over the branches.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -178,13 +203,19 @@ def lab_jacobian(
     Returns
     -------
     ndarray
-        dΩ/dΩ₁ = (1 + γ² + 2γ cos ψ)^(3/2) / |1 + γ cos ψ|; infinite at the greatest laboratory angle.
+        dΩ/dΩ₁ = (1 + γ² + 2γ cos ψ)^(3/2) / |1 + γ cos ψ|; infinite at the greatest laboratory angle. Of the shape of
+        the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd ed., §3.11; with a Q-value: R. D. Evans, *The Atomic
+    Nucleus* (1955), ch. 12 §2.
 
     Examples
     --------
@@ -207,6 +238,8 @@ def recoil_jacobian(
 ) -> NDArray[np.float64]:
     """Solid angle of the centre-of-mass frame per solid angle of the target in the laboratory.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     cm_angle : array_like
@@ -223,13 +256,18 @@ def recoil_jacobian(
     Returns
     -------
     ndarray
-        dΩ/dΩ₂, 4 cos θ₂ of an elastic collision.
+        dΩ/dΩ₂, 4 cos θ₂ of an elastic collision. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------
@@ -252,6 +290,8 @@ def cm_angle(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre-of-mass angles that lead to a laboratory angle of the projectile.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     lab_angle : array_like
@@ -270,13 +310,18 @@ def cm_angle(
     tuple of ndarray
         θ₁ + asin(γ sin θ₁), and for γ > 1 also π + θ₁ − asin(γ sin θ₁); γ is m₁/m₂, over √(1 + 2Q/μu²) with a Q-value.
         NaN where there is no such angle: beyond asin(1/γ) for γ > 1, beyond π/2 for γ = 1, and in the second array for
-        γ ≤ 1.
+        γ ≤ 1. Each of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd ed., §3.11; with a Q-value: R. D. Evans, *The Atomic
+    Nucleus* (1955), ch. 12 §2.
 
     Examples
     --------
@@ -301,6 +346,8 @@ def cm_angle_from_recoil(
 ) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     """Centre-of-mass angles that lead to a laboratory angle of the target.
 
+    Units: angles in radians; ratios and parts are without dimension, energies in one unit, any.
+
     Parameters
     ----------
     recoil_angle : array_like
@@ -317,13 +364,19 @@ def cm_angle_from_recoil(
     Returns
     -------
     tuple of ndarray
-        π − 2θ₂ of an elastic collision; with a Q-value there may be a second. NaN where there is no such angle.
+        π − 2θ₂ of an elastic collision; with a Q-value there may be a second. NaN where there is no such angle. Each of
+        the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For an angle outside [0, π], a ratio, energy or product that is not positive, an energy below the threshold,
         which the message gives, or shapes that do not broadcast.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §17; with a Q-value: R. D. Evans, *The Atomic Nucleus* (1955),
+    ch. 12 §2.
 
     Examples
     --------

@@ -64,6 +64,8 @@ def monte_carlo(
     direction, 5 for the azimuth of the plane of scattering, 6 for the channel; so nothing that is asked for beside
     changes the others.
 
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -94,7 +96,7 @@ def monte_carlo(
     bins : int, Bins, array_like or mapping
         Of each tally that is given by its name only: a number of equal bins over all values, up to 65536; `Bins`;
         edges; or ``{name: any of these}``, with 180 equal bins of a quantity that is not among them. Values below the
-        first and above the last edge are counted too, as ``underflow`` and ``overflow``.
+        first and above the last edge are counted too, as ``underflow`` and ``overflow``. Edges have shape (B + 1,).
     threads : int, optional
         By default ``VISVIVA_THREADS``, else all cores.
     first_event : int

@@ -20,12 +20,30 @@ class OfEvents:
 
     @property
     def n_events(self) -> int:
-        """Events in all."""
+        """Events in all.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["cm_angle"].n_events
+        1000
+        """
         return sum(end - first for _, first, end in self.events)
 
     @property
     def b_max(self) -> float:
-        """Radius of the disc of impact parameters."""
+        """Radius of the disc of impact parameters, in the units of the potential's lengths.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run["cm_angle"].b_max
+        1.0
+        """
         return self.beam.b_max
 
     def __radd__(self, other: int) -> Self:

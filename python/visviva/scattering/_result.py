@@ -42,6 +42,8 @@ _FORMAT, _VERSION = "visviva scattering", 5
 class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
 
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
+
     Attributes
     ----------
     beam : Beam
@@ -51,6 +53,10 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         Which events: sorted (seed, first, end) with end excluded.
     tallies : tuple of Tally or JointTally
         In the order asked for; one of two quantities has the tuple of their names as its name.
+
+    References
+    ----------
+    J. K. Salmon et al., *Parallel random numbers: as easy as 1, 2, 3*, SC'11 (2011), for the random numbers.
 
     Examples
     --------
@@ -68,22 +74,58 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
 
     @property
     def potential(self) -> Potential:
-        """V(r)."""
+        """V(r).
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run.potential
+        HardSphere(radius=1.0)
+        """
         return self.beam.potential
 
     @property
     def beam_energy(self) -> float | Spectrum:
-        """Energy of the projectile in the laboratory."""
+        """Energy of the projectile in the laboratory, in the units of the potential's energies.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run.beam_energy
+        1.0
+        """
         return self.beam.beam_energy
 
     @property
     def masses(self) -> tuple[float, float]:
-        """Projectile and target."""
+        """Projectile and target, in the same units, whichever those are.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run.masses
+        (1.0, 4.0)
+        """
         return self.beam.masses
 
     @property
     def smallest_angle(self) -> float:
-        """The deflection at the edge of the disc, in the centre-of-mass frame: see `Beam`."""
+        """The deflection at the edge of the disc, in the centre-of-mass frame, in radians: see `Beam`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.Coulomb(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> round(run.smallest_angle, 9)
+        1.117198631
+        """
         return self.beam.smallest_angle
 
     @property
@@ -94,6 +136,14 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         ------
         InvalidInput
             If the events are of several seeds.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> run.next_event
+        1000
         """
         if len({seed for seed, _, _ in self.events}) > 1:
             raise InvalidInput("next_event", "expected events of one seed, got several; see .events")

@@ -25,6 +25,8 @@ _FRAMES = ("cm", "lab", "recoil")
 def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: ArrayLike) -> NDArray[np.float64]:
     """Deflection by a Coulomb centre, 2 atan(k / 2Eb).
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Parameters
     ----------
     potential : Coulomb
@@ -37,12 +39,16 @@ def rutherford_angle(potential: Potential, *, energy: float, impact_parameter: A
     Returns
     -------
     ndarray
-        Positive for repulsion, negative for attraction; ±π head-on.
+        Positive for repulsion, negative for attraction; ±π head-on. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For another potential, an energy that is not positive, or a negative impact parameter.
+
+    References
+    ----------
+    E. Rutherford, Phil. Mag. 21 (1911) 669; L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §19.
 
     Examples
     --------
@@ -60,6 +66,8 @@ def rutherford_closest_approach(
 ) -> NDArray[np.float64]:
     """Distance of closest approach to a Coulomb centre, κ + √(κ² + b²) with κ = k/2E.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Parameters
     ----------
     potential : Coulomb
@@ -72,12 +80,16 @@ def rutherford_closest_approach(
     Returns
     -------
     ndarray
-        Without cancellation for attraction.
+        Without cancellation for attraction. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         As `rutherford_angle`.
+
+    References
+    ----------
+    E. Rutherford, Phil. Mag. 21 (1911) 669; L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §19.
 
     Examples
     --------
@@ -93,6 +105,8 @@ def rutherford_closest_approach(
 def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -> NDArray[np.float64]:
     """Impact parameter of a scattering angle, |k|/2E · cot(ψ/2).
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Parameters
     ----------
     potential : Coulomb
@@ -105,12 +119,16 @@ def rutherford_impact_parameter(potential: Potential, *, energy: float, angle: A
     Returns
     -------
     ndarray
-        Infinite at angle 0.
+        Infinite at angle 0. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For another potential, an energy that is not positive, or an angle outside [0, π].
+
+    References
+    ----------
+    E. Rutherford, Phil. Mag. 21 (1911) 669; L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §19.
 
     Examples
     --------
@@ -133,6 +151,8 @@ def rutherford_cross_section(
 ) -> NDArray[np.float64]:
     """Differential cross section dσ/dΩ of Rutherford scattering.
 
+    Units: energies and lengths are those of the potential, angles in radians.
+
     Parameters
     ----------
     potential : Coulomb
@@ -150,12 +170,16 @@ def rutherford_cross_section(
     -------
     ndarray
         Area per steradian: (k/4E)² / sin⁴(ψ/2), with the jacobian of the frame, both branches together. Infinite at
-        angle 0 (90° for recoils); 0 where no projectile goes.
+        angle 0 (90° for recoils); 0 where no projectile goes. Of the shape of the arguments, broadcast.
 
     Raises
     ------
     InvalidInput
         For another potential, an energy or ratio that is not positive, or an angle out of range.
+
+    References
+    ----------
+    E. Rutherford, Phil. Mag. 21 (1911) 669; L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §19.
 
     Examples
     --------

@@ -24,12 +24,19 @@ __all__ = ["Glory", "Orbit", "Rainbow", "glories", "impact_parameter", "orbiting
 class Rainbow:
     """An extremum of ψ(b): the cross section is infinite at its angle, beyond which its branches do not go.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Attributes
     ----------
     impact_parameter : float
         b, where dψ/db = 0.
     angle : float
         ψ there, signed and not folded.
+
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
 
     Examples
     --------
@@ -48,6 +55,8 @@ class Rainbow:
 class Glory:
     """An impact parameter other than 0 that leads straight on or straight back: ψ = kπ.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Attributes
     ----------
     impact_parameter : float
@@ -56,6 +65,11 @@ class Glory:
         ψ = kπ: straight on for even k, straight back for odd.
     derivative : float
         dψ/db.
+
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
 
     Examples
     --------
@@ -80,6 +94,8 @@ class Glory:
 class Orbit:
     """A circular orbit at the top of a barrier, which impact parameters near its own approach.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Attributes
     ----------
     impact_parameter : float
@@ -88,6 +104,11 @@ class Orbit:
         Of the orbit; 0 where there is none but at the center, as for −C/r².
     captures : bool
         Whether what comes with less falls into the center.
+
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
 
     Examples
     --------
@@ -106,6 +127,8 @@ class Orbit:
 def rainbows(potential: Potential, *, energy: float) -> tuple[Rainbow, ...]:
     """Extrema of the deflection function, from the smallest impact parameter on.
 
+    Units: those of the potential, energies and lengths; angles in radians.
+
     Parameters
     ----------
     potential : Potential
@@ -123,6 +146,11 @@ def rainbows(potential: Potential, *, energy: float) -> tuple[Rainbow, ...]:
     InvalidInput
         As `deflect`.
 
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
+
     Examples
     --------
     >>> import visviva as vv
@@ -137,6 +165,8 @@ def rainbows(potential: Potential, *, energy: float) -> tuple[Rainbow, ...]:
 @known_keywords
 def glories(potential: Potential, *, energy: float) -> tuple[Glory, ...]:
     """Impact parameters other than 0 that lead straight on or straight back.
+
+    Units: those of the potential, energies and lengths; angles in radians.
 
     Parameters
     ----------
@@ -156,6 +186,11 @@ def glories(potential: Potential, *, energy: float) -> tuple[Glory, ...]:
     InvalidInput
         As `deflect`.
 
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
+
     Examples
     --------
     >>> import visviva as vv
@@ -170,6 +205,8 @@ def glories(potential: Potential, *, energy: float) -> tuple[Glory, ...]:
 @known_keywords
 def orbiting(potential: Potential, *, energy: float) -> tuple[Orbit, ...]:
     """Circular orbits on barriers that can be approached from outside at an energy.
+
+    Units: those of the potential, energies and lengths; angles in radians.
 
     Parameters
     ----------
@@ -189,6 +226,11 @@ def orbiting(potential: Potential, *, energy: float) -> tuple[Orbit, ...]:
     InvalidInput
         As `deflect`.
 
+    References
+    ----------
+    K. W. Ford, J. A. Wheeler, Ann. Phys. 7 (1959) 259; H. Goldstein, C. Poole, J. Safko, *Classical Mechanics*, 3rd
+    ed., §3.10.
+
     Examples
     --------
     >>> import visviva as vv
@@ -203,6 +245,8 @@ def orbiting(potential: Potential, *, energy: float) -> tuple[Orbit, ...]:
 @known_keywords
 def impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -> NDArray[np.float64]:
     """All impact parameters that lead to an angle from the beam, whole turns and either side included.
+
+    Units: those of the potential, energies and lengths; angles in radians.
 
     Parameters
     ----------
@@ -223,6 +267,10 @@ def impact_parameter(potential: Potential, *, energy: float, angle: ArrayLike) -
     ------
     InvalidInput
         For an angle out of range, and as `deflect`.
+
+    References
+    ----------
+    L. D. Landau, E. M. Lifshitz, *Mechanics*, 3rd ed., §18.
 
     Examples
     --------

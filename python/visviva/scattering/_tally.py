@@ -33,6 +33,8 @@ _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 class CrossSection(NamedTuple):
     """A cross section by bin and its standard error; NaN in a bin that the beam does not reach.
 
+    Both have shape (B,), and are in the units of b_max² per steradian for angles, else over those of the quantity.
+
     Examples
     --------
     >>> import visviva as vv
@@ -56,6 +58,8 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
+
+    Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
 
     Attributes
     ----------
@@ -86,6 +90,10 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     by_stratum : ndarray of uint64, shape (S, B + 3), or None
         With `importance` the events of each stratum: below the first edge, in the bins, above the last, and captured.
 
+    References
+    ----------
+    F. James, *Statistical Methods in Experimental Physics*, 2nd ed. (2006), ch. 4 (binomial and multinomial counts).
+
     Examples
     --------
     >>> import visviva as vv
@@ -115,6 +123,8 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
 
+        Shape (B,), without dimension.
+
         Examples
         --------
         >>> import visviva as vv
@@ -129,7 +139,8 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     def variances(self) -> NDArray[np.float64]:
         """Variances of the values, n·(1 − n/N), binomial: the number N of events is fixed.
 
-        With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all weights are 1.
+        Shape (B,), without dimension. With `importance` Σ w² n − (Σ w n)²/N, multinomial, which is the same where all
+        weights are 1.
 
         Examples
         --------
@@ -150,7 +161,7 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         -------
         tuple of ndarray, shape (B,)
             Lower ends μ with P(N ≥ n; μ) = 15.87 %, 0 where nothing was counted; upper ends, P(N ≤ n; μ) = 15.87 %:
-            about n ± √n where counts are large, [0, 1.84] where there is none.
+            about n ± √n where counts are large, [0, 1.84] where there is none. Numbers without dimension.
 
         Raises
         ------
@@ -184,6 +195,7 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         Returns
         -------
         ndarray, shape (B,)
+            Numbers without dimension.
 
         Raises
         ------
@@ -250,7 +262,8 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         Returns
         -------
         CrossSection
-            (value, error): counts / n_events · π b_max², per steradian for angles, else per unit of the quantity.
+            (value, error): counts / n_events · π b_max², per steradian for angles, else per unit of the quantity;
+            shape (B,), in the units of b_max².
 
         Raises
         ------
@@ -340,7 +353,7 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         -------
         xarray.Dataset
             The ends of the bins are the coordinates ``<name>_low`` and ``<name>_high``; what is outside of them and
-            what was captured are attributes. Angles are in radians.
+            what was captured are attributes. Angles are in radians. Each column has shape (B,).
 
         Raises
         ------

@@ -45,8 +45,9 @@ class Verdict:
     told : str
         The refusal, the ending, or what is wrong.
     position_error, energy_error : float
-        Relative to the size of the motion and of the energies; NaN where they are not known.
+        Relative to the size of the motion and of the energies, without dimension; NaN where they are not known.
     seconds : float
+        What it took, in seconds.
 
     Examples
     --------

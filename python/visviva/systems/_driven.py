@@ -30,6 +30,8 @@ def rod(
 
     Jacobi's integral m (ṙ² − r² Ω²)/2 is conserved, and is no energy: the motor gives what the bead gains.
 
+    Units: those of the caller, one consistent system; angles in radians.
+
     Parameters
     ----------
     m, Omega : float
@@ -84,6 +86,8 @@ def hoop(
 
     L = m R² (θ̇² + Ω² sin² θ)/2 + m g R cos θ. Jacobi's integral is conserved; T + V exceeds it by m R² Ω² sin² θ. Above
     Ω² = g/R the bead is at rest where cos θ = g/(R Ω²), and oscillates about that with Ω sin θ.
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------
@@ -142,6 +146,8 @@ def moving_pivot(
 
     L = m l² θ̇²/2 + m l [(g + ÿ) cos θ − ẍ sin θ], up to a derivative with respect to time.
 
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
+
     Parameters
     ----------
     g, l, m : float
@@ -197,6 +203,8 @@ def kapitza(
 
     L = m l² θ̇²/2 + m l (g + ÿ) cos θ, up to a derivative with respect to time. The upper place is stable if
     a² Ω² > 2 g l (for a ≪ l).
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------

@@ -36,6 +36,8 @@ def charged_particle(
     It circles at e B/m and drifts with E × B/B². Momenta are m ṙ + e A. The fields are six parameters,
     ``Ex`` to ``Bz``.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     m, charge : float
@@ -96,6 +98,8 @@ def central_force(
     """Motion in the plane under a central force: L = m (ṙ² + r² φ̇²)/2 − V(r).
 
     The momentum of φ is conserved.
+
+    Units: those of the caller, one consistent system; angles in radians.
 
     Parameters
     ----------
@@ -167,6 +171,8 @@ def henon_heiles(
     """System of Hénon and Heiles: H = (p_x² + p_y²)/2 + (x² + y²)/2 + x² y − y³/3.
 
     Bound below H = 1/6, where most of its motions are chaotic; regular below about 1/12.
+
+    Units: none: it is written without dimension.
 
     Parameters
     ----------

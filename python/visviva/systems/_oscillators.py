@@ -29,6 +29,8 @@ def oscillator(
 ) -> Lagrangian:
     """Harmonic oscillator: L = m ẋ²/2 − k x²/2.
 
+    Units: those of the caller, one consistent system.
+
     Parameters
     ----------
     k, m : float
@@ -76,6 +78,8 @@ def constant_force(
     velocity: ArrayLike = (0.0,),
 ) -> Lagrangian:
     """Constant force: L = m ẋ²/2 + F x.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------
@@ -128,6 +132,8 @@ def coupled_oscillators(
     """Equal oscillators in a row, coupled to their neighbors: L = Σ (m ẋᵢ² − k xᵢ²)/2 − Σ coupling (xᵢ₊₁ − xᵢ)²/2.
 
     Modes have ω² = [k + 4 · coupling · sin²(π j/2n)]/m with j = 0 … n − 1.
+
+    Units: those of the caller, one consistent system.
 
     Parameters
     ----------

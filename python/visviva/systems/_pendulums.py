@@ -30,6 +30,8 @@ def pendulum(
 ) -> Lagrangian:
     """Plane pendulum: L = m l² θ̇²/2 + m g l cos θ.
 
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
+
     Parameters
     ----------
     g, l, m : float
@@ -85,6 +87,8 @@ def double_pendulum(
 
     L = (m₁+m₂) l₁² θ̇₁²/2 + m₂ l₂² θ̇₂²/2 + m₂ l₁ l₂ θ̇₁ θ̇₂ cos(θ₁−θ₂) + (m₁+m₂) g l₁ cos θ₁ + m₂ g l₂ cos θ₂.
 
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
+
     Parameters
     ----------
     g, l1, l2, m1, m2 : float
@@ -139,6 +143,8 @@ def spherical_pendulum(
     """Spherical pendulum: L = m l² (θ̇² + φ̇² sin² θ)/2 + m g l cos θ.
 
     The momentum of φ is conserved. The coordinates are singular on the vertical, where a start is refused.
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------
@@ -196,6 +202,8 @@ def chain(
     """Chain of n equal masses on equal links: a pendulum of n pendulums.
 
     L = Σᵢ m |ṙᵢ|²/2 + m g l (n+1−i) cos θᵢ with ṙᵢ = Σⱼ≤ᵢ l θ̇ⱼ (cos θⱼ, sin θⱼ).
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------
@@ -262,6 +270,8 @@ def spring_pendulum(
 ) -> Lagrangian:
     """Pendulum on a spring: L = m (ṙ² + r² θ̇²)/2 + m g r cos θ − k (r − l)²/2.
 
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
+
     Parameters
     ----------
     g, k, l, m : float
@@ -319,6 +329,8 @@ def cart_pendulum(
     """Pendulum on a cart that rolls freely: L = (M + m) ẋ²/2 + m l ẋ θ̇ cos θ + m l² θ̇²/2 + m g l cos θ.
 
     The momentum of x is conserved.
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------

@@ -33,6 +33,8 @@ def atwood(
     ``reactions`` of a run is the force of the string along either coordinate: minus its tension 2 m₁ m₂ g/(m₁ + m₂), as
     it pulls up and coordinates go down.
 
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
+
     Parameters
     ----------
     g, m1, m2, length : float
@@ -90,6 +92,8 @@ def swinging_atwood(
 
     L = (M + m) ṙ²/2 + m r² θ̇²/2 − g r (M − m cos θ) with the counterweight M. For M = 3 m it is integrable, else it may
     be chaotic.
+
+    Units: meters, kilograms and seconds, as the default of g is, or any others that go together; angles in radians.
 
     Parameters
     ----------
