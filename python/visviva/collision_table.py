@@ -56,7 +56,7 @@ class CollisionTable(Exported[str], Shown):
     >>> import visviva as vv
     >>> balls = vv.Particles([1.0, 1.0], [[-2.0, 0, 0], [2.0, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0]], radius=0.5)
     >>> table = vv.Scene(balls).run(t=4.0, collisions="bounce").collisions
-    >>> table.t.tolist(), table.speed.tolist(), table.position.tolist()
+    >>> table.t.round(12).tolist(), table.speed.tolist(), table.position.tolist()
     ([1.5], [2.0], [[0.0, 0.0, 0.0]])
     """
 
