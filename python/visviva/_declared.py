@@ -233,8 +233,8 @@ class Declared:
         return type(self)(**new)
 
 
-def make(entry: dict[str, Any], base: type[Any], module: str, law: str, namespace: dict[str, Any]) -> type[Any]:
-    """The class of an entry of the registry; ``law`` is what its formula is called in the documentation."""
+def make(entry: dict[str, Any], base: type[Any], module: str, namespace: dict[str, Any]) -> type[Any]:
+    """The class of an entry of the registry."""
     parameters = tuple(Parameter(**(row | {"choices": tuple(row["choices"])})) for row in entry["parameters"])
     made = make_dataclass(
         entry["class_name"],
@@ -248,7 +248,7 @@ def make(entry: dict[str, Any], base: type[Any], module: str, law: str, namespac
             "_at_rest": entry["at_rest"],
             "_one_way": entry["one_way"],
             "_parameters": parameters,
-            "__doc__": _document(entry, parameters, law),
+            "__doc__": _document(entry, parameters),
         }
         | namespace,
         frozen=True,
@@ -260,8 +260,8 @@ def make(entry: dict[str, Any], base: type[Any], module: str, law: str, namespac
     return known_keywords(made)
 
 
-def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...], law: str) -> str:
-    lines = [f"{entry['summary'].rstrip('.')}: {law}{entry['formula']}.", ""]
+def _document(entry: dict[str, Any], parameters: tuple[Parameter, ...]) -> str:
+    lines = [f"{entry['summary'].rstrip('.')}: {entry['formula']}.", ""]
     if entry["notes"]:
         lines += [entry["notes"], ""]
     lines += ["Parameters", "----------"]

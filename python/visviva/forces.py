@@ -162,7 +162,7 @@ class Force(Declared):
         return self._rescaled(length, mass, time)
 
 
-_BY_NAME = {entry["name"]: make(entry, Force, __name__, "", {}) for entry in _core.forces()}
+_BY_NAME = {entry["name"]: make(entry, Force, __name__, {}) for entry in _core.forces()}
 _CLASSES = {made.__name__: made for made in _BY_NAME.values()}
 globals().update(_CLASSES)
 __all__ = ["Force"]

@@ -346,7 +346,6 @@ _BY_NAME = {
         entry | {"notes": f"{entry['notes']} {_SHAPES}".strip()},
         Potential,
         __name__,
-        "",
         {"name": entry["name"], **_FURTHER.get(entry["name"], {})},
     )
     for entry in _core.potentials()

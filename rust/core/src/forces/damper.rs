@@ -38,8 +38,12 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     parameters: &[
         Parameter::new("i", Kind::Indices, "The body at one end"),
         Parameter::new("j", Kind::Indices, "The body at the other end"),
-        Parameter::new("c", Kind::Numbers(Sign::NotNegative), "The force over the rate of the distance")
-            .of(COEFFICIENT),
+        Parameter::new(
+            "c",
+            Kind::Numbers(Sign::NotNegative),
+            "The force over the rate of the distance, or shape (M,): of each of M pairs",
+        )
+        .of(COEFFICIENT),
     ],
     make: |values| Ok(Arc::new(Dampers::new(values)?)),
 };

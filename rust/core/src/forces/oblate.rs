@@ -42,15 +42,24 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     parameters: &[
         Parameter::new("body", Kind::Indices, "The oblate body, or bodies"),
         Parameter::number("G", CONSTANT, "The gravitational constant"),
-        Parameter::new("J2", Kind::Numbers(Sign::Any), "The second zonal harmonic"),
+        Parameter::new(
+            "J2",
+            Kind::Numbers(Sign::Any),
+            "The second zonal harmonic, or shape (M,): of each of M bodies",
+        ),
         Parameter::new(
             "radius",
             Kind::Numbers(Sign::Positive),
-            "The equatorial radius that J2 and J4 refer to",
+            "The equatorial radius that J2 and J4 refer to, or shape (M,): of each of M bodies",
         )
         .of([1, 0, 0]),
         Parameter::new("axis", Kind::Direction, "The direction of the axis of symmetry, of any length"),
-        Parameter::new("J4", Kind::Numbers(Sign::Any), "The fourth zonal harmonic").or(0.0),
+        Parameter::new(
+            "J4",
+            Kind::Numbers(Sign::Any),
+            "The fourth zonal harmonic, or shape (M,): of each of M bodies",
+        )
+        .or(0.0),
     ],
     make: |values| Ok(Arc::new(Oblate::new(values)?)),
 };

@@ -42,11 +42,19 @@ pub static DECLARATION: ForceDeclaration = Declaration {
     parameters: &[
         Parameter::new("i", Kind::Indices, "The body at one end"),
         Parameter::new("j", Kind::Indices, "The body at the other end"),
-        Parameter::new("k", Kind::Numbers(Sign::NotNegative), "The stiffness, force over extension")
-            .of(STIFFNESS),
-        Parameter::new("length", Kind::Numbers(Sign::NotNegative), "The length at rest")
-            .of([1, 0, 0])
-            .or(0.0),
+        Parameter::new(
+            "k",
+            Kind::Numbers(Sign::NotNegative),
+            "The stiffness, force over extension, or shape (M,): of each of M pairs",
+        )
+        .of(STIFFNESS),
+        Parameter::new(
+            "length",
+            Kind::Numbers(Sign::NotNegative),
+            "The length at rest, or shape (M,): of each of M pairs",
+        )
+        .of([1, 0, 0])
+        .or(0.0),
     ],
     make: |values| Ok(Arc::new(Springs::new(values)?)),
 };

@@ -23,13 +23,13 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::new("A", Kind::Number(Sign::NotNegative), "strength of the repulsion, energy")
+        Parameter::new("A", Kind::Number(Sign::NotNegative), "Strength of the repulsion, energy")
             .of([2, 1, -2]),
-        Parameter::positive("b", [-1, 0, 0], "inverse of its range"),
+        Parameter::positive("b", [-1, 0, 0], "Inverse of its range"),
         Parameter::new(
             "C",
             Kind::Number(Sign::NotNegative),
-            "strength of the attraction, energy times length^6",
+            "Strength of the attraction, energy times length^6",
         )
         .of([8, 1, -2]),
     ],

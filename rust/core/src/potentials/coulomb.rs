@@ -23,7 +23,7 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     parameters: &[Parameter::number(
         "k",
         [3, 1, -2],
-        "strength, energy times length; positive repels, negative attracts",
+        "Strength, energy times length; positive repels, negative attracts",
     )],
     make: held::<Coulomb>,
 };

@@ -47,10 +47,14 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::new("nodes", Kind::Table(Sign::Any), "the expression, as Custom writes it"),
-        Parameter::new("values", Kind::Table(Sign::Any), "of the parameters in it"),
-        Parameter::positive("length", [1, 0, 0], "the unit of r in it").or(1.0),
-        Parameter::positive("energy", [2, 1, -2], "the unit of its values").or(1.0),
+        Parameter::new("nodes", Kind::Table(Sign::Any), "The expression, as Custom writes it"),
+        Parameter::new(
+            "values",
+            Kind::Table(Sign::Any),
+            "Of the parameters in it, in the units `length` and `energy`",
+        ),
+        Parameter::positive("length", [1, 0, 0], "The unit of r in it").or(1.0),
+        Parameter::positive("energy", [2, 1, -2], "The unit of its values").or(1.0),
     ],
     make: |values| Ok(hold(Expressed::read(values)?, values)),
 };

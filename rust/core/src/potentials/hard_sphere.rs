@@ -20,7 +20,7 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     example: ">>> vv.potentials.HardSphere(radius=1.0).value([0.5, 1.0])\narray([inf,  0.])",
     at_rest: "",
     one_way: "",
-    parameters: &[Parameter::positive("radius", [1, 0, 0], "its radius; of two spheres, the sum of theirs")],
+    parameters: &[Parameter::positive("radius", [1, 0, 0], "Its radius; of two spheres, the sum of theirs")],
     make: held::<HardSphere>,
 };
 

@@ -22,8 +22,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::positive("epsilon", [2, 1, -2], "depth of the well, energy"),
-        Parameter::positive("sigma", [1, 0, 0], "distance at which V = 0"),
+        Parameter::positive("epsilon", [2, 1, -2], "Depth of the well, energy"),
+        Parameter::positive("sigma", [1, 0, 0], "Distance at which V = 0"),
     ],
     make: held::<LennardJones>,
 };

@@ -29,10 +29,10 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::positive("epsilon", [2, 1, -2], "depth of the well, energy"),
-        Parameter::positive("sigma", [1, 0, 0], "distance at which V = 0"),
-        Parameter::positive("n", [0, 0, 0], "exponent of the repelling term"),
-        Parameter::positive("m", [0, 0, 0], "exponent of the attracting term, less than n"),
+        Parameter::positive("epsilon", [2, 1, -2], "Depth of the well, energy"),
+        Parameter::positive("sigma", [1, 0, 0], "Distance at which V = 0"),
+        Parameter::positive("n", [0, 0, 0], "Exponent of the repelling term"),
+        Parameter::positive("m", [0, 0, 0], "Exponent of the attracting term, less than n"),
     ],
     make: |values| {
         check(values[2].number(), values[3].number())?;

@@ -23,9 +23,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::positive("depth", [2, 1, -2], "depth of the well, energy"),
-        Parameter::positive("a", [-1, 0, 0], "inverse of its width"),
-        Parameter::positive("r_e", [1, 0, 0], "distance of equilibrium"),
+        Parameter::positive("depth", [2, 1, -2], "Depth of the well, energy"),
+        Parameter::positive("a", [-1, 0, 0], "Inverse of its width"),
+        Parameter::positive("r_e", [1, 0, 0], "Distance of equilibrium"),
     ],
     make: held::<Morse>,
 };

@@ -35,13 +35,13 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::new("breaks", Kind::Table(Sign::NotNegative), "distances where pieces meet, ascending")
+        Parameter::new("breaks", Kind::Table(Sign::NotNegative), "Distances where pieces meet, ascending")
             .of([1, 0, 0]),
-        Parameter::new("coefficients", Kind::Table(Sign::Any), "energies, 14 for each piece").of([2, 1, -2]),
+        Parameter::new("coefficients", Kind::Table(Sign::Any), "Energies, 14 for each piece").of([2, 1, -2]),
         Parameter::new(
             "error",
             Kind::Number(Sign::NotNegative),
-            "the largest error that was found when it was made, relative to |V| + r |dV/dr|",
+            "The largest error that was found when it was made, relative to |V| + r |dV/dr|",
         )
         .or(0.0),
     ],

@@ -25,9 +25,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
         Parameter::number(
             "k",
             [3, 1, -2],
-            "strength, energy times length; positive repels, negative attracts",
+            "Strength, energy times length; positive repels, negative attracts",
         ),
-        Parameter::positive("a", [1, 0, 0], "scale length"),
+        Parameter::positive("a", [1, 0, 0], "Scale length"),
     ],
     make: held::<Plummer>,
 };

@@ -29,9 +29,13 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::new("k", Kind::Number(Sign::Any), "strength, energy times length^n; positive repels")
-            .depending(|values| [2.0 + values[1].number(), 1.0, -2.0]),
-        Parameter::positive("n", [0, 0, 0], "exponent"),
+        Parameter::new(
+            "k",
+            Kind::Number(Sign::Any),
+            "Strength, energy times length^n, so that its dimension depends on n; positive repels",
+        )
+        .depending(|values| [2.0 + values[1].number(), 1.0, -2.0]),
+        Parameter::positive("n", [0, 0, 0], "Exponent"),
     ],
     make: held::<PowerLaw>,
 };

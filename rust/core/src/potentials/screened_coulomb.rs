@@ -32,9 +32,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::number("k", [3, 1, -2], "product of the charges, energy times length"),
-        Parameter::positive("length", [1, 0, 0], "screening length"),
-        Parameter::new("screening", Kind::Choice(&NAMES), "name of phi").or(0.0),
+        Parameter::number("k", [3, 1, -2], "Product of the charges, energy times length"),
+        Parameter::positive("length", [1, 0, 0], "Screening length"),
+        Parameter::new("screening", Kind::Choice(&NAMES), "Name of phi").or(0.0),
     ],
     make: held::<ScreenedCoulomb>,
 };

@@ -30,9 +30,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::positive("k", [2, 1, -2], "energy at r = 0"),
-        Parameter::positive("radius", [1, 0, 0], "distance of the centers at contact"),
-        Parameter::positive("n", [0, 0, 0], "exponent, at least 2"),
+        Parameter::positive("k", [2, 1, -2], "Energy at r = 0"),
+        Parameter::positive("radius", [1, 0, 0], "Distance of the centers at contact"),
+        Parameter::positive("n", [0, 0, 0], "Exponent, at least 2"),
     ],
     make: |values| {
         check(values[2].number())?;

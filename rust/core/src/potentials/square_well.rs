@@ -22,8 +22,8 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::number("depth", [2, 1, -2], "depth of the well, energy"),
-        Parameter::positive("radius", [1, 0, 0], "its radius"),
+        Parameter::number("depth", [2, 1, -2], "Depth of the well, energy"),
+        Parameter::positive("radius", [1, 0, 0], "Its radius"),
     ],
     make: held::<SquareWell>,
 };

@@ -37,9 +37,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
     at_rest: "",
     one_way: "",
     parameters: &[
-        Parameter::new("r", Kind::Table(Sign::NotNegative), "distances, ascending, at least four")
+        Parameter::new("r", Kind::Table(Sign::NotNegative), "Distances, ascending, at least four")
             .of([1, 0, 0]),
-        Parameter::new("V", Kind::Table(Sign::Any), "potential energies there").of([2, 1, -2]),
+        Parameter::new("V", Kind::Table(Sign::Any), "Potential energies there").of([2, 1, -2]),
     ],
     make: |values| {
         check(values[0].table(), values[1].table())?;

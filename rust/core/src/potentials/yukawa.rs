@@ -25,9 +25,9 @@ pub static DECLARATION: PotentialDeclaration = Declaration {
         Parameter::number(
             "k",
             [3, 1, -2],
-            "strength at r << length, energy times length; positive repels, negative attracts",
+            "Strength at r << length, energy times length; positive repels, negative attracts",
         ),
-        Parameter::positive("length", [1, 0, 0], "screening length"),
+        Parameter::positive("length", [1, 0, 0], "Screening length"),
     ],
     make: held::<Yukawa>,
 };

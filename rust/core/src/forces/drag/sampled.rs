@@ -40,9 +40,9 @@ pub static DECLARATION: ForceDeclaration = Declaration {
         Parameter::new(
             "breaks",
             Kind::Table(Sign::NotNegative),
-            "Reynolds numbers where pieces meet, ascending",
+            "Reynolds numbers, without dimension, where pieces meet, ascending",
         ),
-        Parameter::new("coefficients", Kind::Table(Sign::Any), "Of f, 14 for each piece"),
+        Parameter::new("coefficients", Kind::Table(Sign::Any), "Of f, 14 for each piece, without dimension"),
         Parameter::new(
             "error",
             Kind::Number(Sign::NotNegative),

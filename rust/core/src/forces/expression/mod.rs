@@ -51,7 +51,11 @@ pub static DECLARATION: ForceDeclaration = Declaration {
             Kind::Table(Sign::Any),
             "The expressions, as `visviva.ExpressionForce` writes them",
         ),
-        Parameter::new("values", Kind::Table(Sign::Any), "Of the parameters in them"),
+        Parameter::new(
+            "values",
+            Kind::Table(Sign::Any),
+            "Of the parameters in them, in the units `length`, `mass` and `time`",
+        ),
         Parameter::new("first", Kind::Vector, "The axis of x"),
         Parameter::new("second", Kind::Vector, "The axis of y"),
         Parameter::new("third", Kind::Vector, "The axis of z"),
