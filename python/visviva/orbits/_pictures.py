@@ -22,6 +22,8 @@ __all__ = ["plot_orbit"]
 _POINTS = 2000
 # Radial periods of a bound orbit, enough to see its pericenter move on.
 _PERIODS = 6.0
+# How far an orbit that is not bound is drawn, in distances of its start or of its pericenter, the larger of both.
+_FAR = 8.0
 
 
 def plot_orbit(orbit: CentralOrbit, kind: str, ax: Any) -> Figure:
@@ -46,9 +48,11 @@ def _path(axes: Any, orbit: CentralOrbit) -> None:
     else:
         reach = orbit.apsidal_angle * (1.0 - 1e-3)
         angles = np.linspace(-reach, reach, _POINTS) - orbit.angle_since_pericenter
-    r = orbit.radius(angles)
+    r, start = orbit.radius(angles), float(np.linalg.norm(orbit._state[1]))
+    # Of what comes from far and goes there, the turn would be a point.
+    r[r > _FAR * max(low, start)] = np.nan
     axes.plot(r * np.cos(angles), r * np.sin(angles), linewidth=0.8)
-    axes.plot(float(np.linalg.norm(orbit._state[1])), 0.0, "o", markersize=4, color=BLUE)
+    axes.plot(start, 0.0, "o", markersize=4, color=BLUE)
     axes.plot(0.0, 0.0, "+", color="0.4")
     around = np.linspace(0.0, 2.0 * np.pi, 361)
     for radius in (low, high):
