@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from visviva.trajectory import Trajectory
 
 __all__ = [
+    "LEGEND",
     "PLANES",
     "POINTS",
     "axes_or_new",
@@ -39,10 +40,10 @@ PLANES = ("xy", "xz", "yz", "xyz")
 """What a picture of places shows."""
 POINTS = 4000
 """More points than this cannot be told apart in a figure and make the file large."""
+LEGEND = 24
+"""A legend of more names would hide the picture."""
 # So few outputs are places, and no path.
 _A_PATH = 10
-# A legend of more bodies would hide the picture.
-_LEGEND = 24
 # What turns at more than this part of its points is no line.
 _TURNING = 0.25
 # A relative change of the energy below this is the rounding of its terms, and no drift.
@@ -167,7 +168,7 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
         axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
     label_places(axes, shown)
     axes.set_title("orbits")
-    if names and len(bodies) <= _LEGEND:
+    if names and len(bodies) <= LEGEND:
         # Orbits may be anywhere within.
         legend_beside(axes)
 
