@@ -140,6 +140,30 @@ def test_numbers_along_three_axes_do_not_lie_on_each_other(name: str, own: bool)
         assert not any(box.padded(2).contains(*middle) for box in boxes), axis.axis_name
 
 
+def test_pictures_are_asked_for_in_one_way() -> None:
+    """What has one panel takes axes by `ax`, None for a new figure; what has several makes their figure."""
+    import inspect
+
+    rooms = [vv, *(getattr(vv, name) for name in vv.__all__ if inspect.ismodule(getattr(vv, name)))]
+    public = {getattr(room, name) for room in rooms for name in room.__all__}
+    drawn = {each for each in public if inspect.isclass(each) and hasattr(each, "plot")}
+    several = {vv.scattering.MonteCarlo, vv.scattering.FoilResult}
+    assert several <= drawn
+    for each in drawn - several:
+        asked = inspect.signature(each.plot).parameters["ax"]
+        assert asked.kind is asked.KEYWORD_ONLY, each
+        assert asked.default is None, each
+    # What is shown in courses and compared with measurements.
+    expected = {
+        *(vv.Trajectory, vv.EnsembleTrajectory, vv.BodyTurning, vv.WorkPrecision, vv.OdeResult, vv.orbits.Elements),
+        *(vv.orbits.CentralOrbit, vv.rigid.FreeRotation, vv.rigid.TopMotion, vv.scattering.Deflection),
+        *(vv.scattering.Tally, vv.scattering.JointTally, vv.scattering.FoilTally, vv.datasets.RutherfordComparison),
+        *(vv.datasets.ToutatisComparison, vv.generalized.PoincareSection, vv.generalized.Linearization),
+        *(vv.generalized.GeneralizedTrajectory, vv.generalized.GeneralizedEnsembleTrajectory),
+    }
+    assert expected <= drawn
+
+
 def test_work_precision_takes_axes_as_all_pictures_do() -> None:
     points = tuple(vv.Point(name, 0.1 / k, 1e-3 * k, 1e-3 / k**4, 1e-3) for name in ("rk4", "heun") for k in (1, 2, 4))
     found = vv.WorkPrecision("test", points)

@@ -11,10 +11,11 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from visviva.scattering._foil_result import FoilTally
     from visviva.scattering._joint_tally import JointTally
     from visviva.scattering._tally import Tally
 
-__all__ = ["plot_joint", "plot_tally", "poisson_interval", "theory_is_known"]
+__all__ = ["plot_foil", "plot_joint", "plot_tally", "poisson_interval", "theory_is_known"]
 
 # The normal distribution beyond one standard deviation: (1 - erf(1/√2))/2.
 _TAIL = 0.15865525393145705
@@ -31,6 +32,17 @@ _AXES = {
     "recoil_energy": ("recoil energy", "dσ/dE₂"),
     "impact_parameter": ("impact parameter", "dσ/db"),
 }
+_FOIL_AXES = {
+    "lab_angle": "angle from the beam",
+    "transmitted_angle": "angle from the beam, transmitted",
+    "reflected_angle": "angle from the beam, reflected",
+    "transmitted_energy": "energy of transmitted ions [eV]",
+    "reflected_energy": "energy of reflected ions [eV]",
+    "stopped_depth": "depth of stopped ions [µm]",
+    "cm_angle": "center-of-mass angle of the forced collision",
+}
+# Empty bins of a foil that are drawn beside those that have counted something.
+_ROOM = 5
 
 
 def poisson_interval(counts: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -141,6 +153,31 @@ def _pulls(tally: Tally, edges: NDArray[np.float64], expected: NDArray[np.float6
     mark_none(axes, 0.0, 1.0)
     reach = 1.15 * max(3.0, float(np.abs(pulls).max()) if pulls.size else 0.0)
     axes.set(ylim=(-reach, reach), ylabel="(n − theory) / σ")
+
+
+def plot_foil(tally: FoilTally, ax: Axes | None) -> Axes:
+    """A picture of what a foil does; see `FoilTally.plot`."""
+    from visviva._style import BLUE
+    from visviva.plot import axes_or_new
+
+    axes = axes_or_new(ax)
+    value, error = tally.fraction()
+    angle = tally.name.endswith("angle")
+    edges = np.degrees(tally.edges) if angle else tally.edges
+    axes.stairs(value, edges, linewidth=1.0, color=BLUE)
+    low, high = np.append(value - error, 0.0), np.append(value + error, 0.0)
+    axes.fill_between(edges, np.maximum(low, 0.0), high, step="post", alpha=0.3, linewidth=0.0, color=BLUE)
+    axes.set(xlabel=_FOIL_AXES[tally.name] + (" [degrees]" if angle else ""), ylabel="part of the ions per bin")
+    # Numbers of so many digits would lie on each other.
+    axes.locator_params(axis="x", nbins=5)
+    if angle and value.any():
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * value[value > 0.0].min(), 2.0 * value.max())
+    counted = np.flatnonzero(tally.counts)
+    if counted.size:
+        first, last = max(counted[0] - _ROOM, 0), min(counted[-1] + 1 + _ROOM, len(edges) - 1)
+        axes.set_xlim(edges[first], edges[last])
+    return axes
 
 
 def plot_joint(tally: JointTally, ax: Axes | None) -> Axes:

@@ -11,6 +11,7 @@ import numpy as np
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.scattering._counts import plot_foil
 from visviva.scattering._of_events import is_zero, merged
 
 if TYPE_CHECKING:
@@ -35,17 +36,6 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
     "stopped_depth",
 )
 _FATES = ("transmitted", "reflected", "stopped", "missed")
-# Empty bins that are drawn beside those that have counted something.
-_ROOM = 5
-_AXES = {
-    "lab_angle": "angle from the beam",
-    "transmitted_angle": "angle from the beam, transmitted",
-    "reflected_angle": "angle from the beam, reflected",
-    "transmitted_energy": "energy of transmitted ions [eV]",
-    "reflected_energy": "energy of reflected ions [eV]",
-    "stopped_depth": "depth of stopped ions [µm]",
-    "cm_angle": "center-of-mass angle of the forced collision",
-}
 
 
 class Fraction(NamedTuple):
@@ -238,27 +228,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         >>> out["transmitted_energy"].plot().get_xlabel()
         'energy of transmitted ions [eV]'
         """
-        from visviva._style import BLUE
-        from visviva.plot import axes_or_new
-
-        axes = axes_or_new(ax)
-        value, error = self.fraction()
-        angle = self.name.endswith("angle")
-        edges = np.degrees(self.edges) if angle else self.edges
-        axes.stairs(value, edges, linewidth=1.0, color=BLUE)
-        low, high = np.append(value - error, 0.0), np.append(value + error, 0.0)
-        axes.fill_between(edges, np.maximum(low, 0.0), high, step="post", alpha=0.3, linewidth=0.0, color=BLUE)
-        axes.set(xlabel=_AXES[self.name] + (" [degrees]" if angle else ""), ylabel="part of the ions per bin")
-        # Numbers of so many digits would lie on each other.
-        axes.locator_params(axis="x", nbins=5)
-        if angle and value.any():
-            axes.set_yscale("log")
-            axes.set_ylim(0.5 * value[value > 0.0].min(), 2.0 * value.max())
-        counted = np.flatnonzero(self.counts)
-        if counted.size:
-            first, last = max(counted[0] - _ROOM, 0), min(counted[-1] + 1 + _ROOM, len(edges) - 1)
-            axes.set_xlim(edges[first], edges[last])
-        return axes
+        return plot_foil(self, ax)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, FoilTally):
