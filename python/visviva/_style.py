@@ -120,7 +120,7 @@ def set_box(axes: Any, sides: Sequence[float] | NDArray[np.float64]) -> None:
         # Those of the third axis are beside its line, not below.
         pad = 4.0 if letter == "z" else 0.0
         axes.tick_params(axis=letter, labelsize="small" if inches > _SMALL else "x-small", pad=pad)
-        getattr(axes, f"{letter}axis").labelpad = 8.0
+        getattr(axes, f"{letter}axis").labelpad = 9.0 / cube
 
 
 def legend_beside(axes: Any, *, columns: int = 1, fontsize: str = "small") -> None:
