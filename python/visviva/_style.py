@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -51,6 +52,7 @@ _ROOM = 0.45
 _WIDE = 0.5
 
 
+@known_keywords
 def plot_style() -> dict[str, Any]:
     """Give the settings of matplotlib by which a figure of one's own looks like those of the package.
 

@@ -116,6 +116,30 @@ def test_what_is_drawn_after_a_legend_has_made_room_is_seen() -> None:
     assert axes.get_ylim()[1] > 50.0 > raised > 1.0
 
 
+FOIL = vv.scattering.Foil("carbon", 0.02).run("alpha", beam_energy=3e3, n_events=500, seed=1)
+ATOM = vv.potentials.LennardJones(epsilon=1.0, sigma=1.0)
+ALONG: dict[str, Picture] = {
+    "cross section": lambda ax: vv.scattering.deflect(
+        ATOM, energy=2.0, impact_parameter=np.linspace(0.0, 3.0, 50)
+    ).plot("cross_section", ax=ax),
+    "elements": lambda ax: PLANETS.elements("Saturn", about="Sun").plot("eccentricity", ax=ax),
+    "depth": lambda ax: FOIL["stopped_depth"].plot(ax=ax),
+}
+
+
+@pytest.mark.parametrize("name", ALONG)
+def test_numbers_along_x_do_not_lie_on_each_other(name: str) -> None:
+    axes = Figure(figsize=(3.0, 3.0), layout="constrained").add_subplot()
+    figure = figure_of(ALONG[name](axes))
+    figure.savefig(BytesIO())
+    low, high = axes.get_xlim()
+    shown = [tick.label1 for tick in axes.xaxis.get_major_ticks() if low <= tick.get_loc() <= high]
+    boxes = [label.get_window_extent() for label in shown]
+    assert len(boxes) >= 3
+    for one, next_one in pairwise(boxes):
+        assert one.x1 < next_one.x0
+
+
 @pytest.mark.parametrize("name", SOLID)
 @pytest.mark.parametrize("own", [False, True])
 def test_numbers_along_three_axes_do_not_lie_on_each_other(name: str, own: bool) -> None:
