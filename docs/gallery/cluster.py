@@ -17,7 +17,7 @@ with plt.style.context(vv.plot_style()):
     fig, (left, right) = plt.subplots(1, 2, figsize=(10, 4.4), layout="constrained")
 for when in (0, 28, 80):
     left.plot(*out.position[when, :, :2].T, ".", ms=2.5, label=f"t = {t[when]:g}")
-left.set(xlabel="x", ylabel="y", xlim=(-2, 2), ylim=(-2, 2), aspect="equal", title="Three moments")
+left.set(xlabel="x", ylabel="y", xlim=(-2.2, 2.2), ylim=(-2.2, 2.2), aspect="equal", title="Three moments")
 left.legend(markerscale=3, loc="upper left", bbox_to_anchor=(0.0, -0.15), ncols=3, fontsize="small")
 for share in (0.25, 0.5, 0.75):
     right.plot(t, np.quantile(distance, share, axis=1), label=f"{share:.0%} of the mass")
