@@ -161,7 +161,7 @@ def picture(name: str, found: vv.WorkPrecision, folder: Path) -> Path:
     figure, (axes,) = new_figure(1, (8.0, 4.4))
     ours, peers = leaders(found)
     shown = found.only([*ours, *peers])
-    shown.plot(axes, peers=peers)
+    shown.plot(ax=axes, peers=peers)
     closed = [point for point in found.points if point.series == "auto"]
     for point in closed:
         axes.plot(point.position_error, point.seconds, "*", markersize=10, color="black", label="auto, a closed form")

@@ -12,7 +12,8 @@ along = (moon - earth) / np.linalg.norm(moon - earth, axis=1)[:, None]
 from_centre = satellite - out.center_of_mass
 x = (from_centre * along).sum(axis=1)
 y = along[:, 0] * from_centre[:, 1] - along[:, 1] * from_centre[:, 0]
-fig, ax = plt.subplots(figsize=(6, 5), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, ax = plt.subplots(figsize=(6, 5), layout="constrained")
 ax.plot(x, y, lw=1.2)
 for name, body in (("Earth", earth), ("Moon", moon)):
     ax.plot(((body - out.center_of_mass) * along).sum(axis=1)[0], 0.0, "o", label=name)

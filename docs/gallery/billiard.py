@@ -11,7 +11,8 @@ velocity = np.zeros_like(place)
 velocity[0, 0] = 4.0
 balls = vv.Particles(np.ones(len(place)), place, velocity, radius=0.5)
 out = vv.Scene(balls).run(t=np.linspace(0.0, 4.0, 401), method="leapfrog", dt=0.01, collisions="bounce")
-fig, ax = plt.subplots(figsize=(7, 5), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, ax = plt.subplots(figsize=(7, 5), layout="constrained")
 for ball in range(len(place)):
     (line,) = ax.plot(*out.position[:, ball, :2].T, lw=1.0)
     ax.add_patch(plt.Circle(out.position[-1, ball, :2], 0.5, color=line.get_color(), alpha=0.5))

@@ -7,7 +7,8 @@ import visviva as vv
 
 scene = vv.problems.kepler(e=0.3).scene
 t = np.linspace(0.0, 200.0 * 2.0 * np.pi, 4001)
-fig, ax = plt.subplots(figsize=(7.5, 4), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, ax = plt.subplots(figsize=(7.5, 4), layout="constrained")
 for method in ("rk4", "leapfrog", "yoshida4", "kahan_li8"):
     energy = scene.run(t=t, method=method, dt=2.0 * np.pi / 100.0, record="energy").energy
     error = np.abs(energy / energy[0] - 1.0)

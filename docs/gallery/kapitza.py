@@ -6,7 +6,8 @@ import numpy as np
 import visviva as vv
 
 t = np.linspace(0.0, 6.0, 3001)
-fig, ax = plt.subplots(figsize=(7, 4), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, ax = plt.subplots(figsize=(7, 4), layout="constrained")
 for rate in (100.0, 60.0, 40.0):
     angle = vv.systems.kapitza(Omega=rate, position=[2.9]).run(t=t)["theta"]
     stands = (0.1 * rate) ** 2 > 2.0 * 9.81

@@ -7,7 +7,8 @@ import visviva as vv
 
 scene = vv.datasets.solar_system().scene
 out = scene.run(t=np.linspace(0.0, 12.0 * 365.25, 3000), method="dop853", rtol=1e-12)
-fig, (inner, outer) = plt.subplots(1, 2, figsize=(10, 5.2), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, (inner, outer) = plt.subplots(1, 2, figsize=(10, 5.2), layout="constrained")
 for ax, names, title in (
     (inner, ["Mercury", "Venus", "Earth", "Mars"], "The inner planets, 2 years"),
     (outer, ["Jupiter", "Saturn", "Uranus", "Neptune"], "The outer planets, 12 years"),

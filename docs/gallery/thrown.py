@@ -5,7 +5,8 @@ import numpy as np
 
 import visviva as vv
 
-fig, ax = plt.subplots(figsize=(7, 3.6), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, ax = plt.subplots(figsize=(7, 3.6), layout="constrained")
 for angle in (25, 35, 40, 45, 55):
     up = np.radians(angle)
     ball = vv.Particles([0.145], [[0.0, 0.0, 0.0]], [[40.0 * np.cos(up), 0.0, 40.0 * np.sin(up)]])

@@ -9,7 +9,8 @@ data = vv.datasets.toutatis()
 t = np.linspace(0.0, 30.0, 3001)
 motion = data.motion(t)
 axis = vv.rigid.rotate(motion.orientation, [0.0, 0.0, 1.0])
-fig, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
+with plt.style.context(vv.plot_style()):
+    fig, (left, right) = plt.subplots(1, 2, figsize=(10, 4.2), layout="constrained")
 for name, component in zip("xyz", motion.angular_velocity.T, strict=True):
     left.plot(t, np.degrees(component), label=name)
 left.set(xlabel="days", ylabel="angular velocity (degrees/day)", title="Along the axes of the body")

@@ -81,6 +81,7 @@ _HOME = {
     "coordinate": "generalized",
     "load": "io",
     "methods": "integrators",
+    "plot_style": "_style",
     "resume": "saved_runs",
     "solve_ivp": "initial_value",
     "time": "generalized",
@@ -178,6 +179,7 @@ __all__ = [
     "load",
     "methods",
     "orbits",
+    "plot_style",
     "potentials",
     "problems",
     "resume",
@@ -212,6 +214,7 @@ if TYPE_CHECKING:
         typing,
         units,
     )
+    from visviva._style import plot_style
     from visviva.advice import Advice, Option
     from visviva.body import BodyMotion
     from visviva.body_turning import BodyTurning

@@ -14,7 +14,7 @@ from visviva._keywords import did_you_mean
 from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.plot import POINTS, given_axes, mark_round_off, new_figure
+from visviva.plot import POINTS, given_axes, is_noise, mark_round_off, new_figure, sizes_of_terms
 from visviva.recorded import COLUMN_AXES
 
 if TYPE_CHECKING:
@@ -50,7 +50,13 @@ def plot_ensemble(
         letters, values = [letters[at]], values[..., at : at + 1]
     panels = values if letters else values[..., None]
     labels = [f"{name}, {letter}" for letter in letters] or [name.replace("_", " ")]
-    return _panels(run.t, panels, [label.replace("_", " ") for label in labels], kind, ax, changes=name == "energy")
+    terms = None
+    if name == "energy":
+        terms = np.ones(len(values))
+        if "velocity" in run.recorded and run.velocity.shape[2]:
+            kinetic = 0.5 * np.einsum("btik,btik,bi->bt", run.velocity, run.velocity, run.ensemble.mass)
+            terms = sizes_of_terms(kinetic, values)
+    return _panels(run.t, panels, [label.replace("_", " ") for label in labels], kind, ax, terms=terms)
 
 
 def plot_generalized(
@@ -62,11 +68,14 @@ def plot_generalized(
     if name == "energy":
         if coordinate is not None:
             raise InvalidInput("coordinate", f"energy is one number and has no coordinates, got {coordinate!r}")
-        return _panels(run.t, run.energy[..., None], [name], kind, ax, changes=True)
+        # Of a kinetic energy that is a square of the velocities half of this.
+        kinetic = 0.5 * (run.momentum * run.velocity).sum(axis=-1)
+        terms = sizes_of_terms(np.abs(kinetic), run.energy)
+        return _panels(run.t, run.energy[..., None], [name], kind, ax, terms=terms)
     chosen = names if coordinate is None else [_one_of("coordinate", coordinate, names)]
     values = getattr(run, name)[..., [names.index(each) for each in chosen]]
     before = "" if name == "position" else f"{name} of "
-    return _panels(run.t, values, [before + each for each in chosen], kind, ax, changes=False)
+    return _panels(run.t, values, [before + each for each in chosen], kind, ax)
 
 
 def _one_of(argument: str, given: object, known: Any) -> str:
@@ -100,11 +109,11 @@ def _panels(
     kind: object,
     ax: Axes | None,
     *,
-    changes: bool,
+    terms: NDArray[np.float64] | None = None,
 ) -> Figure:
-    """One panel for each number of the last axis of (B, T, K)."""
+    """One panel for each number of the last axis of (B, T, K); with `terms`, of energies, of their changes."""
     copies = len(values)
-    drawn = ("lines" if copies <= _MOST_LINES else "bands") if kind is None else _one_of("kind", kind, _KINDS)
+    drawn = None if kind is None else _one_of("kind", kind, _KINDS)
     if not len(t):
         raise InvalidInput("plot", "expected a run with times, got 0 times")
     if ax is not None:
@@ -116,17 +125,21 @@ def _panels(
     stride = max(1, len(t) // POINTS)
     for at, (panel, label) in enumerate(zip(axes, labels, strict=True)):
         numbers, named = values[:, ::stride, at], label
-        floor = False
-        if changes:
+        floor = noise = False
+        if terms is not None:
             numbers, relative = _changes(numbers)
             named = "(E − E₀) / |E₀|" if relative else "E − E₀"
-            floor = relative and mark_round_off(panel, numbers)
-        _KINDS[drawn](panel, t[::stride], numbers, floor)
+            floor = relative and mark_round_off(panel, numbers, terms)
+            noise = floor or is_noise(numbers)
+        if drawn is None:
+            # Of what is noise a band would look like a signal.
+            drawn = "lines" if noise or copies <= _MOST_LINES else "bands"
+        _KINDS[drawn](panel, t[::stride], numbers, noise)
         panel.set(xlabel="t", ylabel=named)
         panel.margins(x=0.01)
         # Ends of the scale, of so few digits that they do not lie on each other.
         panel.locator_params(axis="x", nbins=6)
-        if changes and not floor:
+        if terms is not None and not floor:
             panel.ticklabel_format(axis="y", style="sci", scilimits=(-3, 3))
     if drawn == "bands":
         legend_beside(axes[-1])
@@ -143,14 +156,14 @@ def _changes(energy: NDArray[np.float64]) -> tuple[NDArray[np.float64], bool]:
     return (energy - first) / (np.abs(first) if relative else 1.0), relative
 
 
-def _lines(axes: Any, t: NDArray[np.float64], values: NDArray[np.float64], floor: bool) -> None:
+def _lines(axes: Any, t: NDArray[np.float64], values: NDArray[np.float64], noise: bool) -> None:
     alpha = float(np.clip(12.0 / len(values), 0.1, 0.8))
     # Points, where a line would draw noise as a signal.
-    look = {"marker": ".", "markersize": 2, "linestyle": "none"} if floor else {"linewidth": 0.8, "linestyle": "-"}
+    look = {"marker": ".", "markersize": 2, "linestyle": "none"} if noise else {"linewidth": 0.8, "linestyle": "-"}
     axes.plot(t, values.T, color=BLUE, alpha=alpha, **look)
 
 
-def _bands(axes: Any, t: NDArray[np.float64], values: NDArray[np.float64], _floor: bool) -> None:
+def _bands(axes: Any, t: NDArray[np.float64], values: NDArray[np.float64], _noise: bool) -> None:
     # Of those that are there; where none is, nothing is drawn.
     there = ~np.isnan(values).all(axis=0)
     t, values = t[there], values[:, there]

@@ -15,6 +15,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["OdeResult", "OdeSolution"]
@@ -229,6 +230,48 @@ class OdeResult:
         True
         """
         return [(name, self[name]) for name in self]
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the components of the state against time: `sol` if it is there, else marks at the times of `t`.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Without `sol` nobody knows the way between times, and lines join them only to guide the eye.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If there is no time, or matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> found = vv.solve_ivp(lambda t, y: [y[1], -y[0]], (0.0, 6.0), [1.0, 0.0], dense_output=True)
+        >>> [line.get_label() for line in found.plot().lines]
+        ['y[0]', 'y[1]']
+        """
+        from visviva._style import legend_beside
+        from visviva.plot import LEGEND, POINTS, axes_or_new
+
+        if not len(self.t):
+            raise InvalidInput("plot", "expected a result with times, got none")
+        axes = axes_or_new(ax)
+        t, y, marks = self.t, self.y, "."
+        if self.sol is not None:
+            t = np.linspace(self.t[0], self.t[-1], POINTS)
+            y, marks = self.sol(t), ""
+        for at, component in enumerate(y):
+            axes.plot(t, component, marker=marks, markersize=3, linewidth=0.8, label=f"y[{at}]")
+        axes.set(xlabel="t", ylabel="y")
+        if 1 < len(y) <= LEGEND:
+            legend_beside(axes)
+        return axes
 
     def __repr__(self) -> str:
         return (

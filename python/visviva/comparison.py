@@ -162,14 +162,14 @@ class WorkPrecision(Shown):
             lines.append(f"{name:<24}{shown}{least:>12.1e}")
         return "\n".join(lines)
 
-    def plot(self, axes: Axes | None = None, *, peers: Iterable[str] = ()) -> Axes:
+    def plot(self, *, ax: Axes | None = None, peers: Iterable[str] = ()) -> Axes:
         """Time against error of places, a line for each method, the envelope marked.
 
         Exact answers, whose error is 0, are on no logarithmic axis and not drawn.
 
         Parameters
         ----------
-        axes : matplotlib.axes.Axes, optional
+        ax : matplotlib.axes.Axes, optional
             Where; in a figure of its own if not given.
         peers : iterable of str, optional
             Series that are drawn as another's: dashed, with open marks.
@@ -181,7 +181,7 @@ class WorkPrecision(Shown):
         Raises
         ------
         visviva.InvalidInput
-            If matplotlib is not installed.
+            If matplotlib is not installed; for what are no axes, several of them too: one problem is one picture.
 
         Examples
         --------
@@ -190,11 +190,11 @@ class WorkPrecision(Shown):
         >>> vv.WorkPrecision("test", tuple(points)).plot().get_xscale()
         'log'
         """
-        from visviva.plot import new_figure
+        from visviva._style import legend_beside
+        from visviva.plot import given_axes, new_figure
 
         columns = 1 + len(self.series) // _IN_A_COLUMN
-        if axes is None:
-            _, (axes,) = new_figure(1, (6.0 + 1.3 * columns, 5.0))
+        axes = new_figure(1, (6.0 + 1.3 * columns, 5.0))[1][0] if ax is None else given_axes(ax)
         if isinstance(peers, str) or not isinstance(peers, Iterable):
             raise InvalidInput("peers", f"expected names of series, as in ('REBOUND',), got {peers!r}")
         others = frozenset(peers)
@@ -227,7 +227,7 @@ class WorkPrecision(Shown):
         axes.invert_xaxis()
         axes.grid(alpha=0.3)
         # Beside the lines, which are everywhere within.
-        axes.legend(fontsize="x-small", loc="upper left", bbox_to_anchor=(1.0, 1.0), ncols=columns)
+        legend_beside(axes, columns=columns, fontsize="x-small")
         return axes
 
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import visviva as vv
-from visviva.plot import new_figure
+from visviva._residuals import new_panels
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -116,26 +116,17 @@ def _compare_with_1913(measured: vv.datasets.GeigerMarsden, simulated: NDArray[n
 def _picture(
     path: Path, measured: vv.datasets.GeigerMarsden, angles: NDArray[np.float64], simulated: NDArray[np.float64]
 ) -> Path:
-    figure, (axes,) = new_figure(1, (6.5, 5.0))
-    fine = np.radians(np.linspace(12.0, 170.0, 400))
-    order = np.argsort(measured.angle)
-    for metal, marker in (("gold", "o"), ("silver", "s")):
-        counts = getattr(measured, metal)[order]
-        scale = np.exp(np.mean(np.log(counts * np.sin(angles / 2.0) ** 4)))
-        axes.plot(np.degrees(angles), counts, marker, markerfacecolor="none", label=f"{metal}, Geiger & Marsden 1913")
-        axes.plot(np.degrees(fine), scale / np.sin(fine / 2.0) ** 4, linewidth=0.8, color="0.4")
-        if metal == "gold" and simulated.all():
-            axes.plot(
-                np.degrees(angles), simulated * np.exp(np.mean(np.log(counts / simulated))), "+", label="simulated"
-            )
-    axes.plot([], [], linewidth=0.8, color="0.4", label="1 / sin⁴(φ/2)")
-    axes.set(
-        xlabel="angle in the laboratory φ [degrees]",
-        ylabel="scintillations",
-        yscale="log",
-        title="Rutherford scattering",
-    )
-    axes.legend(fontsize="small")
+    figure, _ = new_panels([True], (6.5, 6.0))
+    axes, ratios = figure.axes
+    silver, gold = measured.compare()
+    if simulated.all():
+        scaled = simulated * np.exp(np.mean(np.log(measured.gold[np.argsort(measured.angle)] / simulated)))
+        axes.plot(np.degrees(angles), scaled, "+", markersize=9, color="black", label="gold: simulated")
+        ratios.plot(
+            np.degrees(angles), scaled * np.sin(angles / 2.0) ** 4 / gold.scale, "+", markersize=9, color="black"
+        )
+    for metal in (silver, gold):
+        metal.plot(ax=axes, residuals=ratios)
     figure.savefig(path, dpi=150)
     return path
 

@@ -13,11 +13,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import visviva as vv
-from visviva.plot import new_figure
+from visviva._residuals import new_panels
+from visviva.datasets._pictures import COUNT_ERROR, plot_counts
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
 __all__ = ["MetalComparison", "compare_metal", "geiger_marsden"]
@@ -25,7 +27,7 @@ __all__ = ["MetalComparison", "compare_metal", "geiger_marsden"]
 # Radium C.
 _ENERGY = 7.687e6
 # Relative error of a published number, and the angles in degrees that are fitted.
-_ERROR, _FITTED = 0.05, (45.0, 150.0)
+_ERROR, _FITTED = COUNT_ERROR, (45.0, 150.0)
 # Half of an angular slot in degrees at the widest, and the least angle that is forced.
 _HALF_WIDTH, _FORCED = 4.0, 10.0
 # In what follows angles below this one are as good as none: large angles are what is looked at.
@@ -55,6 +57,8 @@ class MetalComparison:
         Of the counts against the scaled simulation.
     reduced_chi2_law : float
         Of the counts against the law, with a scale of its own.
+    foil : Foil
+        What the alpha particles went through.
     """
 
     metal: str
@@ -66,6 +70,24 @@ class MetalComparison:
     scale: float
     reduced_chi2: float
     reduced_chi2_law: float
+    foil: vv.scattering.Foil
+
+    def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
+        """Draw counts, simulation and law, and below the first two over the law; see `RutherfordComparison.plot`."""
+
+        def law(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+            return _law(self.foil, np.radians(degrees)) * self.scale
+
+        return plot_counts(
+            ax,
+            residuals,
+            self.metal,
+            self.angle,
+            self.counted,
+            law,
+            simulated=(self.simulated * self.scale, self.simulated_error * self.scale),
+            note=f", χ²/f = {self.reduced_chi2:.2f}",
+        )
 
 
 def compare_metal(
@@ -95,7 +117,7 @@ def compare_metal(
     simulated, simulated_error = value / in_slot * law, error / in_slot * law
     scale, reduced = _fit(angle, counted, simulated, simulated_error)
     _, reduced_law = _fit(angle, counted, law, np.zeros_like(law))
-    return MetalComparison(metal, angle, counted, simulated, simulated_error, law, scale, reduced, reduced_law)
+    return MetalComparison(metal, angle, counted, simulated, simulated_error, law, scale, reduced, reduced_law, foil)
 
 
 def _law(foil: vv.scattering.Foil, angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -145,7 +167,7 @@ def geiger_marsden(output: Path, events: int, thickness: float, threads: int | N
         _print(found)
     if find_spec("matplotlib") is None:
         return []
-    return [_picture(output / "geiger_marsden.png", metals, thickness)]
+    return [_picture(output / "geiger_marsden.png", metals)]
 
 
 def _print(found: MetalComparison) -> None:
@@ -167,38 +189,12 @@ def _print(found: MetalComparison) -> None:
     )
 
 
-def _picture(path: Path, metals: list[MetalComparison], thickness: float) -> Path:
-    figure, (axes,) = new_figure(1, (7.0, 5.5))
-    fine = np.radians(np.linspace(12.0, 170.0, 400))
-    for found, marker, color in zip(metals, ("s", "o"), ("tab:blue", "tab:orange"), strict=True):
-        law = _law(vv.scattering.Foil(found.metal, thickness), fine) * found.scale
-        axes.plot(np.degrees(fine), law, linewidth=0.9, color=color, label=f"{found.metal}: Rutherford's law")
-        axes.errorbar(
-            found.angle,
-            found.simulated * found.scale,
-            found.simulated_error * found.scale,
-            fmt="+",
-            color="black",
-            markersize=9,
-            label=f"{found.metal}: simulated",
-        )
-        axes.errorbar(
-            found.angle,
-            found.counted,
-            _ERROR * found.counted,
-            fmt=marker,
-            markerfacecolor="none",
-            color=color,
-            label=f"{found.metal}: 1913, χ²/f = {found.reduced_chi2:.2f}",
-        )
-    axes.axvspan(*_FITTED, color="0.95", zorder=0)
-    axes.set(
-        xlabel="angle from the beam φ [degrees]",
-        ylabel="scintillations (scale fitted from 45° to 150°)",
-        yscale="log",
-        title="Geiger and Marsden's table II, 1913",
-    )
-    axes.legend(fontsize="small")
+def _picture(path: Path, metals: list[MetalComparison]) -> Path:
+    figure, _ = new_panels([True], (7.0, 6.5))
+    axes, ratios = figure.axes
+    axes.axvspan(*_FITTED, color="0.96", linewidth=0.0, zorder=-2, label="scale fitted here")
+    for found in metals:
+        found.plot(ax=axes, residuals=ratios)
     figure.savefig(path, dpi=150)
     return path
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from visviva._keywords import did_you_mean
 from visviva._names import body_indices
-from visviva._style import FRAME, dress, legend_beside, set_box
+from visviva._style import FRAME, dress, legend_beside, set_box, without_matplotlib
 from visviva._text import count
 from visviva.errors import InvalidInput
 
@@ -22,25 +22,28 @@ if TYPE_CHECKING:
     from visviva.trajectory import Trajectory
 
 __all__ = [
+    "LEGEND",
     "PLANES",
     "POINTS",
     "axes_or_new",
     "chosen_bodies",
     "directions",
     "given_axes",
+    "is_noise",
     "mark_round_off",
     "new_figure",
     "plot_trajectory",
+    "sizes_of_terms",
 ]
 
 PLANES = ("xy", "xz", "yz", "xyz")
 """What a picture of places shows."""
 POINTS = 4000
 """More points than this cannot be told apart in a figure and make the file large."""
+LEGEND = 24
+"""A legend of more names would hide the picture."""
 # So few outputs are places, and no path.
 _A_PATH = 10
-# A legend of more bodies would hide the picture.
-_LEGEND = 24
 # What turns at more than this part of its points is no line.
 _TURNING = 0.25
 # A relative change of the energy below this is the rounding of its terms, and no drift.
@@ -58,13 +61,13 @@ def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = 
     try:
         from matplotlib.figure import Figure
     except ImportError as error:
-        raise InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'") from error
+        raise without_matplotlib() from error
     figure = Figure(figsize=size, layout="constrained")
     axes = []
     for panel in range(panels):
         kind = "3d" if panel in solid else "rectilinear"
         axes.append(figure.add_subplot(1, panels, panel + 1, projection=kind))
-        dress(axes[-1], panel in solid)
+        dress(axes[-1])
     return figure, axes
 
 
@@ -165,7 +168,7 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
         axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
     label_places(axes, shown)
     axes.set_title("orbits")
-    if names and len(bodies) <= _LEGEND:
+    if names and len(bodies) <= LEGEND:
         # Orbits may be anywhere within.
         legend_beside(axes)
 
@@ -184,35 +187,34 @@ def label_places(axes: Any, shown: Sequence[int]) -> None:
         axes.set_aspect("equal", adjustable="datalim")
 
 
-def mark_round_off(axes: Axes, change: NDArray[np.float64], terms: float = 1.0) -> bool:
+def mark_round_off(axes: Axes, change: NDArray[np.float64], terms: float | NDArray[np.float64] = 1.0) -> bool:
     """Whether relative changes of an energy are no more than rounding; axes then say so. NaN is no change.
 
-    `terms` is how many times as large as the energy the kinetic and potential energies are that it is the sum of.
+    `terms` is how many times as large as the energy the kinetic and potential energies are that it is the sum of, of
+    each copy where there are several.
     """
-    rounding = _ROUND_OFF * terms
-    if not np.nanmax(np.abs(change)) <= rounding:
+    rounding = np.atleast_1d(_ROUND_OFF * terms)
+    if not np.nanmax(np.abs(change) / rounding[:, None]) <= 1.0:
         return False
-    axes.set_ylim(-2.0 * rounding, 2.0 * rounding)
-    axes.axhspan(-rounding, rounding, color="0.95", zorder=-1)
-    axes.annotate("round-off", (0.02, 0.95), xycoords="axes fraction", va="top", color="0.4")
+    widest = float(rounding.max())
+    axes.set_ylim(-2.0 * widest, 2.0 * widest)
+    axes.axhspan(-widest, widest, color="0.95", zorder=-1)
+    # At the foot of the band, where no legend comes.
+    axes.annotate("round-off", (0.02, -widest), xycoords=("axes fraction", "data"), va="bottom", color="0.4")
     return True
 
 
-def _terms(trajectory: Trajectory, energy: NDArray[np.float64]) -> float:
-    """How large kinetic and potential energies are beside their sum, as far as velocities tell."""
-    if "velocity" not in trajectory.recorded or not energy[0]:
-        return 1.0
-    masses = trajectory.scene.particles.mass
+def sizes_of_terms(kinetic: NDArray[np.float64], energy: NDArray[np.float64]) -> NDArray[np.float64]:
+    """How many times as large as an energy, (…, T), kinetic and potential energies are that it is the sum of, (…)."""
     with np.errstate(all="ignore"):
-        kinetic = 0.5 * (masses * (trajectory.velocity**2).sum(axis=-1)).sum(axis=-1)
-        terms = float(np.max(kinetic + np.abs(energy - kinetic)) / abs(energy[0]))
-    return max(terms, 1.0) if np.isfinite(terms) else 1.0
+        terms = np.fmax.reduce(kinetic + np.abs(energy - kinetic), axis=-1) / np.abs(energy[..., 0])
+    return np.where(np.isfinite(terms), np.maximum(terms, 1.0), 1.0)
 
 
-def _is_noise(change: NDArray[np.float64]) -> bool:
-    """Whether numbers turn so often that a line through them would be a band."""
+def is_noise(change: NDArray[np.float64]) -> bool:
+    """Whether numbers along the last axis turn so often that lines through them would be bands."""
     steps = np.diff(change)
-    return len(steps) > 2 and bool(np.mean(steps[1:] * steps[:-1] < 0.0) > _TURNING)
+    return steps.shape[-1] > 2 and bool(np.mean(steps[..., 1:] * steps[..., :-1] < 0.0) > _TURNING)
 
 
 def _energy(axes: Axes, trajectory: Trajectory) -> None:
@@ -221,8 +223,12 @@ def _energy(axes: Axes, trajectory: Trajectory) -> None:
     stride = max(1, len(trajectory) // POINTS)
     t, change = trajectory.t[::stride], ((energy - energy[0]) / scale)[::stride]
     axes.set(xlabel="t", ylabel="(E − E₀) / |E₀|" if energy[0] != 0.0 else "E − E₀", title="energy")
-    rounded = energy[0] != 0.0 and mark_round_off(axes, (energy - energy[0]) / scale, _terms(trajectory, energy))
-    if rounded or _is_noise(change):
+    terms = 1.0
+    if "velocity" in trajectory.recorded and trajectory.scene.particles:
+        squares = (trajectory.velocity**2).sum(axis=-1)
+        terms = float(sizes_of_terms(0.5 * squares @ trajectory.scene.particles.mass, energy))
+    rounded = energy[0] != 0.0 and mark_round_off(axes, (energy - energy[0]) / scale, terms)
+    if rounded or is_noise(change):
         # Points, since a line would draw noise as a signal.
         axes.plot(t, change, ".", markersize=2)
     else:

@@ -10,6 +10,7 @@ import numpy as np
 
 import visviva as vv
 from visviva._arrays import whole_number
+from visviva._residuals import new_panels
 from visviva._style import FRAME
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
@@ -59,14 +60,11 @@ def toutatis(output: Path, days: float) -> list[Path]:
     print(f"\nangular momentum in space stays to {np.abs(drift).max() / size:.1e}, energy to {_spread(out.energy):.1e}")
     if find_spec("matplotlib") is None:
         return []
-    figure, (polhode, axes, off) = new_figure(3, (15.0, 5.0), solid=(0, 1))
+    figure, ((polhode, _), (axes, _), (seen, off)) = new_panels([False, False, True], (6.0, 5.5), solid=(0, 1))
     fine = data.motion(np.linspace(0.0, days, 4001))
     _pictures.polhode(polhode, fine)
     _pictures.traces(axes, fine)
-    off.plot(data.radar.t, found.attitude, "o", label="attitude")
-    off.plot(data.radar.t, found.spin_direction, "s", markerfacecolor="none", label="angular velocity")
-    off.set(xlabel=f"days since {data.epoch}", ylabel="between closed form and radar [degrees]", title="residuals")
-    off.legend(fontsize="small")
+    found.plot(ax=seen, residuals=off)
     picture = output / "toutatis.png"
     figure.savefig(picture, dpi=150)
     return [picture]

@@ -5,10 +5,14 @@ from pathlib import Path
 import matplotlib as mpl
 import pytest
 
+import visviva as vv
+
 mpl.use("Agg")
 import matplotlib.pyplot as plt
+from matplotlib.colors import to_hex
 
 SCRIPTS = sorted((Path(__file__).parents[2] / "docs" / "gallery").glob("*.py"))
+HOUSE = set(vv.plot_style()["axes.prop_cycle"].by_key()["color"])
 
 
 def test_there_are_twenty_and_each_says_what_it_shows() -> None:
@@ -38,4 +42,9 @@ def test_makes_one_picture(script: Path, tmp_path: Path) -> None:
         assert figure.bbox.padded(1).containsy(box.y0)
         assert figure.bbox.padded(1).containsy(box.y1)
         assert any(len(line.get_xdata()) > 1 for line in axes.lines)
+        # In the colors of the package, and in shades of gray what only helps the eye.
+        for line in axes.lines:
+            color = to_hex(line.get_color())
+            assert color.upper() in HOUSE or color[1:3] == color[3:5] == color[5:7], color
+        assert not axes.spines["top"].get_visible()
     plt.close("all")

@@ -54,6 +54,18 @@ def test_energies_are_changes_and_rounding_is_called_so() -> None:
     assert rest.run(t=[0.0, 1.0]).plot("energy").axes[0].get_ylabel() == "E − E₀"
 
 
+def test_noise_is_drawn_as_points_of_however_many_copies() -> None:
+    many = KEPLER.ensemble(velocity=KEPLER.particles.velocity * np.linspace(0.8, 1.0, 100)[:, None, None])
+    swing = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 2.0, 90)[:, None])
+    for run in (many.run(t=np.linspace(0.0, 10.0, 51)), swing.run(t=np.linspace(0.0, 20.0, 51))):
+        axes = run.plot("energy").axes[0]
+        assert [text.get_text() for text in axes.texts] == ["round-off"]
+        assert len(axes.lines) == len(run.energy)
+        assert {(line.get_linestyle(), line.get_marker()) for line in axes.lines} == {("None", ".")}
+        # No change of any copy is above the band, which is that of its largest terms.
+        assert np.abs(lines(axes)).max() < axes.patches[0].get_height() / 2.0  # type: ignore[attr-defined]
+
+
 def _coarse() -> vv.EnsembleTrajectory:
     return KEPLER.ensemble(velocity=SLOWER).run(t=np.linspace(0.0, 10.0, 51), method="leapfrog", dt=0.02)
 

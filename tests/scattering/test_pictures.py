@@ -169,8 +169,9 @@ def test_a_run_draws_all_its_tallies() -> None:
         tally=["cm_angle", ("lab_angle", "energy")],
     )  # fmt: skip
     figure = run.plot()
-    one, joint, bar = figure.axes
-    assert one.get_xlabel() == "angle in the centre-of-mass frame [degrees]"
+    one, left, joint, bar = figure.axes
+    assert left.get_xlabel() == "angle in the centre-of-mass frame [degrees]"
+    assert one.get_shared_x_axes().joined(one, left)
     assert (joint.get_xlabel(), joint.get_ylabel()) == ("laboratory angle [degrees]", "energy afterwards")
     assert bar.get_ylabel() == "events per bin"
     counts = run["lab_angle", "energy"].counts

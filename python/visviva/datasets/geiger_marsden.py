@@ -15,6 +15,7 @@ from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
 __all__ = ["GeigerMarsden", "RutherfordComparison", "geiger_marsden_1913"]
@@ -75,6 +76,45 @@ class RutherfordComparison(Record):
         rows = [f"{self.metal}: N = {self.scale:.2f} / sin⁴(φ/2)", f"{'φ':>7}{'counted / law':>16}"]
         rows += [f"{angle:>6.1f}°{ratio:>16.3f}" for angle, ratio in zip(self.angle, self.ratio, strict=True)]
         return "\n".join(rows)
+
+    def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
+        """Draw the counts and the law, and below counts over law; the band is 5 %, as errors of these counts are taken.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw the counts; by default in a new figure, ``.figure`` of what is returned, whose
+            ``.figure.axes[1]`` is the panel below.
+        residuals : matplotlib.axes.Axes, optional
+            With `ax`, where the ratio goes; without it, it is not drawn.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Of the counts.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib is not installed; for `residuals` without `ax`.
+
+        Examples
+        --------
+        Both metals in one picture:
+
+        >>> import visviva as vv
+        >>> silver, gold = vv.datasets.geiger_marsden_1913().compare()
+        >>> ax = silver.plot()
+        >>> _ = gold.plot(ax=ax, residuals=ax.figure.axes[1])
+        >>> ax.get_ylabel(), ax.figure.axes[1].get_ylabel()
+        ('scintillations', 'over the law')
+        """
+        from visviva.datasets._pictures import plot_counts
+
+        def law(degrees: NDArray[np.float64]) -> NDArray[np.float64]:
+            return np.asarray(self.scale / np.sin(np.radians(degrees) / 2.0) ** 4)
+
+        return plot_counts(ax, residuals, self.metal, self.angle, self.ratio * law(self.angle), law)
 
 
 @known_keywords

@@ -10,7 +10,7 @@ out: it came after years of torques that a free rotation leaves out.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from datetime import datetime, timedelta
 from typing import TYPE_CHECKING
 
@@ -22,6 +22,7 @@ from visviva.datasets._bodies import read_only
 from visviva.rigid import FreeRotation, free_rotation, quaternion_from_euler, quaternion_product, rotation_vector
 
 if TYPE_CHECKING:
+    from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["RadarAttitudes", "Toutatis", "ToutatisComparison", "toutatis"]
@@ -117,6 +118,8 @@ class ToutatisComparison(Record):
         The angle between the two angular velocities, as the body has them, in degrees.
     spin_ratio : ndarray, shape (17,)
         The angular velocity of the free rotation over that of radar.
+    spin_state : Toutatis
+        What was compared.
 
     References
     ----------
@@ -135,6 +138,7 @@ class ToutatisComparison(Record):
     long_axis: NDArray[np.float64]
     spin_direction: NDArray[np.float64]
     spin_ratio: NDArray[np.float64]
+    spin_state: Toutatis = field(repr=False)
 
     def __str__(self) -> str:
         rows = [f"{'UTC':<18}{'attitude off':>14}{'long axis off':>15}{'spin off':>10}{'|ω| ratio':>11}"]
@@ -144,6 +148,38 @@ class ToutatisComparison(Record):
             turned, axis, spin = (f"{angle:.1f}°" for angle in angles)
             rows.append(f"{date:<18}{turned:>14}{axis:>15}{spin:>10}{ratio:>11.3f}")
         return "\n".join(rows)
+
+    def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
+        """Draw the angular velocities along the body's axes, computed and seen, and below by which angles they differ.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw the angular velocities; by default in a new figure, ``.figure`` of what is returned, whose
+            ``.figure.axes[1]`` is the panel below.
+        residuals : matplotlib.axes.Axes, optional
+            With `ax`, where `attitude`, `long_axis` and `spin_direction` go; without it, they are not drawn.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Of the angular velocities.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            If matplotlib is not installed; for `residuals` without `ax`.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> ax = vv.datasets.toutatis().compare().plot()
+        >>> [axes.get_ylabel() for axes in ax.figure.axes]
+        ['ω in the body [degrees per day]', 'apart [degrees]']
+        """
+        from visviva.datasets._pictures import plot_toutatis
+
+        return plot_toutatis(self, ax, residuals)
 
 
 @known_keywords
@@ -258,6 +294,7 @@ class Toutatis(Record):
             long_axis=np.degrees(tilt),
             spin_direction=np.degrees(np.arccos(cosine)),
             spin_ratio=sizes[0] / sizes[1],
+            spin_state=self,
         )
 
 

@@ -138,6 +138,49 @@ class Linearization(Record):
         moved: NDArray[np.float64] = amplitudes @ self.modes
         return moved
 
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the modes: how far each coordinate goes, in the order of the coordinates, a line for each mode.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where; a new one if not given.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            Modes are named by their angular frequencies ω, those that grow by their rates.
+
+        Raises
+        ------
+        InvalidInput
+            With damping or gyroscopic terms, which leave no such modes; if matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> ax = vv.systems.coupled_oscillators().normal_modes().plot()
+        >>> [line.get_label() for line in ax.lines][:2]
+        ['ω = 1', 'ω = 1.095']
+        """
+        from visviva._style import FRAME, legend_beside
+        from visviva.plot import LEGEND, axes_or_new
+
+        if self.modes is None or self.squares is None:
+            raise InvalidInput("plot", "expected modes, and with damping or gyroscopic terms there are none: see at")
+        ax = axes_or_new(ax)
+        numbers = np.arange(1, len(self.position) + 1)
+        for mode, square in zip(self.modes, self.squares, strict=True):
+            rate = float(np.sqrt(abs(square)))
+            name = f"ω = {rate:.4g}" if square >= 0.0 else f"grows at {rate:.4g}"
+            ax.plot(numbers, mode, marker="o", markersize=4, linewidth=0.8, label=name)
+        ax.axhline(0.0, color=FRAME, linewidth=0.6, linestyle="-", zorder=0)
+        ax.set(xlabel="coordinate", ylabel="displacement, ξᵀMξ = 1", title="modes")
+        ax.locator_params(axis="x", integer=True)
+        if len(numbers) <= LEGEND:
+            legend_beside(ax)
+        return ax
+
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

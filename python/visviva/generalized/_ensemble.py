@@ -367,8 +367,8 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
         coordinate : str, optional
             One panel; all if not given.
         kind : {"lines", "bands"}, optional
-            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; lines of
-            up to 60 copies, and else bands.
+            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; by
+            default lines of up to 60 copies and of energies that are noise, which are points, and else bands.
         ax : matplotlib.axes.Axes, optional
             Where, if there is one panel; a new figure if not given.
 

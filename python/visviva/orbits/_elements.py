@@ -19,6 +19,8 @@ from visviva.orbits._rows import OfOrbits
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
 
@@ -205,6 +207,42 @@ class Elements(OfOrbits, Shown):
         flat += [np.broadcast_to(getattr(self, name), shape).ravel() for name in further]
         position, velocity = _core.orbit_state_again(flat)
         return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
+
+    def plot(self, element: str | None = None, *, ax: Axes | None = None) -> Figure:
+        """Draw elements of a run against time, a line for each body.
+
+        Angles are drawn in degrees; their lines break where they go round.
+
+        Parameters
+        ----------
+        element : str, optional
+            Any attribute that is one number; semi-major axis, eccentricity and inclination, a panel each, if not given.
+        ax : matplotlib.axes.Axes, optional
+            Where, with one `element`; a new figure if not given.
+
+        Returns
+        -------
+        matplotlib.figure.Figure
+            A new one, or that of `ax`.
+
+        Raises
+        ------
+        InvalidInput
+            For elements of other orbits than those of one run over time, or what is no such element; for three panels
+            in one pair of axes; if matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> scene = vv.datasets.outer_solar_system().scene
+        >>> out = scene.run(t=np.linspace(0.0, 1e5, 200), method="dop853")
+        >>> figure = out.elements(["Jupiter", "Saturn"], about="Sun").plot()
+        >>> [axes.get_ylabel() for axes in figure.axes]
+        ['semi-major axis', 'eccentricity', 'inclination [degrees]']
+        """
+        from visviva.orbits._pictures import plot_elements
+
+        return plot_elements(self, element, ax)
 
 
 def labelled(columns: Mapping[str, NDArray[np.float64]], axes: Mapping[str, NDArray[Any]]) -> Elements:

@@ -7,21 +7,29 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
-from visviva._style import BLUE, FRAME, VERMILION
+from visviva._style import BLUE, FRAME, VERMILION, legend_beside
 from visviva.errors import InvalidInput
 from visviva.orbits._central import effective_potential
-from visviva.plot import given_axes, new_figure
+from visviva.orbits._rows import ANGLES, FURTHER
+from visviva.plot import LEGEND, POINTS, given_axes, new_figure
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
+    from numpy.typing import NDArray
 
     from visviva.orbits._central_orbit import CentralOrbit
+    from visviva.orbits._elements import Elements
 
-__all__ = ["plot_orbit"]
+__all__ = ["plot_elements", "plot_orbit"]
 
 _POINTS = 2000
+_ELEMENTS = ("semi_major_axis", "eccentricity", "inclination")
+# Changes below this part of an element are none.
+_CONSTANT = 1e-10
 # Radial periods of a bound orbit, enough to see its pericenter move on.
 _PERIODS = 6.0
+# How far an orbit that is not bound is drawn, in distances of its start or of its pericenter, the larger of both.
+_FAR = 8.0
 
 
 def plot_orbit(orbit: CentralOrbit, kind: str, ax: Any) -> Figure:
@@ -38,6 +46,66 @@ def plot_orbit(orbit: CentralOrbit, kind: str, ax: Any) -> Figure:
     return figure
 
 
+def plot_elements(found: Elements, element: object, ax: Any) -> Figure:
+    """A picture of osculating elements; see `Elements.plot`."""
+    along = getattr(found, "_axes", {})
+    if "time" not in along or "copy" in along:
+        kind = f"those of {len(along['copy'])} copies" if "copy" in along else "those of single orbits"
+        raise InvalidInput("plot", f"expected elements of one run over time, as of out.elements(…), got {kind}")
+    if element is None:
+        names: tuple[str, ...] = _ELEMENTS
+        if ax is not None:
+            raise InvalidInput(
+                "ax", f"one pair of axes takes one panel, and there are {len(names)}: {', '.join(names)}"
+            )
+    else:
+        # What has a number for each orbit, and no vector.
+        known = [name for name in (*type(found).__slots__, *FURTHER) if getattr(found, name).ndim == found.mu.ndim]
+        if not isinstance(element, str) or element not in known:
+            hint = did_you_mean(str(element), tuple(known))
+            raise InvalidInput("element", f"expected one of {', '.join(known)}, got {element!r}{hint}")
+        names = (element,)
+    if ax is None:
+        figure, panels = new_figure(len(names), (1.5 + 4.0 * len(names), 3.6))
+    else:
+        panels = [given_axes(ax)]
+        figure = ax.get_figure()
+    bodies = [str(name) for name in along["body"]] if "body" in along else []
+    # Those of parabolas and hyperbolas are none.
+    ellipses = bool((found.eccentricity < 1.0).all())
+    for axes, name in zip(panels, names, strict=True):
+        angle = name in ANGLES or (ellipses and name.endswith(("anomaly", "longitude")))
+        values = getattr(found, name).reshape(len(along["time"]), -1)
+        # Numbers that have a size of their own round to parts of that.
+        least = 1.0 if angle or name == "eccentricity" else 0.0
+        _element(axes, along["time"], np.degrees(values) if angle else values, bodies, angle=angle, least=least)
+        written = name.replace("semi_", "semi-").replace("_", " ")
+        axes.set(xlabel="t", ylabel=f"{written} [degrees]" if angle else written)
+    if 1 < len(bodies) <= LEGEND:
+        legend_beside(panels[-1])
+    return figure
+
+
+def _element(
+    axes: Any, t: NDArray[np.float64], values: NDArray[np.float64], bodies: list[str], *, angle: bool, least: float
+) -> None:
+    stride = max(1, len(t) // POINTS)
+    for at, column in enumerate(values.T):
+        shown = column[::stride].copy()
+        if angle:
+            # Once round, it begins anew.
+            shown[1:][np.abs(np.diff(shown)) > 180.0] = np.nan
+        axes.plot(t[::stride], shown, linewidth=0.8, label=bodies[at] if bodies else None)
+    known = values[np.isfinite(values)]
+    if known.size:
+        # What stays but for rounding is drawn as what stays.
+        middle, scale = float(known.mean()), max(float(np.abs(known).max()), least)
+        if np.ptp(known) < _CONSTANT * scale:
+            axes.set_ylim(middle - 0.01 * scale, middle + 0.01 * scale)
+    axes.margins(x=0.01)
+    axes.locator_params(axis="x", nbins=4)
+
+
 def _path(axes: Any, orbit: CentralOrbit) -> None:
     """The orbit in its plane, its circles of turning and the center."""
     low, high = orbit.turning_points
@@ -46,9 +114,11 @@ def _path(axes: Any, orbit: CentralOrbit) -> None:
     else:
         reach = orbit.apsidal_angle * (1.0 - 1e-3)
         angles = np.linspace(-reach, reach, _POINTS) - orbit.angle_since_pericenter
-    r = orbit.radius(angles)
+    r, start = orbit.radius(angles), float(np.linalg.norm(orbit._state[1]))
+    # Of what comes from far and goes there, the turn would be a point.
+    r[r > _FAR * max(low, start)] = np.nan
     axes.plot(r * np.cos(angles), r * np.sin(angles), linewidth=0.8)
-    axes.plot(float(np.linalg.norm(orbit._state[1])), 0.0, "o", markersize=4, color=BLUE)
+    axes.plot(start, 0.0, "o", markersize=4, color=BLUE)
     axes.plot(0.0, 0.0, "+", color="0.4")
     around = np.linspace(0.0, 2.0 * np.pi, 361)
     for radius in (low, high):

@@ -19,9 +19,9 @@ if TYPE_CHECKING:
 __all__ = ["OfOrbits"]
 
 # What follows from the fields, and can be asked for by name.
-_FURTHER = ("longitude_of_ascending_node", "longitude_of_pericenter", "mean_longitude")
+FURTHER = ("longitude_of_ascending_node", "longitude_of_pericenter", "mean_longitude")
 # Of these every value is an angle; the other anomalies are none of a parabola and a hyperbola.
-_ANGLES = (
+ANGLES = (
     *("inclination", "node", "argument_of_pericenter", "true_anomaly", "turning_angle"),
     *("longitude_of_ascending_node", "longitude_of_pericenter"),
 )
@@ -57,8 +57,8 @@ class OfOrbits(Exported[str]):
         shape = tuple(map(len, axes.values()))
         own = tuple(type(self).__slots__)
         of: dict[str, tuple[tuple[str, ...], NDArray[Any]]] = {}
-        for name in chosen_columns(columns, own, (*own, *_FURTHER)):
+        for name in chosen_columns(columns, own, (*own, *FURTHER)):
             values = np.asarray(getattr(self, name))
             vector = values.ndim > np.ndim(self.mu)
             of[name] = ((*axes, *(("component",) if vector else ())), values.reshape(shape + (3,) * vector))
-        return Columns(axes, of, units=dict.fromkeys((name for name in of if name in _ANGLES), "rad"))
+        return Columns(axes, of, units=dict.fromkeys((name for name in of if name in ANGLES), "rad"))

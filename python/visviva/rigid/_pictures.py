@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import did_you_mean
-from visviva._style import VERMILION, legend_beside, set_box
+from visviva._style import VERMILION, legend_beside, legend_within, set_box
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import new_figure
@@ -155,13 +155,15 @@ def potential(axes: Any, motion: TopMotion) -> None:
     own = motion.top.effective_potential(motion.theta[first], p_phi=p_phi, p_psi=p_psi)
     energy = float(0.5 * motion.top.A * motion.theta_dot[first] ** 2 + own)
     least = float(values.min())
+    height = max(energy - least, 1e-3 * abs(energy), np.finfo(float).tiny)
+    # Its walls go no higher than is shown, so that there is room for names above.
+    values[values > energy + 1.5 * height] = np.nan
     axes.plot(angles, values, linewidth=1.0, label="effective potential")
     axes.plot([low, high], [energy, energy], linewidth=1.2, color=VERMILION, label="energy less that of the spin")
-    height = max(energy - least, 1e-3 * abs(energy), np.finfo(float).tiny)
     axes.set_ylim(least - 0.3 * height, energy + 1.5 * height)
     axes.set(xlabel="θ", ylabel="V", title="effective potential")
     axes.margins(x=0.01)
-    axes.legend(fontsize="small", loc="upper center")
+    legend_within(axes)
 
 
 def _nods_between(motion: TopMotion) -> tuple[float, float]:

@@ -11,15 +11,18 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
+    from visviva.scattering._foil_result import FoilTally
     from visviva.scattering._joint_tally import JointTally
     from visviva.scattering._tally import Tally
 
-__all__ = ["plot_joint", "plot_tally", "poisson_interval"]
+__all__ = ["plot_foil", "plot_joint", "plot_tally", "poisson_interval", "theory_is_known"]
 
 # The normal distribution beyond one standard deviation: (1 - erf(1/√2))/2.
 _TAIL = 0.15865525393145705
 # Sums of Poisson terms up to here, the series beyond: 1e-6 of a count, and less and less.
 _SUMMED = 500
+# Residuals are drawn of bins in which so many are expected.
+_EXPECTED = 1.0
 
 _AXES = {
     "cm_angle": ("angle in the centre-of-mass frame [degrees]", "dσ/dΩ [area per steradian]"),
@@ -29,6 +32,17 @@ _AXES = {
     "recoil_energy": ("recoil energy", "dσ/dE₂"),
     "impact_parameter": ("impact parameter", "dσ/db"),
 }
+_FOIL_AXES = {
+    "lab_angle": "angle from the beam",
+    "transmitted_angle": "angle from the beam, transmitted",
+    "reflected_angle": "angle from the beam, reflected",
+    "transmitted_energy": "energy of transmitted ions [eV]",
+    "reflected_energy": "energy of reflected ions [eV]",
+    "stopped_depth": "depth of stopped ions [µm]",
+    "cm_angle": "center-of-mass angle of the forced collision",
+}
+# Empty bins of a foil that are drawn beside those that have counted something.
+_ROOM = 5
 
 
 def poisson_interval(counts: NDArray[np.uint64]) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
@@ -68,21 +82,27 @@ def _mean(count: int, probability: float) -> float:
     return mean
 
 
-def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
-    """A picture of a tally; see `Tally.plot`."""
-    from visviva._style import BLUE, VERMILION
-    from visviva.plot import axes_or_new
+def theory_is_known(tally: Tally) -> bool:
+    """Whether `Tally.expected` tells what is expected."""
+    beam = tally.beam
+    known = beam.energy_spread is None and not (beam.divergence and tally.name in ("lab_angle", "recoil_angle"))
+    varying = any(isinstance(channel.probability, tuple) for channel in beam.channels)
+    return known and not (varying and tally.name not in ("cm_angle", "impact_parameter"))
 
-    axes = axes_or_new(ax)
+
+def plot_tally(tally: Tally, ax: Axes | None, residuals: Axes | None) -> Axes:
+    """A picture of a tally; see `Tally.plot`."""
+    from visviva._residuals import data_and_residuals
+    from visviva._style import BLUE, VERMILION, legend_within
+
+    known = theory_is_known(tally)
+    axes, lower = data_and_residuals(ax, residuals, (5.5, 5.0 if known else 4.0), known=known)
     angle = tally.name.endswith("angle")
     edges = np.degrees(tally.edges) if angle else tally.edges
     # Of the disc, bin by bin: what is beyond it is missing from the simulation and from what is expected alike.
     scale = np.pi * tally.b_max**2 / (tally.n_events * tally._measure())
-    beam = tally.beam
-    known = beam.energy_spread is None and not (beam.divergence and tally.name in ("lab_angle", "recoil_angle"))
-    varying = any(isinstance(channel.probability, tuple) for channel in beam.channels)
-    known = known and not (varying and tally.name not in ("cm_angle", "impact_parameter"))
-    expected = tally.expected() * scale if known else np.full(scale.shape, np.nan)
+    counts = tally.expected() if known else np.full(scale.shape, np.nan)
+    expected = counts * scale
     # Where nothing can come the interval of no count would say that something might.
     shown = np.where((tally.counts > 0) | (expected > 0.0) | (not known), scale, np.nan)
     if tally.by_stratum is None:
@@ -96,7 +116,8 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     if known:
         axes.stairs(expected, edges, linewidth=1.0, color=VERMILION, linestyle="--", label="theory")
     across, up = _AXES[tally.name]
-    axes.set(xlabel=across, ylabel=up)
+    axes.set(ylabel=up)
+    (axes if lower is None else lower).set_xlabel(across)
     drawn = np.concatenate([(tally.values() * scale)[tally.counts > 0], expected[expected > 0.0]])
     if drawn.size and drawn.max() > 30.0 * drawn.min():
         axes.set_yscale("log")
@@ -104,7 +125,58 @@ def plot_tally(tally: Tally, ax: Axes | None) -> Axes:
     widths = np.diff(tally.edges)
     if tally.edges[0] > 0.0 and widths[-1] > 30.0 * widths[0]:
         axes.set_xscale("log")
-    axes.legend(frameon=False)
+    legend_within(axes)
+    if lower is not None:
+        lower.set_xscale(axes.get_xscale())
+        _pulls(tally, edges, counts, lower)
+    return axes
+
+
+def _pulls(tally: Tally, edges: NDArray[np.float64], expected: NDArray[np.float64], axes: Axes) -> None:
+    """How many standard deviations the values are from what is expected, within a band of one."""
+    from visviva._residuals import mark_none
+    from visviva._style import BLUE
+
+    if tally.by_stratum is None:
+        # Of what is expected, binomial: that of a count of none would be none.
+        variance = expected * (1.0 - expected / tally.n_events)
+        # Where one event more or less is all there is, its distance is no number of standard deviations.
+        there = (variance > 0.0) & (expected >= _EXPECTED)
+    else:
+        variance = tally.variances()
+        there = variance > 0.0
+    middle = 0.5 * (edges[1:] + edges[:-1])
+    if axes.get_xscale() == "log":
+        middle = np.sqrt(edges[1:] * edges[:-1])
+    pulls = (tally.values() - expected)[there] / np.sqrt(variance[there])
+    axes.plot(middle[there], pulls, ".", markersize=4, color=BLUE)
+    mark_none(axes, 0.0, 1.0)
+    reach = 1.15 * max(3.0, float(np.abs(pulls).max()) if pulls.size else 0.0)
+    axes.set(ylim=(-reach, reach), ylabel="(n − theory) / σ")
+
+
+def plot_foil(tally: FoilTally, ax: Axes | None) -> Axes:
+    """A picture of what a foil does; see `FoilTally.plot`."""
+    from visviva._style import BLUE
+    from visviva.plot import axes_or_new
+
+    axes = axes_or_new(ax)
+    value, error = tally.fraction()
+    angle = tally.name.endswith("angle")
+    edges = np.degrees(tally.edges) if angle else tally.edges
+    axes.stairs(value, edges, linewidth=1.0, color=BLUE)
+    low, high = np.append(value - error, 0.0), np.append(value + error, 0.0)
+    axes.fill_between(edges, np.maximum(low, 0.0), high, step="post", alpha=0.3, linewidth=0.0, color=BLUE)
+    axes.set(xlabel=_FOIL_AXES[tally.name] + (" [degrees]" if angle else ""), ylabel="part of the ions per bin")
+    # Numbers of so many digits would lie on each other.
+    axes.locator_params(axis="x", nbins=5)
+    if angle and value.any():
+        axes.set_yscale("log")
+        axes.set_ylim(0.5 * value[value > 0.0].min(), 2.0 * value.max())
+    counted = np.flatnonzero(tally.counts)
+    if counted.size:
+        first, last = max(counted[0] - _ROOM, 0), min(counted[-1] + 1 + _ROOM, len(edges) - 1)
+        axes.set_xlim(edges[first], edges[last])
     return axes
 
 

@@ -11,11 +11,13 @@ import numpy as np
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
+from visviva.scattering._counts import plot_foil
 from visviva.scattering._of_events import is_zero, merged
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -34,15 +36,6 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
     "stopped_depth",
 )
 _FATES = ("transmitted", "reflected", "stopped", "missed")
-_AXES = {
-    "lab_angle": "angle from the beam",
-    "transmitted_angle": "angle from the beam, transmitted",
-    "reflected_angle": "angle from the beam, reflected",
-    "transmitted_energy": "energy of transmitted ions [eV]",
-    "reflected_energy": "energy of reflected ions [eV]",
-    "stopped_depth": "depth of stopped ions [µm]",
-    "cm_angle": "center-of-mass angle of the forced collision",
-}
 
 
 class Fraction(NamedTuple):
@@ -231,6 +224,33 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         True
         """
         return Fraction(self.values() / self.n_events, np.sqrt(self.variances()) / self.n_events)
+
+    def plot(self, *, ax: Axes | None = None) -> Axes:
+        """Draw the histogram, with a band of one standard error.
+
+        Parameters
+        ----------
+        ax : matplotlib.axes.Axes, optional
+            Where to draw; by default in a new figure, ``.figure`` of what is returned.
+
+        Returns
+        -------
+        matplotlib.axes.Axes
+            On a logarithmic scale for angles; it ends with the bins that have counted something.
+
+        Raises
+        ------
+        InvalidInput
+            If matplotlib is not installed.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
+        >>> out["transmitted_energy"].plot().get_xlabel()
+        'energy of transmitted ions [eV]'
+        """
+        return plot_foil(self, ax)
 
     def __eq__(self, other: object) -> bool:
         if not isinstance(other, FoilTally):
@@ -421,11 +441,12 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         return f"<FoilResult: {self.n_events} events, {parts}>"
 
     def plot(self) -> Figure:
-        """Draw every tally that has counted something, with a band of one standard error.
+        """Draw every tally that has counted something: see `FoilTally.plot`.
 
         Returns
         -------
         matplotlib.figure.Figure
+            Three panels in a row.
 
         Raises
         ------
@@ -440,19 +461,10 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         >>> figure.axes[0].get_ylabel()
         'part of the ions per bin'
         """
-        from visviva.plot import new_figure
+        from visviva._residuals import new_panels
 
         drawn = [tally for tally in self.tallies if tally.counts.any()] or self.tallies
-        figure, panels = new_figure(len(drawn), (4.5 * len(drawn), 4.0))
-        for axes, tally in zip(panels, drawn, strict=True):
-            value, error = tally.fraction()
-            angle = tally.name.endswith("angle")
-            edges = np.degrees(tally.edges) if angle else tally.edges
-            axes.stairs(value, edges, linewidth=1.0)
-            low, high = np.append(value - error, 0.0), np.append(value + error, 0.0)
-            axes.fill_between(edges, np.maximum(low, 0.0), high, step="post", alpha=0.3, linewidth=0.0)
-            axes.set(xlabel=_AXES[tally.name] + (" [degrees]" if angle else ""), ylabel="part of the ions per bin")
-            if angle and value.any():
-                axes.set_yscale("log")
-                axes.set_ylim(0.5 * value[value > 0.0].min(), 2.0 * value.max())
+        figure, panels = new_panels([False] * len(drawn), (4.5, 3.6))
+        for (axes, _), tally in zip(panels, drawn, strict=True):
+            tally.plot(ax=axes)
         return figure

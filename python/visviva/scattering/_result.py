@@ -16,6 +16,7 @@ from visviva.errors import InvalidInput
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._channels import Channel
+from visviva.scattering._counts import theory_is_known
 from visviva.scattering._importance import Strata
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
@@ -201,7 +202,8 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         Returns
         -------
         matplotlib.figure.Figure
-            With a panel for each tally; the caller's, pyplot's state is not touched.
+            With a panel for each tally, three in a row, and where something is expected one below of what is left; the
+            caller's, pyplot's state is not touched.
 
         Raises
         ------
@@ -215,13 +217,17 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
         ...     tally=["cm_angle", "recoil_energy"])
         >>> [axes.get_xlabel() for axes in result.plot().axes]
-        ['angle in the centre-of-mass frame [degrees]', 'recoil energy']
+        ['', 'angle in the centre-of-mass frame [degrees]', '', 'recoil energy']
         """
-        from visviva.plot import new_figure
+        from visviva._residuals import new_panels
 
-        figure, panels = new_figure(len(self.tallies), (5.5 * len(self.tallies), 4.0))
-        for axes, tally in zip(panels, self.tallies, strict=True):
-            tally.plot(ax=axes)
+        known = [isinstance(tally, Tally) and theory_is_known(tally) for tally in self.tallies]
+        figure, panels = new_panels(known, (5.5, 5.0 if any(known) else 4.0))
+        for (upper, lower), tally in zip(panels, self.tallies, strict=True):
+            if isinstance(tally, Tally):
+                tally.plot(ax=upper, residuals=lower)
+            else:
+                tally.plot(ax=upper)
         return figure
 
     @known_keywords

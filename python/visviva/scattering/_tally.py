@@ -215,25 +215,31 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         parts = _core.monte_carlo_expected(beam=described(self.beam), tallies=[[(self.name, self.edges)]])
         return parts[0][1:-2] * self.n_events
 
-    def plot(self, *, ax: Axes | None = None) -> Axes:
+    def plot(self, *, ax: Axes | None = None, residuals: Axes | None = None) -> Axes:
         """Draw counts as a cross section of the disc, with Poisson bands, beside what is expected where that is known.
 
         The bands are those of `poisson_interval`, not √n; with `importance` one standard deviation. Where the disc does
-        not reach, the simulation and `expected` lack the same.
+        not reach, the simulation and `expected` lack the same. A panel below shows what is left, (n − theory)/σ with σ
+        of the number that is expected, within a band of one σ, of bins in which one event is expected at least; with
+        `importance` σ is that of `variances`, of bins that have counted something.
 
         Parameters
         ----------
         ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure, ``.figure`` of what is returned.
+            Where to draw the counts; by default in a new figure, ``.figure`` of what is returned, whose
+            ``.figure.axes[1]`` is the panel below where something is expected.
+        residuals : matplotlib.axes.Axes, optional
+            With `ax`, where what is left goes; without it, it is not drawn.
 
         Returns
         -------
         matplotlib.axes.Axes
+            Of the counts.
 
         Raises
         ------
         InvalidInput
-            If matplotlib is not installed.
+            If matplotlib is not installed; for `residuals` without `ax` or where nothing is expected.
 
         Examples
         --------
@@ -241,10 +247,10 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         >>> run = vv.scattering.monte_carlo(
         ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
         ...     n_events=1000, seed=1, bins=4)
-        >>> run["cm_angle"].plot().get_xlabel()
-        'angle in the centre-of-mass frame [degrees]'
+        >>> [axes.get_ylabel() for axes in run["cm_angle"].plot().figure.axes]
+        ['dσ/dΩ [area per steradian]', '(n − theory) / σ']
         """
-        return plot_tally(self, ax)
+        return plot_tally(self, ax, residuals)
 
     def _measure(self) -> NDArray[np.float64]:
         """Of each bin the solid angle, or the width."""
