@@ -31,6 +31,11 @@ class BodyForce:
     """What every force on rigid bodies has: frozen values, and how they change with the frame and the units.
 
     Bodies are counted from 0 among the rigid bodies of a scene, or named.
+
+    Attributes
+    ----------
+    kind : str
+        What it is called in files.
     """
 
     __slots__ = ()
@@ -52,7 +57,7 @@ class BodyForce:
     def _with(self, **changes: Any) -> Self:
         return type(self)(**(self._values() | changes))
 
-    def core_arguments(self) -> dict[str, Any]:
+    def _core_arguments(self) -> dict[str, Any]:
         """What the core takes: the kind and every value by name, vectors as arrays.
 
         Raises
@@ -83,6 +88,12 @@ class BodyForce:
         ------
         visviva.InvalidInput
             For a boost, if the force has a fixed place, which would move.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> vv.RotationalDrag(0.5).shifted(np.ones(3), np.zeros(3))
+        RotationalDrag(coefficient=0.5, body=None)
         """
         return self
 
@@ -93,6 +104,12 @@ class BodyForce:
         ------
         visviva.InvalidInput
             For a compiled function, which knows the axes that it was written for.
+
+        Examples
+        --------
+        >>> import numpy as np, visviva as vv
+        >>> vv.RotationalDrag(0.5).rotated(np.diag([-1.0, -1.0, 1.0]))
+        RotationalDrag(coefficient=0.5, body=None)
         """
         return self
 
@@ -103,6 +120,12 @@ class BodyForce:
         ------
         visviva.InvalidInput
             If there is none: for drag, damping, or a compiled function.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.AppliedTorque([0.0, 0.0, 1.0]).reversed() == vv.AppliedTorque([0.0, 0.0, 1.0])
+        True
         """
         if self._one_way:
             raise InvalidInput("forces", f"{type(self).__name__} cannot be reversed: {self._one_way}")

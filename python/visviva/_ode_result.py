@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -21,8 +22,8 @@ __all__ = ["OdeResult", "OdeSolution"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeSolution:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class OdeSolution(Shown):
     """The solution between its nodes: a polynomial for each step.
 
     Attributes
@@ -70,8 +71,8 @@ class OdeSolution:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeResult:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class OdeResult(Record):
     """What `solve_ivp` gives, with the fields of SciPy's result.
 
     Attributes

@@ -314,8 +314,8 @@ def _derivatives(at: _Field, x: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class ThirdLaw:
+@dataclass(frozen=True, slots=True, repr=False)
+class ThirdLaw(Record):
     """What `third_law` finds.
 
     Attributes

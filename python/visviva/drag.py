@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import LinearDrag, QuadraticDrag, SampledDrag
@@ -23,9 +24,22 @@ __all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number",
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Throw:
+@dataclass(frozen=True, slots=True, repr=False)
+class Throw(Record):
     """What is told of a body thrown straight up, as plain numbers.
+
+    Attributes
+    ----------
+    terminal_speed : float
+        The speed that a long fall approaches.
+    apex_time : float
+        When it stands still.
+    apex_height : float
+        How high that is over the start.
+    return_time : float
+        When it is back at the start.
+    return_speed : float
+        How fast it is then.
 
     Examples
     --------
@@ -36,15 +50,10 @@ class Throw:
     """
 
     terminal_speed: float
-    """The speed that a long fall approaches."""
     apex_time: float
-    """When it stands still."""
     apex_height: float
-    """How high that is over the start."""
     return_time: float
-    """When it is back at the start."""
     return_speed: float
-    """How fast it is then."""
 
 
 @known_keywords

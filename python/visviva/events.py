@@ -19,6 +19,7 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event_table import EventTable
+from visviva._html import Record
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 
@@ -34,8 +35,8 @@ GENERALIZED = ("coordinate", "expression")
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Event:
+@dataclass(frozen=True, slots=True, repr=False)
+class Event(Record):
     """Something to look for. Made by the functions of `visviva.events`.
 
     Attributes

@@ -28,6 +28,11 @@ class Potential(Declared):
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
 
+    Attributes
+    ----------
+    kind, name : str
+        What it is called in files.
+
     Examples
     --------
     >>> import visviva as vv

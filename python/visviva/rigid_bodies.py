@@ -309,7 +309,7 @@ class RigidBodies(Shown):
         """
         return body_index("name", name, self.names, len(self))
 
-    def core_arguments(self) -> dict[str, NDArray[Any]]:
+    def _core_arguments(self) -> dict[str, NDArray[Any]]:
         """What the core takes: C-contiguous arrays, float64 but for `pivoted`.
 
         Orientations and angular velocities are those of the body's axes; moments and centers belong to the principal
@@ -318,7 +318,7 @@ class RigidBodies(Shown):
         Examples
         --------
         >>> import visviva as vv
-        >>> sorted(vv.RigidBody(1.0, [1.0, 1.0, 1.0]).core_arguments())  # doctest: +NORMALIZE_WHITESPACE
+        >>> sorted(vv.RigidBody(1.0, [1.0, 1.0, 1.0])._core_arguments())  # doctest: +NORMALIZE_WHITESPACE
         ['angular_velocity', 'axes', 'center', 'mass', 'moments', 'orientation', 'pivoted', 'position', 'velocity']
         """
         names = ("mass", "position", "velocity", "axes", "center", "pivoted", "orientation", "angular_velocity")

@@ -169,9 +169,9 @@ class CompiledTorque(BodyForce):
         """Where the function is."""
         return of_orientation(self.function)
 
-    def core_arguments(self) -> dict[str, Any]:
+    def _core_arguments(self) -> dict[str, Any]:
         """What the core takes, the address in the place of the function, which has to be kept as long as it is used."""
-        known = BodyForce.core_arguments(self)
+        known = BodyForce._core_arguments(self)
         return {"kind": self.kind, "address": self.address, "body": known["body"]}
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.generalized._calculus import Calculus, listed
@@ -38,7 +39,7 @@ _MOST_PARTS = 256
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class NoetherSymmetry:
+class NoetherSymmetry(Record):
     """Whether a transformation is a symmetry of a Lagrangian, and what it conserves. Made by `Lagrangian.noether`.
 
     Attributes

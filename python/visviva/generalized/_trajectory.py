@@ -82,6 +82,8 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     reactions : ndarray, shape (T, c)
         Multipliers λ of the constraints, in their order, holonomic ones first: the force Σ λ ∂g/∂q acts on the system.
     status : Status
+    method : str
+        What ran.
     steps, evaluations : int
         What it took; an evaluation is one of all stages.
     longest_step : float

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -18,8 +19,8 @@ __all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Spectrum:
+@dataclass(frozen=True, repr=False)
+class Spectrum(Record):
     """Energies of a beam, each with its part of the projectiles.
 
     Parameters
@@ -58,8 +59,8 @@ class Spectrum:
 
 
 @known_keywords
-@dataclass(frozen=True, init=False)
-class Spread:
+@dataclass(frozen=True, init=False, repr=False)
+class Spread(Record):
     """How energies or directions of a beam lie about their middle.
 
     Attributes
@@ -153,8 +154,8 @@ def as_spread(name: str, given: object) -> Spread | None:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Beam:
+@dataclass(frozen=True, repr=False)
+class Beam(Record):
     """A beam on a disc around one centre: what results must have in common to be added.
 
     Attributes

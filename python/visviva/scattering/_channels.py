@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from visviva._arrays import float_array, number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -16,8 +17,8 @@ __all__ = ["Channel", "as_channels"]
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Channel:
+@dataclass(frozen=True, repr=False)
+class Channel(Record):
     """A reaction that events of a Monte Carlo go through with some probability.
 
     The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the centre-of-mass frame

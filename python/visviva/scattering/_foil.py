@@ -10,6 +10,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive, positive_array, whole_number
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
@@ -34,8 +35,8 @@ _SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Foil:
+@dataclass(frozen=True, repr=False)
+class Foil(Record):
     """A foil of amorphous matter, through which ions are followed collision by collision.
 
     Energies are in eV, lengths of the foil in µm, masses in u, angles in radians; a potential is in eV and Å.

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
@@ -70,8 +71,8 @@ _IONS = {
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Ion:
+@dataclass(frozen=True, repr=False)
+class Ion(Record):
     """What flies through a foil.
 
     `Foil` also takes ``"proton"``, ``"deuteron"``, ``"triton"``, ``"helion"`` and ``"alpha"``.
@@ -104,8 +105,8 @@ class Ion:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Material:
+@dataclass(frozen=True, repr=False)
+class Material(Record):
     """Amorphous matter of one element or more.
 
     `Foil` also takes a name: ``"beryllium"``, ``"carbon"`` (amorphous), ``"aluminum"``, ``"silicon"``, ``"titanium"``,

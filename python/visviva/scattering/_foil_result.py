@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
-from visviva._html import Record
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._of_events import is_zero, merged
@@ -64,8 +64,8 @@ class Fraction(NamedTuple):
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Bombardment:
+@dataclass(frozen=True, repr=False)
+class Bombardment(Record):
     """A foil and what comes to it: what results must have in common to be added.
 
     Attributes
@@ -224,8 +224,8 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
+@dataclass(frozen=True, eq=False, repr=False)
+class FoilResult(Shown, Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same bombardment add up, bit for bit, if no event is in both.
 
     Attributes
@@ -353,8 +353,10 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     def __add__(self, other: FoilResult) -> FoilResult:
         if not isinstance(other, FoilResult):
             return NotImplemented
-        if self.bombardment != other.bombardment:
-            raise InvalidInput("other", f"expected one of {self.bombardment}, got one of {other.bombardment}")
+        for name in (field.name for field in fields(self.bombardment)):
+            mine, theirs = getattr(self.bombardment, name), getattr(other.bombardment, name)
+            if mine != theirs:
+                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
         events = merged((*self.events, *other.events))
@@ -364,6 +366,20 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     def __radd__(self, other: int) -> FoilResult:
         """Begin a `sum`."""
         return self if is_zero(other) else NotImplemented
+
+    def _sheet(self) -> Sheet:
+        fates = [(name, f"{number}", "", "") for name, number in zip(_FATES, self.sums[:, 0].tolist(), strict=True)]
+        rows = [
+            (
+                str(tally.name),
+                f"{int(tally.counts.sum())}",
+                f"{tally.counts.size}",
+                f"{tally.edges[0]:.6g} to {tally.edges[-1]:.6g}",
+            )
+            for tally in self.tallies
+        ]
+        caption = f"{self.n_events} ions on {self.bombardment.foil!r}, {self.bombardment.beam_energy:g} eV"
+        return Sheet(caption, [*fates[: 3 + bool(self.missed)], *rows], ("", "events", "bins", "range"))
 
     def __repr__(self) -> str:
         parts = ", ".join(

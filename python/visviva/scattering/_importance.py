@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Spectrum
@@ -25,8 +26,8 @@ _MOST, _LEAST = 2**10, 1e-6
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Strata:
+@dataclass(frozen=True, repr=False)
+class Strata(Record):
     """Rings of impact parameters, each with its part of the events of a Monte Carlo.
 
     In each ring b² is uniform, and each of its events stands for equally many of a beam that fills the disc evenly.
@@ -117,8 +118,8 @@ class Strata:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class LargeAngles:
+@dataclass(frozen=True, repr=False)
+class LargeAngles(Record):
     """Force a part of the events of a Monte Carlo to be within what is deflected by more than some angle.
 
     The disc is divided at the greatest impact parameter that leads to the angle, of all branches and of all energies of

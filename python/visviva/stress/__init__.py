@@ -8,7 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.integrators import methods as all_methods
 from visviva.stress.cases import CASES
@@ -25,7 +27,7 @@ def __dir__() -> list[str]:
 
 
 @known_keywords
-class Report:
+class Report(Shown):
     """The verdicts on every case, method by method.
 
     Attributes
@@ -45,6 +47,16 @@ class Report:
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
         self.failures = [verdict for verdict in self.verdicts if verdict.word == "FAILED"]
+
+    def __repr__(self) -> str:
+        return f"Report({count(len(self.verdicts), 'verdict')}, {len(self.failures)} failed; print shows them)"
+
+    def _sheet(self) -> Sheet:
+        bad = [(verdict.case, *line(verdict).split(maxsplit=2)) for verdict in self.failures]
+        rows, note = first_rows(len(bad), bad.__getitem__)
+        return Sheet(
+            f"{len(self.verdicts)} verdicts, {len(bad)} failed", rows, ("case", "method", "", "") if bad else (), note
+        )
 
     def __str__(self) -> str:
         lines = []
