@@ -265,9 +265,25 @@ def execute(
     else:
         from visviva._progress import callback
 
-        with callback(request.progress) as report:
+        shown = _counted(asked, ensemble) if request.progress is True else ()
+        with callback(request.progress, *shown) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
     return finished(result, asked, ensemble=ensemble, make=make)
+
+
+def _counted(asked: _core._Request, ensemble: bool) -> tuple[str, tuple[float, float] | None]:
+    """What progress is shown in, as `callback` takes it: what the core counts, or what that is a share of."""
+    if ensemble:
+        return "copies", (0.0, float(len(asked["mass"])))
+    if _core.plan(asked)["solution"].startswith("closed form"):
+        return "times", None
+    if asked["dt"] is not None and asked["time_transformation"] is None:
+        return "steps", None
+    if asked["collisions"] is not None:
+        return "", None  # each stretch between collisions is counted as if it were the last
+    from visviva._progress import TIME
+
+    return TIME, (float(asked["t0"]), float(asked["times"][-1]))
 
 
 def finished(

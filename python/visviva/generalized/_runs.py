@@ -224,7 +224,9 @@ class Runs(States):
             return self._model.run(asked, states, parameters, threads, None)
         from visviva._progress import callback
 
-        with callback(progress) as report:
+        # A single run is counted when it is over.
+        of = ("copies", (0.0, float(len(states)))) if len(states) > 1 else ("", None)
+        with callback(progress, *of) as report:
             return self._model.run(asked, states, parameters, threads, report)
 
     def plan(
