@@ -36,6 +36,12 @@ class BodyForce:
     ----------
     kind : str
         What it is called in files.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> isinstance(vv.RotationalDrag(0.5), vv.rigid.BodyForce)
+    True
     """
 
     __slots__ = ()
@@ -84,6 +90,16 @@ class BodyForce:
     def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
+        Parameters
+        ----------
+        position, velocity : array_like, shape (3,)
+            By what is displaced, and boosted.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
+
         Raises
         ------
         visviva.InvalidInput
@@ -100,6 +116,16 @@ class BodyForce:
     def rotated(self, rotation: NDArray[np.float64]) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).
 
+        Parameters
+        ----------
+        rotation : ndarray, shape (3, 3)
+            Orthogonal.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
+
         Raises
         ------
         visviva.InvalidInput
@@ -115,6 +141,11 @@ class BodyForce:
 
     def reversed(self) -> Self:
         """The force under which bodies with their motion turned round retrace their path.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
 
         Raises
         ------
@@ -133,6 +164,16 @@ class BodyForce:
 
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self:
         """The force in units of which ``length``, ``mass`` and ``time`` make one old unit.
+
+        Parameters
+        ----------
+        length, mass, time : float
+            What one old unit is in new ones; positive.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
 
         Raises
         ------

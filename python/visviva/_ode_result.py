@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
@@ -118,7 +118,19 @@ class OdeResult(Record):
     message: str
     success: bool
 
-    def __getitem__(self, name: str) -> Any:
+    @overload
+    def __getitem__(self, name: Literal["t", "y"]) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, name: Literal["sol"]) -> OdeSolution | None: ...
+    @overload
+    def __getitem__(self, name: Literal["t_events", "y_events"]) -> list[NDArray[np.float64]] | None: ...
+    @overload
+    def __getitem__(self, name: Literal["nfev", "njev", "nlu", "status"]) -> int: ...
+    @overload
+    def __getitem__(self, name: Literal["message"]) -> str: ...
+    @overload
+    def __getitem__(self, name: Literal["success"]) -> bool: ...
+    def __getitem__(self, name: str) -> object:
         if name not in self.keys():
             raise KeyError(name)
         return getattr(self, name)
@@ -143,7 +155,7 @@ class OdeResult(Record):
     def __contains__(self, name: object) -> bool:
         return name in self.keys()
 
-    def get(self, name: str, default: Any = None) -> Any:
+    def get(self, name: str, default: object = None) -> object:
         """Give a field by name, or something else where there is none of that name.
 
         Parameters
@@ -165,7 +177,7 @@ class OdeResult(Record):
         """
         return getattr(self, name) if name in self.keys() else default
 
-    def values(self) -> list[Any]:
+    def values(self) -> list[object]:
         """All fields, in the order of their names.
 
         Examples
@@ -174,9 +186,9 @@ class OdeResult(Record):
         >>> len(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).values())
         11
         """
-        return [self[name] for name in self]
+        return [getattr(self, name) for name in self]
 
-    def items(self) -> list[tuple[str, Any]]:
+    def items(self) -> list[tuple[str, object]]:
         """Names and fields.
 
         Examples
@@ -185,7 +197,7 @@ class OdeResult(Record):
         >>> dict(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).items())["success"]
         True
         """
-        return [(name, self[name]) for name in self]
+        return [(name, getattr(self, name)) for name in self]
 
     def __repr__(self) -> str:
         return (

@@ -26,6 +26,7 @@ from visviva.integrators import methods
 if TYPE_CHECKING:
     from visviva import _core
     from visviva.integrators import Method
+    from visviva.typing import RunSettings
 
 __all__ = ["Advice", "Option", "advise"]
 
@@ -60,7 +61,7 @@ class Option(Record):
     (True, True)
     """
 
-    how: dict[str, Any]
+    how: RunSettings
     error: float
     steps: int
     seconds: float
@@ -100,9 +101,9 @@ class Advice(Shown):
     tried: float
 
     @property
-    def how(self) -> dict[str, Any]:
+    def how(self) -> RunSettings:
         """Arguments for ``run`` of the fastest: ``scene.run(t, **advice.how)``."""
-        return dict(self.options[0].how)
+        return self.options[0].how.copy()
 
     def __str__(self) -> str:
         lines = [f"{'':<20}{'dt or rtol':>14}{'error':>11}{'steps':>12}{'time':>12}"]
@@ -125,7 +126,7 @@ class Advice(Shown):
         return f"{of} to {self.accuracy:g}, by a trial of {part}"
 
     def _rows(self) -> list[tuple[str, str, str, str, str]]:
-        rows = []
+        rows: list[tuple[str, str, str, str, str]] = []
         for option in self.options:
             by = option.how.get("dt", option.how.get("rtol"))
             shown = "" if by is None else f"{'dt' if 'dt' in option.how else 'rtol'} {by:.4g}"
@@ -293,7 +294,8 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
         found = trial.of_method(method, **{name: sizes[k]})
         if found is not None and found[0] <= accuracy:
             error, steps, seconds = found
-            how = {"method": method.name, name: sizes[k]}
+            how: RunSettings = {"method": method.name}
+            how["rtol" if method.adaptive else "dt"] = sizes[k]
             return Option(how, error, round(steps * whole), seconds * whole)
     return None
 

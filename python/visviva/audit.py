@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.trajectory import Trajectory
+
     _Field = Callable[[NDArray[np.float64]], ArrayLike]
 
 __all__ = [
@@ -164,7 +166,7 @@ def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[n
 
 
 @known_keywords
-def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
+def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     """The work of one force on each body along a recorded run, up to each of its times.
 
     Parameters

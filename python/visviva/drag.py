@@ -8,7 +8,7 @@ one's own.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive
@@ -18,7 +18,12 @@ from visviva.errors import InvalidInput
 from visviva.forces import LinearDrag, QuadraticDrag, SampledDrag
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.typing import CompiledFunction
 
 __all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number", "stokes", "tabulated", "throw"]
 
@@ -227,7 +232,7 @@ def stokes(
 
 @known_keywords
 def custom(
-    function: Any,
+    function: Callable[[NDArray[np.float64]], ArrayLike] | CompiledFunction,
     R_min: float,
     R_max: float,
     *,

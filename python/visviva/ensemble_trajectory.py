@@ -141,9 +141,9 @@ class EnsembleTrajectory(Recorded):
         return status
 
     @property
-    def per_trajectory(self) -> dict[str, NDArray[Any]]:
+    def per_trajectory(self) -> dict[str, NDArray[np.int64]]:
         """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,)."""
-        counts: dict[str, NDArray[Any]] = self._result["per_trajectory"]
+        counts: dict[str, NDArray[np.int64]] = self._result["per_trajectory"]
         for each in counts.values():
             each.setflags(write=False)
         return dict(counts)

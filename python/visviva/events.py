@@ -26,7 +26,10 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import sympy
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.typing import SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -56,7 +59,7 @@ class Event(Record):
     """
 
     kind: str
-    parameters: tuple[tuple[str, Any], ...]
+    parameters: tuple[tuple[str, object], ...]
     direction: int
     terminal: int
 
@@ -222,7 +225,9 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 
 
 @known_keywords
-def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def coordinate(
+    name: str | sympy.Expr, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False
+) -> Event:
     """A generalized coordinate passes a value.
 
     Parameters
@@ -259,7 +264,9 @@ def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: b
 
 
 @known_keywords
-def expression(expression: Any, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def expression(
+    expression: sympy.Expr | Callable[..., SymbolicExpression], *, direction: int = 0, terminal: bool | int = False
+) -> Event:
     """An expression of generalized coordinates passes zero.
 
     Parameters

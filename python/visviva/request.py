@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from visviva._progress import Progress
     from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName, TransformationName
+    from visviva.typing import CollisionRule, ColumnName, EventFunction, Executor, MethodName, TransformationName
 
 __all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished"]
 
@@ -187,7 +187,7 @@ class RunRequest(PlanRequest):
 
     threads: int | None = None
     progress: Progress = False
-    executor: Any = None
+    executor: Executor | None = None
     save_every: float | None = None
     save_to: str | PathLike[str] | None = None
 
@@ -300,11 +300,11 @@ def finished(
     if error is not None:
         raise _exception(error, made)
     if ensemble and (result["status"] == Status.INTERRUPTED).any():
-        raise Interrupted("the ensemble was interrupted", made)
+        raise Interrupted("the ensemble was interrupted", cast("Any", made))
     return made
 
 
-def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
+def _exception(error: dict[str, Any], trajectory: Any) -> BaseException:
     if error["kind"] == "close_encounter":
         first, second = error["bodies"]
         return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)

@@ -214,7 +214,7 @@ class RigidBodies(Shown):
     def __len__(self) -> int:
         return len(self.mass)
 
-    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> RigidBodies:
+    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | ArrayLike) -> RigidBodies:
         chosen = body_indices("bodies", bodies, self.names, len(self))
         given: dict[str, Any] = {n: None if array is None else array[chosen] for n, array in self._arrays().items()}
         return RigidBodies(**given, names=[self.names[body] for body in chosen] if self.names else None)

@@ -15,6 +15,8 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import CompiledFunction
+
 __all__ = ["AppliedTorque", "CompiledTorque", "RotationalDrag"]
 
 
@@ -157,10 +159,10 @@ class CompiledTorque(BodyForce):
     _dimensions = {}  # noqa: RUF012
     _one_way = "nobody knows the reverse of a function"
 
-    function: Any
+    function: CompiledFunction
     body: int | str | None
 
-    def __init__(self, function: Any, body: int | str | None = None) -> None:
+    def __init__(self, function: CompiledFunction, body: int | str | None = None) -> None:
         of_orientation(function)
         keep(self, function=function, body=body_of("body", body))
 

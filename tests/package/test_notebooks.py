@@ -171,13 +171,15 @@ def test_html_is_well_formed_and_text_is_short(name: str) -> None:
 
 
 def public_classes() -> dict[str, type]:
-    """Those that a room shows, by name; no errors, no enumerations and no named tuples, which show themselves."""
+    """Those that a room shows, by name; no errors, enumerations, named tuples and types to annotate with."""
     rooms = [vv, *(getattr(vv, room) for room in vv._ROOMS)]
     found = {f"{room.__name__}.{name}": getattr(room, name) for room in rooms for name in room.__all__}
     return {
         name: kind
         for name, kind in found.items()
-        if isinstance(kind, type) and not issubclass(kind, BaseException | Enum | tuple)
+        if isinstance(kind, type)
+        and not issubclass(kind, BaseException | Enum | tuple)
+        and kind.__module__ != "visviva.typing"
     }
 
 

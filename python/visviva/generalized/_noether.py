@@ -9,7 +9,7 @@ vanish by the rules of the graph, which proves it, or at states of many sizes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
 
@@ -23,6 +23,7 @@ from visviva.generalized._source import _label
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import sympy
     from numpy.typing import NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
@@ -80,7 +81,7 @@ class NoetherSymmetry(Record):
         return f"NoetherSymmetry(holds={self.holds}, {self.reason})"
 
     @property
-    def expression(self) -> Any:
+    def expression(self) -> sympy.Expr:
         """What is conserved, as an expression of SymPy.
 
         Raises
@@ -94,7 +95,11 @@ class NoetherSymmetry(Record):
             )
         return self._calculus.shown([self._momentum])[0]
 
-    def conserved(self, trajectory: GeneralizedTrajectory | None = None) -> Any:
+    @overload
+    def conserved(self, trajectory: None = None) -> float: ...
+    @overload
+    def conserved(self, trajectory: GeneralizedTrajectory) -> NDArray[np.float64]: ...
+    def conserved(self, trajectory: GeneralizedTrajectory | None = None) -> float | NDArray[np.float64]:
         """Give what is conserved, at the start or along a trajectory; of what is no symmetry it changes.
 
         Parameters

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
     from visviva.generalized._events import GeneralizedEventTable
@@ -346,7 +346,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         self,
         path: str | PathLike[str] | None = None,
         *,
-        points: Callable[..., Any] | None = None,
+        points: Callable[..., Sequence[Sequence[ArrayLike]]] | None = None,
         plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
         trail: float = 0.1,
         frames: int = 200,

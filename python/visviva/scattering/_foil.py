@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 import numpy as np
 
@@ -27,11 +27,12 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Bins
-    from visviva.typing import FoilTallyName
+    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, ScreeningName
 
 __all__ = ["Foil"]
 
-_SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
+Stopping: TypeAlias = Literal["joined", "bethe", "lindhard_scharff", "none"]
+_SCREENINGS: tuple[ScreeningName, ...] = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
 
 
 @known_keywords
@@ -89,17 +90,17 @@ class Foil(Record):
 
     material: Material
     thickness: float
-    potential: Any = "zbl"
-    stopping: Any = "joined"
+    potential: ScreeningName | Literal["coulomb"] | tuple[Potential, ...] = "zbl"
+    stopping: Stopping | tuple[tuple[float, ...], tuple[float, ...]] = "joined"
     minimum_angle: float = 1e-4
 
     def __init__(
         self,
-        material: Material | str,
+        material: Material | MaterialName,
         thickness: float,
         *,
-        potential: str | Potential | Sequence[Potential] = "zbl",
-        stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] | tuple[ArrayLike, ArrayLike] = "joined",
+        potential: ScreeningName | Literal["coulomb"] | Potential | Sequence[Potential] = "zbl",
+        stopping: Stopping | tuple[ArrayLike, ArrayLike] = "joined",
         minimum_angle: float = 1e-4,
     ) -> None:
         made = material_of(material)
@@ -151,13 +152,13 @@ class Foil(Record):
 
     def run(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         *,
         beam_energy: float,
         n_events: int,
         seed: int,
-        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, Any] = USUAL_TALLIES,
-        bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
+        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, ArrayLike | Bins] = USUAL_TALLIES,
+        bins: ArrayLike | Bins | Mapping[FoilTallyName, ArrayLike | Bins] = 180,
         incidence: float = 0.0,
         lowest_energy: float | None = None,
         collisions: Literal["multiple", "single"] = "multiple",
@@ -250,7 +251,9 @@ class Foil(Record):
                 threads=None if threads is None else whole_number("threads", threads, 1, 1024),
                 progress=report,
             )
-        tallies = tuple(FoilTally(name, edges, sums, units, done) for name, edges, sums in columns)
+        tallies = tuple(
+            FoilTally(cast("FoilTallyName", name), edges, sums, units, done) for name, edges, sums in columns
+        )
         events = ((key, first, first + done),)
         result = FoilResult(hit, events, fates, units, tallies, told[0], told[1])
         if stopped or done < count:
@@ -259,7 +262,7 @@ class Foil(Record):
 
     def history(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         *,
         beam_energy: float,
         seed: int,
@@ -268,7 +271,7 @@ class Foil(Record):
         lowest_energy: float | None = None,
         collisions: Literal["multiple", "single"] = "multiple",
         forced_angle: float | None = None,
-    ) -> dict[str, Any]:
+    ) -> IonHistory:
         """The way of one of the very ions that `run` counts.
 
         Parameters
@@ -319,7 +322,7 @@ class Foil(Record):
             "weight": weight,
         }
 
-    def stopping_power(self, ion: Ion | str, energy: ArrayLike) -> NDArray[np.float64]:
+    def stopping_power(self, ion: Ion | IonName, energy: ArrayLike) -> NDArray[np.float64]:
         """What electrons take of an ion, in eV/µm.
 
         Parameters
@@ -343,7 +346,7 @@ class Foil(Record):
         """
         return self._losses(ion, energy, None) * 1e4
 
-    def range(self, ion: Ion | str, energy: ArrayLike, *, lowest_energy: float) -> NDArray[np.float64]:
+    def range(self, ion: Ion | IonName, energy: ArrayLike, *, lowest_energy: float) -> NDArray[np.float64]:
         """How far an ion goes in µm until electrons alone have slowed it down: ∫dE/S.
 
         Parameters
@@ -369,7 +372,7 @@ class Foil(Record):
         """
         return self._losses(ion, energy, positive("lowest_energy", lowest_energy)) / 1e4
 
-    def _losses(self, ion: Ion | str, energy: ArrayLike, lowest: float | None) -> NDArray[np.float64]:
+    def _losses(self, ion: Ion | IonName, energy: ArrayLike, lowest: float | None) -> NDArray[np.float64]:
         given = ion_of(ion)
         energies = positive_array("energy", energy)
         found = _core.foil_stopping(
@@ -382,7 +385,7 @@ class Foil(Record):
 
     def _hit(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         beam_energy: object,
         lowest_energy: object,
         incidence: object,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from visviva.scattering._foil import Foil
     from visviva.scattering._foil_material import Ion
     from visviva.typing import FoilTallyName
+
+_T = TypeVar("_T", float, "NDArray[np.float64]")
 
 __all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult", "FoilTally", "Fraction"]
 
@@ -45,7 +47,7 @@ _AXES = {
 }
 
 
-class Fraction(NamedTuple):
+class Fraction(NamedTuple, Generic[_T]):
     """A part of all ions, and its standard error.
 
     Examples
@@ -57,9 +59,9 @@ class Fraction(NamedTuple):
     (True, True)
     """
 
-    value: Any
+    value: _T
     """As a part of the events."""
-    error: Any
+    error: _T
     """One standard deviation."""
 
 
@@ -143,7 +145,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
     True
     """
 
-    name: str
+    name: FoilTallyName
     edges: NDArray[np.float64]
     sums: NDArray[np.uint64]
     units: tuple[float, float]
@@ -197,7 +199,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         """
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
 
-    def fraction(self) -> Fraction:
+    def fraction(self) -> Fraction[NDArray[np.float64]]:
         """As a part of all ions that came, bin by bin, with its standard error.
 
         Examples
@@ -225,7 +227,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class FoilResult(Shown, Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
+class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same bombardment add up, bit for bit, if no event is in both.
 
     Attributes
@@ -307,7 +309,7 @@ class FoilResult(Shown, Mapping[str, FoilTally]):  # noqa: PLW1641 — as its ta
         """Events whose way ended before the collision that was to be forced; 0 where nothing is forced."""
         return int(self.sums[3, 0])
 
-    def fraction(self, fate: str) -> Fraction:
+    def fraction(self, fate: Literal["transmitted", "reflected", "stopped"]) -> Fraction[float]:
         """What part of the ions was transmitted, reflected or stopped, with its standard error.
 
         Parameters
@@ -331,13 +333,13 @@ class FoilResult(Shown, Mapping[str, FoilTally]):  # noqa: PLW1641 — as its ta
         weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
         return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
 
-    def __getitem__(self, name: str) -> FoilTally:
+    def __getitem__(self, name: FoilTallyName) -> FoilTally:
         for tally in self.tallies:
             if tally.name == name:
                 return tally
         raise KeyError(f"no tally {name!r}; this run has {', '.join(self)}")
 
-    def __iter__(self) -> Iterator[str]:
+    def __iter__(self) -> Iterator[FoilTallyName]:
         return (tally.name for tally in self.tallies)
 
     def __len__(self) -> int:

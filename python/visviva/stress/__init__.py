@@ -19,6 +19,8 @@ from visviva.stress.verdict import Verdict, judged
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from visviva.typing import MethodName
+
 __all__ = ["Report", "Verdict", "run"]
 
 
@@ -83,7 +85,9 @@ def line(verdict: Verdict) -> str:
 
 
 @known_keywords
-def run(methods: Sequence[str] | None = None, *, long: bool = False, cases: Sequence[str] | None = None) -> Report:
+def run(
+    methods: Sequence[MethodName] | None = None, *, long: bool = False, cases: Sequence[str] | None = None
+) -> Report:
     """Put methods under abuse.
 
     Parameters
