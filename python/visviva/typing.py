@@ -3,9 +3,11 @@
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
 has; a test compares. `TransformationName` is what a time transformation watches. `GeneralizedMethodName`,
 `DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
-`FoilTallyName` what Monte Carlo runs count, and `MaterialName`, `IonName` and `ScreeningName` what foils are made of.
-`SymbolicExpression`, `Formula`, `ParameterValues` and `GeneralizedEvent` are what formulas are written with,
-`CompiledFunction` is a function at an address, `Executor` runs parts elsewhere, and `RunSettings` is what advice gives.
+`FoilTallyName` what Monte Carlo runs count, `MaterialName`, `IonName` and `ScreeningName` what foils are made of, and
+`EulerConvention` names the turns of `visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`,
+`GeneralizedEvent` and `GeneralizedPath` are what goes into systems in generalized coordinates. A `CompiledFunction`
+(`NumbaFunction` is one) is at an address, an `Executor` runs parts elsewhere, `RunSettings` is what advice gives, and
+`IonHistory` the way of one ion.
 """
 
 from __future__ import annotations
