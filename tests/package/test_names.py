@@ -95,6 +95,9 @@ result["lab_angle", "enrgy"]  # wrong
 result.resume(10, executor=3)  # wrong
 for name in result:
     result[name]
+lines, rings = vv.scattering.Spectrum([1.0, 2.0], [1.0, 1.0]), vv.scattering.Strata([0.0, 0.1, 1.0])
+vv.scattering.Channel(-1.5, ([0.0, 1.0], [0.5, 0.1]), excitation_function=([1.0, 2.0], [0.0, 1.0]))
+vv.scattering.Material(2.2, [14, 8], [28.085, 15.999], [1, 2], mean_excitation_energy=139.2)
 foil = vv.scattering.Foil("gold", 0.4)
 vv.scattering.Foil("unobtainium", 0.4)  # wrong
 vv.scattering.Foil("gold", 0.4, potential="zbll")  # wrong

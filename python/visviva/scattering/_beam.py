@@ -11,6 +11,8 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from visviva.potentials import Potential
     from visviva.scattering._channels import Channel
     from visviva.scattering._importance import Strata
@@ -46,9 +48,9 @@ class Spectrum(Record):
     energy: tuple[float, ...]
     weight: tuple[float, ...]
 
-    def __post_init__(self) -> None:
-        for name in ("energy", "weight"):
-            values = float_array(name, getattr(self, name), (None,))
+    def __init__(self, energy: ArrayLike, weight: ArrayLike) -> None:
+        for name, given in (("energy", energy), ("weight", weight)):
+            values = float_array(name, given, (None,))
             if not values.size or not (values > 0.0).all():
                 raise InvalidInput(name, f"expected one or more positive numbers, got {values.tolist()}")
             object.__setattr__(self, name, tuple(values.tolist()))

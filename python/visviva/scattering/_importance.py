@@ -16,7 +16,7 @@ from visviva.scattering._beam import Spectrum
 from visviva.scattering._structure import impact_parameter
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.scattering._beam import Beam
 
@@ -63,14 +63,14 @@ class Strata(Record):
     edges: tuple[float, ...]
     fractions: tuple[float, ...] = ()
 
-    def __post_init__(self) -> None:
-        edges = float_array("edges", self.edges, (None,)).tolist()
+    def __init__(self, edges: ArrayLike, fractions: ArrayLike | None = ()) -> None:
+        radii = float_array("edges", edges, (None,)).tolist()
         # None and nothing at all are the default.
-        given = () if self.fractions is None else self.fractions
-        fractions = float_array("fractions", given, (None,)).tolist() or [1.0] * max(0, len(edges) - 1)
-        _core.strata_weights(edges, fractions)
-        object.__setattr__(self, "edges", tuple(edges))
-        object.__setattr__(self, "fractions", tuple(fractions))
+        given = () if fractions is None else fractions
+        parts = float_array("fractions", given, (None,)).tolist() or [1.0] * max(0, len(radii) - 1)
+        _core.strata_weights(radii, parts)
+        object.__setattr__(self, "edges", tuple(radii))
+        object.__setattr__(self, "fractions", tuple(parts))
 
     @property
     def weights(self) -> NDArray[np.float64]:
