@@ -195,6 +195,16 @@ def test_every_public_class_is_shown_and_tried(name: str) -> None:
     assert any(type(thing) is kind for thing in THINGS.values()) or kind.__subclasses__()
 
 
+def test_a_report_shows_what_failed_or_how_many_did_what() -> None:
+    fine = vv.stress.Verdict("two bodies", "rk4", "ok", "", 1e-9, 1e-12, 0.01)
+    bad = vv.stress.Verdict("a <wall>", "dop853", "FAILED", "hangs", 1.0, 1.0, 99.0)
+    assert [*Balanced(vv.stress.Report([fine, fine])._repr_html_()).texts] == ["2 verdicts, 0 failed", "ok", "2"]
+    texts = Balanced(vv.stress.Report([fine, bad])._repr_html_()).texts
+    assert texts[0] == "2 verdicts, 1 failed"
+    assert {"a <wall>", "dop853", "FAILED"} <= set(texts)
+    assert "two bodies" not in texts
+
+
 def test_an_expression_tells_what_it_is() -> None:
     seen: list[Any] = []
     vv.Lagrangian(lambda q, v, t: seen.extend([q[0], v[0] ** 2]) or v[0] ** 2, ["x"])

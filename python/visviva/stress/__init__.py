@@ -6,6 +6,7 @@ and has no name, an exception that is not of this package and a run that hangs a
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
 from visviva._html import Sheet, Shown, first_rows
@@ -54,11 +55,13 @@ class Report(Shown):
         return f"Report({count(len(self.verdicts), 'verdict')}, {len(self.failures)} failed; print shows them)"
 
     def _sheet(self) -> Sheet:
+        caption = f"{count(len(self.verdicts), 'verdict')}, {len(self.failures)} failed"
+        if not self.failures:
+            words = Counter(verdict.word for verdict in self.verdicts)
+            return Sheet(caption, [(word, f"{number}") for word, number in words.items()])
         bad = [(verdict.case, *line(verdict).split(maxsplit=2)) for verdict in self.failures]
         rows, note = first_rows(len(bad), bad.__getitem__)
-        return Sheet(
-            f"{len(self.verdicts)} verdicts, {len(bad)} failed", rows, ("case", "method", "", "") if bad else (), note
-        )
+        return Sheet(caption, rows, ("case", "method", "", ""), note)
 
     def __str__(self) -> str:
         lines = []
