@@ -38,7 +38,7 @@ FURTHER = {
         cls,
         Z1: float,
         Z2: float,
-        screening: Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"] = "zbl",
+        screening: ScreeningName = "zbl",
         e2: float = 14.399645478,
         bohr_radius: float = 0.529177210544,
     ) -> Self: ...
@@ -68,38 +68,47 @@ class Force(Declared):
 def force_from_core(description: dict[str, Any]) -> Force: ...
 """
 
-POTENTIALS = """from collections.abc import Mapping, Sequence
+POTENTIALS = """from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar, Self, overload
 
 import numpy as np
+import sympy
 from numpy.typing import ArrayLike, NDArray
 
 from visviva._declared import Declared
+from visviva.generalized import Expression
+from visviva.typing import CompiledFunction, ParameterValues, ScreeningName
 
 __all__ = [{names}]
 
 class Potential(Declared):
     name: ClassVar[str]
     @property
-    def parameters(self) -> tuple[Any, ...]: ...
+    def parameters(self) -> tuple[object, ...]: ...
     def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> Self: ...
     def value(self, r: ArrayLike) -> NDArray[np.float64]: ...
     def force(self, r: ArrayLike) -> NDArray[np.float64]: ...
     def curvature(self, r: ArrayLike) -> NDArray[np.float64]: ...
 {classes}
 @overload
-def Custom(function: Any, r_min: float, r_max: float, *, tolerance: float | None = ...) -> PiecewisePolynomial: ...
+def Custom(
+    function: Callable[..., ArrayLike] | CompiledFunction,
+    r_min: float,
+    r_max: float,
+    *,
+    tolerance: float | None = ...,
+) -> PiecewisePolynomial: ...
 @overload
 def Custom(
-    function: Any,
+    function: sympy.Expr | Callable[..., ArrayLike | Expression],
     r_min: None = ...,
     r_max: None = ...,
     *,
     tolerance: None = ...,
-    parameters: Mapping[Any, float] | None = ...,
+    parameters: ParameterValues | None = ...,
 ) -> Expressed: ...
-def potential_by_name(name: str, parameters: Sequence[Any]) -> Potential: ...
+def potential_by_name(name: str, parameters: Sequence[object]) -> Potential: ...
 def potential_from_core(description: dict[str, Any]) -> Potential: ...
 """
 

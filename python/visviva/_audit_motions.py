@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from itertools import combinations
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -125,7 +125,7 @@ def mass_ratio(first: ArrayLike, second: ArrayLike) -> float:
 
 
 @known_keywords
-def rigidity(trajectory: Any, pairs: Sequence[tuple[int, int]] | None = None) -> NDArray[np.float64]:
+def rigidity(trajectory: Trajectory, pairs: Sequence[tuple[int, int]] | None = None) -> NDArray[np.float64]:
     """By how much the distances of bodies change along a recorded run: by nothing in a rigid body.
 
     Units: what is told is relative, without dimension.

@@ -31,6 +31,17 @@ class BodyForce:
     """What every force on rigid bodies has: frozen values, and how they change with the frame and the units.
 
     Bodies are counted from 0 among the rigid bodies of a scene, or named.
+
+    Attributes
+    ----------
+    kind : str
+        What it is called in files.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> isinstance(vv.RotationalDrag(0.5), vv.rigid.BodyForce)
+    True
     """
 
     __slots__ = ()
@@ -52,7 +63,7 @@ class BodyForce:
     def _with(self, **changes: Any) -> Self:
         return type(self)(**(self._values() | changes))
 
-    def core_arguments(self) -> dict[str, Any]:
+    def _core_arguments(self) -> dict[str, Any]:
         """What the core takes: the kind and every value by name, vectors as arrays of shape (3,).
 
         Raises
@@ -63,7 +74,7 @@ class BodyForce:
         Examples
         --------
         >>> import visviva as vv
-        >>> sorted(vv.AppliedTorque([0.0, 0.0, 2.0], body=0).core_arguments())
+        >>> sorted(vv.AppliedTorque([0.0, 0.0, 2.0], body=0)._core_arguments())
         ['body', 'frame', 'kind', 'torque']
         """
         for name in self._bodies:
@@ -90,6 +101,11 @@ class BodyForce:
         position, velocity : array_like, shape (3,)
             By what is displaced, and boosted, in the units of the scene.
 
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
+
         Raises
         ------
         visviva.InvalidInput
@@ -111,6 +127,11 @@ class BodyForce:
         rotation : array_like, shape (3, 3)
             An orthogonal matrix, without dimension; of determinant −1 a reflection.
 
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
+
         Raises
         ------
         visviva.InvalidInput
@@ -126,6 +147,11 @@ class BodyForce:
 
     def reversed(self) -> Self:
         """The force under which bodies with their motion turned round retrace their path.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
 
         Raises
         ------
@@ -149,6 +175,11 @@ class BodyForce:
         ----------
         length, mass, time : float
             What one old unit is in new ones; positive.
+
+        Returns
+        -------
+        BodyForce
+            Of the same kind.
 
         Raises
         ------

@@ -67,7 +67,7 @@ def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajector
     bounds = [number * part // parts // _LANES * _LANES for part in range(parts)] + [number]
     calls = [(ensemble[start:end], alone) for start, end in pairwise(bounds)]
     home: list[dict[str, Any]] = []
-    with callback(request.progress) as report:
+    with callback(request.progress, "copies") as report:
         try:
             with closing(answers(executor, run_part, calls)) as coming:
                 for came, end in zip(coming, bounds[1:], strict=True):

@@ -14,9 +14,10 @@ from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
+    from typing import NoReturn
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
 
@@ -62,12 +63,12 @@ class Lines(Exported[str], Shown):
         rows, note = first_rows(len(self), row)
         return Sheet(f"Events: {len(self)}", rows, ("", "t", "event", "copy"), note)
 
-    def __getitem__(self, chosen: slice | NDArray[Any]) -> Self:
+    def __getitem__(self, chosen: slice | ArrayLike) -> Self:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
             raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
         return self._from_core({name: getattr(self, name)[chosen] for name in self._names()}, self.definitions)
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> NoReturn:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")
 
     def of(self, which: int) -> Self:

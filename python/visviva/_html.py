@@ -95,9 +95,11 @@ def briefly(value: object) -> str:
     --------
     >>> import numpy as np
     >>> from visviva._html import briefly
-    >>> briefly(np.array([1.0, 2.0])), briefly(np.arange(12.0)), briefly(tuple("abcdefgh"))
-    ('array([1., 2.])', '<(12,) from 0 to 11>', '<8: a, b, …>')
+    >>> briefly(np.array([1.0, 2.0])), briefly(np.arange(12.0)), briefly(tuple("abcdefgh")), briefly(np.float64(2.0))
+    ('array([1., 2.])', '<(12,) from 0 to 11>', '<8: a, b, …>', '2.0')
     """
+    if isinstance(value, np.generic):
+        return repr(value.item())
     if isinstance(value, np.ndarray) and value.size > _NUMBERS:
         if value.dtype.kind not in "fiu":
             return f"<{value.shape}>"

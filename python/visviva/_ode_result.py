@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, fields
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Literal, overload
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -22,8 +23,8 @@ __all__ = ["OdeResult", "OdeSolution"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeSolution:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class OdeSolution(Shown):
     """The solution between its nodes: a polynomial for each step.
 
     Attributes
@@ -115,8 +116,8 @@ class OdeSolution:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class OdeResult:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class OdeResult(Record):
     """What `solve_ivp` gives, with the fields of SciPy's result.
 
     Attributes
@@ -162,7 +163,19 @@ class OdeResult:
     message: str
     success: bool
 
-    def __getitem__(self, name: str) -> Any:
+    @overload
+    def __getitem__(self, name: Literal["t", "y"]) -> NDArray[np.float64]: ...
+    @overload
+    def __getitem__(self, name: Literal["sol"]) -> OdeSolution | None: ...
+    @overload
+    def __getitem__(self, name: Literal["t_events", "y_events"]) -> list[NDArray[np.float64]] | None: ...
+    @overload
+    def __getitem__(self, name: Literal["nfev", "njev", "nlu", "status"]) -> int: ...
+    @overload
+    def __getitem__(self, name: Literal["message"]) -> str: ...
+    @overload
+    def __getitem__(self, name: Literal["success"]) -> bool: ...
+    def __getitem__(self, name: str) -> object:
         if name not in self.keys():
             raise KeyError(name)
         return getattr(self, name)
@@ -187,7 +200,7 @@ class OdeResult:
     def __contains__(self, name: object) -> bool:
         return name in self.keys()
 
-    def get(self, name: str, default: Any = None) -> Any:
+    def get(self, name: str, default: object = None) -> object:
         """Give a field by name, or something else where there is none of that name.
 
         Parameters
@@ -209,7 +222,7 @@ class OdeResult:
         """
         return getattr(self, name) if name in self.keys() else default
 
-    def values(self) -> list[Any]:
+    def values(self) -> list[object]:
         """All fields, in the order of their names.
 
         Examples
@@ -218,9 +231,9 @@ class OdeResult:
         >>> len(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).values())
         11
         """
-        return [self[name] for name in self]
+        return [getattr(self, name) for name in self]
 
-    def items(self) -> list[tuple[str, Any]]:
+    def items(self) -> list[tuple[str, object]]:
         """Names and fields.
 
         Examples
@@ -229,7 +242,7 @@ class OdeResult:
         >>> dict(vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).items())["success"]
         True
         """
-        return [(name, self[name]) for name in self]
+        return [(name, getattr(self, name)) for name in self]
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the components of the state against time: `sol` if it is there, else marks at the times of `t`.

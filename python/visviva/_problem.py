@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from visviva._html import Sheet, Shown
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scene import Scene
@@ -20,8 +20,8 @@ __all__ = ["Problem", "Reference", "reference", "rows"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class Reference:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class Reference(Record):
     """Where bodies are at a time.
 
     Units: those of the problem's scene.

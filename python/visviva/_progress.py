@@ -1,8 +1,9 @@
 """Turn the ``progress`` argument into what the core calls.
 
 The core calls ``f(done, total)`` about every 50 ms and once at the end, on the caller's thread. ``progress=True`` is a
-tqdm bar, notebook-aware, if tqdm is installed, and else one plain line on standard error. Events are counted by what
-they are, with their rate; of other runs, whose parts are steps of some kind, only the share and the time are shown.
+tqdm bar, notebook-aware, if tqdm is installed, and else one plain line on standard error. What the core counts where it
+means something to people (events, steps, output times) is shown as it comes. Else only its share of the whole is known,
+and is shown as that of what people know the whole of: copies, or the time that the run covers.
 """
 
 import sys
@@ -13,16 +14,22 @@ from typing import TypeAlias
 
 from visviva.errors import InvalidInput
 
-__all__ = ["Progress", "Report", "callback"]
+__all__ = ["TIME", "Progress", "Report", "Span", "callback"]
 
 _SHARE = "{percentage:3.0f} %|{bar}| {elapsed}, {remaining} left"
+_TIME = "{percentage:3.0f} %|{bar}| {desc}{elapsed}, {remaining} left"
+# Of a run of which nothing is known before its end.
+_ALONE = "runs for {elapsed}"
 
 Report: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = bool | Report
+Span: TypeAlias = tuple[float, float]
+TIME = "time"
+"""The unit of what is covered from one time to another."""
 
 
 @contextmanager
-def callback(progress: Progress, unit: str = "") -> Iterator[Report | None]:
+def callback(progress: Progress, unit: str = "", of: Span | None = None) -> Iterator[Report | None]:
     """Give the callable for the core, and close what it shows when the run ends.
 
     Parameters
@@ -31,6 +38,9 @@ def callback(progress: Progress, unit: str = "") -> Iterator[Report | None]:
         True for a bar, False for nothing, or a callable ``f(done, total)``.
     unit : str
         What is counted, if that says something to people: "events".
+    of : tuple of float, optional
+        Where only the share is counted: from which number of the unit to which it goes, as (0, copies). Of the unit
+        `TIME`, the times of the scene from and to which it runs.
 
     Yields
     ------
@@ -52,7 +62,7 @@ def callback(progress: Progress, unit: str = "") -> Iterator[Report | None]:
     if progress is False:
         yield None
     elif progress is True:
-        with _bar(unit) as report:
+        with _bar(unit, of) as report:
             yield report
     elif callable(progress) and not isinstance(progress, type):
         yield progress
@@ -64,23 +74,41 @@ def callback(progress: Progress, unit: str = "") -> Iterator[Report | None]:
         )
 
 
+def _measured(of: Span | None, done: int, total: int) -> tuple[float, float]:
+    """What is done of how much, in the unit that is shown."""
+    if of is None:
+        return done, total
+    whole = abs(of[1] - of[0])
+    return whole * done / max(total, 1), whole
+
+
+def _at(of: Span, done: float) -> str:
+    """The time of the scene that is reached."""
+    return f"t = {of[0] + (done if of[1] > of[0] else -done):.4g} of {of[1]:.4g}"
+
+
 @contextmanager
-def _bar(unit: str) -> Iterator[Report]:
+def _bar(unit: str, of: Span | None) -> Iterator[Report]:
     try:
         from tqdm.auto import tqdm
     except ImportError:
-        with _line(unit) as report:
+        with _line(unit, of) as report:
             yield report
         return
     # Made with the first report, so that a run that is refused shows nothing.
     bar = None
-    how = {"unit": f" {unit}", "unit_scale": True} if unit else {"bar_format": _SHARE}
+    start = time.perf_counter()
 
-    def show(done: int, total: int) -> None:
+    def show(count: int, total: int) -> None:
         nonlocal bar
+        done, whole = _measured(of, count, total)
         if bar is None:
-            bar = tqdm(total=total, **how)
-        bar.total = total
+            how = {"unit": f" {unit}", "unit_scale": True} if unit else {"bar_format": _ALONE if total == 1 else _SHARE}
+            bar = tqdm(total=whole, **({"bar_format": _TIME} if unit == TIME else how))
+        bar.total = whole
+        if unit == TIME and of is not None:
+            rate = done / max(time.perf_counter() - start, 1e-9)
+            bar.set_description_str(f"{_at(of, done)}, {rate:.3g} a second, ", refresh=False)
         bar.update(done - bar.n)
 
     try:
@@ -91,18 +119,26 @@ def _bar(unit: str) -> Iterator[Report]:
 
 
 @contextmanager
-def _line(unit: str) -> Iterator[Report]:
+def _line(unit: str, of: Span | None) -> Iterator[Report]:
     begun, start = False, time.perf_counter()
 
-    def report(done: int, total: int) -> None:
+    def report(count: int, total: int) -> None:
         nonlocal begun
         begun = True
-        share = f"{100 * done // total} %" if total else f"{done}"
-        rate = done / max(time.perf_counter() - start, 1e-9)
+        passed = max(time.perf_counter() - start, 1e-9)
+        done, whole = _measured(of, count, total)
+        rate = done / passed
+        if not unit and total == 1 and not count:
+            share = f"runs for {passed:.0f} s"
+        else:
+            share = f"{100 * count // total} %" if total else f"{count}"
         speed = f", {_scaled(rate)} {unit}/s" if unit else ""
-        left = f", {(total - done) / rate:.0f} s left" if rate > 0.0 and done < total else ""
+        if of is not None:
+            shown = f"{_at(of, done)}, {rate:.3g} a second" if unit == TIME else f"{done:.3g} of {whole:g}{speed}"
+            speed = f", {shown.removeprefix(', ')}"
+        left = f", {(whole - done) / rate:.0f} s left" if rate > 0.0 and count < total else ""
         # What was longer before is written over.
-        print(f"\r{f'visviva: {share}{speed}{left}':<60}", end="", file=sys.stderr, flush=True)
+        print(f"\r{f'visviva: {share}{speed}{left}':<70}", end="", file=sys.stderr, flush=True)
 
     try:
         yield report

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import AccuracyWarning, Error, InvalidInput
 
@@ -27,8 +28,8 @@ _NO_BETTER = 4
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Point:
+@dataclass(frozen=True, slots=True, repr=False)
+class Point(Record):
     """One run.
 
     Attributes

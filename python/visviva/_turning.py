@@ -74,7 +74,7 @@ def described(rigid: RigidBodies, loads: Sequence[BodyForce]) -> _core._Rigid:
         "pivoted": rigid.pivoted.tolist(),
         "orientation": rigid.orientation[None],
         "angular_velocity": rigid.angular_velocity[None],
-        "loads": [load.core_arguments() for load in loads],
+        "loads": [load._core_arguments() for load in loads],
     }
 
 
@@ -195,7 +195,7 @@ def saved(scene: Scene) -> tuple[dict[str, Any], dict[str, NDArray[np.float64]]]
     rigid = scene.rigid_bodies
     if rigid is None:
         return {}, {}
-    loads = [load.core_arguments() for load in scene.body_forces]
+    loads = [load._core_arguments() for load in scene.body_forces]
     if any("address" in load for load in loads):
         raise InvalidInput("run", "a CompiledTorque is at its address in this process only: such a run cannot be saved")
     own = {name: getattr(rigid, name) for name in ("moments", "inertia", "pivot")}

@@ -16,8 +16,9 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva._arrays import number
-from visviva._html import Shown
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva._trial import stretch
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.integrators import methods
@@ -25,6 +26,7 @@ from visviva.integrators import methods
 if TYPE_CHECKING:
     from visviva import _core
     from visviva.integrators import Method
+    from visviva.typing import RunSettings
 
 __all__ = ["Advice", "Option", "advise"]
 
@@ -37,8 +39,8 @@ _HALVINGS, _PATIENCE = 16, 8.0
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Option:
+@dataclass(frozen=True, slots=True, repr=False)
+class Option(Record):
     """A method with a step or a tolerance that holds the error.
 
     Attributes
@@ -59,14 +61,14 @@ class Option:
     (True, True)
     """
 
-    how: dict[str, Any]
+    how: RunSettings
     error: float
     steps: int
     seconds: float
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Advice(Shown):
     """Which method and step hold an error; the answer of `Scene.advise`. Print it.
 
@@ -103,20 +105,38 @@ class Advice(Shown):
     tried: float
 
     @property
-    def how(self) -> dict[str, Any]:
+    def how(self) -> RunSettings:
         """Arguments for ``run`` of the fastest: ``scene.run(t, **advice.how)``."""
-        return dict(self.options[0].how)
+        return self.options[0].how.copy()
 
     def __str__(self) -> str:
         lines = [f"{'':<20}{'dt or rtol':>14}{'error':>11}{'steps':>12}{'time':>12}"]
+        lines += [f"{row[0]:<20}{row[1]:>14}{row[2]:>11}{row[3]:>12}{row[4]:>12}" for row in self._rows()]
+        return "\n".join([self._title(), *lines])
+
+    def __repr__(self) -> str:
+        best, more = self._rows()[0], len(self.options) - 1
+        rest = f", {count(more, 'more option')}" if more else ""
+        return (
+            f"Advice({self.of} to {self.accuracy:g}: {' '.join(best[:2]).strip()}{rest}; print shows the whole of it)"
+        )
+
+    def _sheet(self) -> Sheet:
+        return Sheet(self._title(), self._rows(), ("", "dt or rtol", "error", "steps", "time"))
+
+    def _title(self) -> str:
+        part = "the whole of it" if self.tried == 1.0 else f"the first {self.tried:.2g} of it"
+        of = f"{self.of}, and positions of massless bodies," if self.judges_massless else self.of
+        return f"{of} to {self.accuracy:g}, by a trial of {part}"
+
+    def _rows(self) -> list[tuple[str, str, str, str, str]]:
+        rows: list[tuple[str, str, str, str, str]] = []
         for option in self.options:
             by = option.how.get("dt", option.how.get("rtol"))
             shown = "" if by is None else f"{'dt' if 'dt' in option.how else 'rtol'} {by:.4g}"
             name = option.how["method"] if by is not None else "auto: closed form"
-            lines.append(f"{name:<20}{shown:>14}{option.error:>11.1e}{option.steps:>12}{option.seconds:>10.2g} s")
-        part = "the whole of it" if self.tried == 1.0 else f"the first {self.tried:.2g} of it"
-        of = f"{self.of}, and positions of massless bodies," if self.judges_massless else self.of
-        return "\n".join([f"{of} to {self.accuracy:g}, by a trial of {part}", *lines])
+            rows.append((name, shown, f"{option.error:.1e}", f"{option.steps}", f"{option.seconds:.2g} s"))
+        return rows
 
 
 @dataclass(frozen=True, slots=True)
@@ -278,7 +298,8 @@ def _option(trial: _Trial, method: Method, accuracy: float, patience: float) -> 
         found = trial.of_method(method, **{name: sizes[k]})
         if found is not None and found[0] <= accuracy:
             error, steps, seconds = found
-            how = {"method": method.name, name: sizes[k]}
+            how: RunSettings = {"method": method.name}
+            how["rtol" if method.adaptive else "dt"] = sizes[k]
             return Option(how, error, round(steps * whole), seconds * whole)
     return None
 

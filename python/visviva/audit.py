@@ -30,6 +30,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.trajectory import Trajectory
+
     _Field = Callable[[NDArray[np.float64]], ArrayLike]
 
 __all__ = [
@@ -172,7 +174,7 @@ def _line(a: NDArray[np.float64], b: NDArray[np.float64]) -> Callable[[NDArray[n
 
 
 @known_keywords
-def work_along(trajectory: Any, force: Force) -> NDArray[np.float64]:
+def work_along(trajectory: Trajectory, force: Force) -> NDArray[np.float64]:
     """The work of one force on each body along a recorded run, up to each of its times.
 
     Units: those of the scene.
@@ -340,8 +342,8 @@ def _derivatives(at: _Field, x: NDArray[np.float64]) -> NDArray[np.float64]:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class ThirdLaw:
+@dataclass(frozen=True, slots=True, repr=False)
+class ThirdLaw(Record):
     """What `third_law` finds.
 
     Units: those of the forces, and of them times a length; `rtol` is without dimension.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from visviva._html import Sheet, Shown, briefly
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_label
 from visviva.errors import InvalidInput
@@ -21,7 +22,7 @@ __all__ = ["BodyMotion"]
 
 @known_keywords
 @frozen
-class BodyMotion:
+class BodyMotion(Shown):
     """The motion of one body. Made by indexing a run with a name, or by ``out.body``.
 
     Units: those of the scene; angles in radians.
@@ -64,6 +65,12 @@ class BodyMotion:
 
     def __repr__(self) -> str:
         return f"BodyMotion({self.name!r}, {len(self.t)} times)"
+
+    def _sheet(self) -> Sheet:
+        run, place = self._run, self.index
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        rows = [("of", repr(run)), ("body", f"number {place}"), ("mass", briefly(self.mass))]
+        return Sheet(f"Motion of {self.name}", [*rows, ("times", f"{len(self.t)}{span}")])
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._run, self.index)

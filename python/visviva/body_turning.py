@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from visviva._html import Sheet, Shown, briefly
 from visviva._keywords import frozen, known_keywords
 from visviva.errors import InvalidInput
 from visviva.rigid._orientation import quaternion_product, rotate_back
@@ -26,7 +27,7 @@ __all__ = ["BodyTurning"]
 
 @known_keywords
 @frozen
-class BodyTurning(Rotation):
+class BodyTurning(Rotation, Shown):
     """How a rigid body turns along a run. Made by ``out["name"].turning``.
 
     Units: those of the scene; angles in radians.
@@ -96,6 +97,12 @@ class BodyTurning(Rotation):
 
     def __repr__(self) -> str:
         return f"BodyTurning({self._motion.name!r}, {len(self.t)} times)"
+
+    def _sheet(self) -> Sheet:
+        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
+        columns = ("moments", "orientation", "angular_velocity", "body_angular_momentum")
+        rows = [("times", f"{len(self.t)}{span}"), *((name, briefly(getattr(self, name))) for name in columns)]
+        return Sheet(f"Turning of {self._motion.name}", rows)
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self._motion,)

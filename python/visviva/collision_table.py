@@ -14,9 +14,10 @@ from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Sequence
+    from typing import NoReturn
 
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
 __all__ = ["CollisionTable"]
 
@@ -94,12 +95,12 @@ class CollisionTable(Exported[str], Shown):
         header = ("", "t", "first", "second", "speed", "energy lost", "survivor", "copy")
         return Sheet(f"Collisions: {len(self)}", rows, header, note)
 
-    def __getitem__(self, chosen: slice | NDArray[Any]) -> CollisionTable:
+    def __getitem__(self, chosen: slice | ArrayLike) -> CollisionTable:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
             raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
         return CollisionTable._from_core({name: getattr(self, name)[chosen] for name in self.__slots__})
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> NoReturn:
         raise TypeError("a CollisionTable is read by its columns: t, first, second, speed, position, energy_lost, …")
 
 

@@ -17,6 +17,7 @@ from visviva._html import Shown
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._problem import Problem
 from visviva._sweeps import Point, Runner
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.integrators import Method
 from visviva.integrators import methods as all_methods
@@ -150,7 +151,7 @@ class WorkPrecision(Shown):
         return WorkPrecision(self.name, tuple(point for point in self.points if point.series in wanted))
 
     def __repr__(self) -> str:
-        return f"WorkPrecision({self.name!r}, {len(self.series)} methods, {len(self.points)} runs)"
+        return f"WorkPrecision({self.name!r}, {count(len(self.series), 'method')}, {count(len(self.points), 'run')})"
 
     def __str__(self) -> str:
         head = f"{self.name:<24}" + "".join(f"{f'to {mark:g}':>12}" for mark in _MARKS) + f"{'best':>12}"

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._html import Sheet, Shown
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._mergers import by_era
 from visviva._text import count
@@ -33,8 +33,8 @@ _EPSILON = float(np.finfo(float).eps)
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Drift:
+@dataclass(frozen=True, slots=True, repr=False)
+class Drift(Record):
     """How far one quantity moved from its initial value.
 
     Attributes

@@ -10,24 +10,43 @@ Source: Landau & Lifshitz, *Fluid Mechanics*, 2nd ed., §19, §20 and §45.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import LinearDrag, QuadraticDrag, SampledDrag
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
+    from visviva.typing import CompiledFunction
 
 __all__ = ["Throw", "crossover_speed", "custom", "quadratic", "reynolds_number", "stokes", "tabulated", "throw"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Throw:
+@dataclass(frozen=True, slots=True, repr=False)
+class Throw(Record):
     """What is told of a body thrown straight up, as plain numbers.
+
+    Attributes
+    ----------
+    terminal_speed : float
+        The speed that a long fall approaches.
+    apex_time : float
+        When it stands still.
+    apex_height : float
+        How high that is over the start.
+    return_time : float
+        When it is back at the start.
+    return_speed : float
+        How fast it is then.
 
     Units: those of the arguments of `throw`.
 
@@ -45,15 +64,10 @@ class Throw:
     """
 
     terminal_speed: float
-    """The speed that a long fall approaches."""
     apex_time: float
-    """When it stands still."""
     apex_height: float
-    """How high that is over the start."""
     return_time: float
-    """When it is back at the start."""
     return_speed: float
-    """How fast it is then."""
 
 
 @known_keywords
@@ -237,7 +251,7 @@ def stokes(
 
 @known_keywords
 def custom(
-    function: Any,
+    function: Callable[[NDArray[np.float64]], ArrayLike] | CompiledFunction,
     R_min: float,
     R_max: float,
     *,

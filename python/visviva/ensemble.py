@@ -79,7 +79,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
-        parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
+        parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
     ) -> None:

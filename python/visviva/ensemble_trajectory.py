@@ -153,7 +153,7 @@ class EnsembleTrajectory(Recorded):
         return status
 
     @property
-    def per_trajectory(self) -> dict[str, NDArray[Any]]:
+    def per_trajectory(self) -> dict[str, NDArray[np.int64]]:
         """What each copy cost: ``steps``, ``evaluations``, …, each of shape (B,), numbers without dimension.
 
         Examples
@@ -165,7 +165,7 @@ class EnsembleTrajectory(Recorded):
         >>> out.per_trajectory["steps"].shape
         (2,)
         """
-        counts: dict[str, NDArray[Any]] = self._result["per_trajectory"]
+        counts: dict[str, NDArray[np.int64]] = self._result["per_trajectory"]
         for each in counts.values():
             each.setflags(write=False)
         return dict(counts)

@@ -5,8 +5,21 @@ would catch anyway. All but `Interrupted` and the one warning derive from `Error
 ``except Exception`` must not swallow it. The core raises these same classes.
 """
 
+from __future__ import annotations
+
 from dataclasses import FrozenInstanceError
-from typing import Any
+from typing import TYPE_CHECKING, TypeAlias
+
+if TYPE_CHECKING:
+    from visviva.ensemble_trajectory import EnsembleTrajectory
+    from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
+    from visviva.initial_value import OdeResult
+    from visviva.scattering import FoilResult, MonteCarlo
+    from visviva.trajectory import Trajectory
+
+    SoFar: TypeAlias = (
+        Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory | OdeResult | None
+    )
 
 __all__ = [
     "AccuracyWarning",
@@ -148,7 +161,7 @@ class ConvergenceError(Error, RuntimeError):
     (True, True)
     """
 
-    def __init__(self, message: str, time: float | None = None, trajectory: Any = None) -> None:
+    def __init__(self, message: str, time: float | None = None, trajectory: SoFar = None) -> None:
         super().__init__(message, time, trajectory)
         self.message = message
         self.time = time
@@ -183,7 +196,7 @@ class CloseEncounter(Error, RuntimeError):
     True
     """
 
-    def __init__(self, time: float, bodies: tuple[int, int], distance: float, trajectory: Any = None) -> None:
+    def __init__(self, time: float, bodies: tuple[int, int], distance: float, trajectory: SoFar = None) -> None:
         super().__init__(time, bodies, distance, trajectory)
         self.time = time
         self.bodies = bodies
@@ -219,7 +232,9 @@ class Interrupted(KeyboardInterrupt):
     (True, False)
     """
 
-    def __init__(self, message: str = "interrupted", trajectory: Any = None, result: Any = None) -> None:
+    def __init__(
+        self, message: str = "interrupted", trajectory: SoFar = None, result: MonteCarlo | FoilResult | None = None
+    ) -> None:
         super().__init__(message, trajectory, result)
         self.message = message
         self.trajectory = trajectory

@@ -19,13 +19,17 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event_table import EventTable
+from visviva._html import Record
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    import sympy
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.typing import SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -34,8 +38,8 @@ GENERALIZED = ("coordinate", "expression")
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Event:
+@dataclass(frozen=True, slots=True, repr=False)
+class Event(Record):
     """Something to look for. Made by the functions of `visviva.events`.
 
     Attributes
@@ -59,7 +63,7 @@ class Event:
     """
 
     kind: str
-    parameters: tuple[tuple[str, Any], ...]
+    parameters: tuple[tuple[str, object], ...]
     direction: int
     terminal: int
 
@@ -231,7 +235,9 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 
 
 @known_keywords
-def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def coordinate(
+    name: str | sympy.Expr, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False
+) -> Event:
     """A generalized coordinate passes a value.
 
     Units: those of the coordinate; angles in radians.
@@ -271,7 +277,9 @@ def coordinate(name: Any, value: float = 0.0, *, direction: int = 0, terminal: b
 
 
 @known_keywords
-def expression(expression: Any, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def expression(
+    expression: sympy.Expr | Callable[..., SymbolicExpression], *, direction: int = 0, terminal: bool | int = False
+) -> Event:
     """An expression of generalized coordinates passes zero.
 
     Parameters

@@ -17,7 +17,9 @@ from visviva.generalized._source import calls
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
+
+    from visviva.typing import Formula, ParameterValues, SymbolicExpression
 
 __all__ = ["ExpressionForce", "parameter_names"]
 
@@ -29,9 +31,9 @@ _AXES = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0))
 @known_keywords
 def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and makes one)
     *,
-    potential: Any = None,
-    force: Sequence[Any] | Callable[..., Any] | None = None,
-    parameters: Mapping[Any, float] | None = None,
+    potential: Formula | None = None,
+    force: Sequence[SymbolicExpression] | Callable[..., Sequence[SymbolicExpression]] | None = None,
+    parameters: ParameterValues | None = None,
 ) -> ExpressedForce:
     """A force on every body of a scene, from an expression, at the speed of the forces that visviva has.
 

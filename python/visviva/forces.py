@@ -26,6 +26,11 @@ class Force(Declared):
 
     Frozen, hashable and picklable. A force of one's own is added to the core: docs/how-to/add-a-force.md.
 
+    Attributes
+    ----------
+    kind : str
+        What it is called in files.
+
     Examples
     --------
     >>> import visviva as vv

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -61,7 +61,7 @@ class MetalComparison:
         What the alpha particles went through.
     """
 
-    metal: str
+    metal: Literal["silver", "gold"]
     angle: NDArray[np.float64]
     counted: NDArray[np.float64]
     simulated: NDArray[np.float64]
@@ -91,7 +91,12 @@ class MetalComparison:
 
 
 def compare_metal(
-    metal: str, *, thickness: float = 0.2, events: int = 400_000, seed: int = 1913, threads: int | None = None
+    metal: Literal["silver", "gold"],
+    *,
+    thickness: float = 0.2,
+    events: int = 400_000,
+    seed: int = 1913,
+    threads: int | None = None,
 ) -> MetalComparison:
     """Send alpha particles of 7.687 MeV through a foil and compare with table II of 1913."""
     data = vv.datasets.geiger_marsden_1913()

@@ -19,11 +19,11 @@ from visviva.errors import Interrupted, InvalidInput
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.typing import SolverName
+    from visviva.typing import CompiledFunction, SolverName
 
 __all__ = ["OdeResult", "OdeSolution", "solve_ivp"]
 
-Function: TypeAlias = Callable[..., Any]
+Function: TypeAlias = Callable[..., "ArrayLike"]
 
 _SMALLEST_RTOL = 100 * 2.0**-52
 #: Zeros of an event that are counted.
@@ -34,7 +34,7 @@ _ROUNDINGS = 10.0
 
 @known_keywords
 def solve_ivp(
-    fun: Function | int,
+    fun: Function | CompiledFunction,
     t_span: Sequence[float],
     y0: ArrayLike,
     method: SolverName | type = "RK45",
@@ -42,7 +42,7 @@ def solve_ivp(
     dense_output: bool = False,
     events: Function | Sequence[Function] | None = None,
     vectorized: bool = False,
-    args: Sequence[Any] | NDArray[np.float64] | None = None,
+    args: Sequence[object] | NDArray[np.float64] | None = None,
     *,
     rtol: ArrayLike | None = None,
     atol: ArrayLike | None = None,

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva import _core
+from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -19,8 +20,8 @@ __all__ = ["Method", "methods"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Method:
+@dataclass(frozen=True, slots=True, repr=False)
+class Method(Record):
     """An integration method and what it declares about itself.
 
     Attributes

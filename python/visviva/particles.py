@@ -106,7 +106,7 @@ class Particles(Shown):
     def __len__(self) -> int:
         return len(self.mass)
 
-    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> Particles:
+    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | ArrayLike) -> Particles:
         chosen = body_indices("bodies", bodies, self.names, len(self))
         names = [self.names[body] for body in chosen] if self.names else None
         return Particles(self.mass[chosen], self.position[chosen], self.velocity[chosen], names, self.radius[chosen])

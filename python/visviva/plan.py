@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
-from visviva._html import Sheet, Shown
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._text import count
 
@@ -16,8 +16,8 @@ __all__ = ["Cost", "Plan"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Cost:
+@dataclass(frozen=True, slots=True, repr=False)
+class Cost(Record):
     """What a run would cost: the answer of `Plan.cost`.
 
     Attributes

@@ -16,10 +16,14 @@ from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Callable, Mapping, Sequence
 
     import numpy as np
+    import sympy
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.generalized import Expression
+    from visviva.typing import CompiledFunction, ParameterValues, ScreeningName
 
 
 @known_keywords
@@ -27,6 +31,11 @@ class Potential(Declared):
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
 
     Frozen, hashable and picklable. Every parameter is in the caller's own units.
+
+    Attributes
+    ----------
+    kind, name : str
+        What it is called in files.
 
     Examples
     --------
@@ -49,7 +58,7 @@ class Potential(Declared):
         _core.check_potential(self._to_core())
 
     @property
-    def parameters(self) -> tuple[Any, ...]:
+    def parameters(self) -> tuple[object, ...]:
         """The parameters, in the order of the constructor.
 
         Examples
@@ -189,13 +198,13 @@ class Potential(Declared):
 
 
 def _between(
-    cls: type[Any],
+    cls: type[Potential],
     Z1: float,
     Z2: float,
-    screening: str = "zbl",
+    screening: ScreeningName = "zbl",
     e2: float = 14.399645478,
     bohr_radius: float = 0.529177210544,
-) -> Any:
+) -> Potential:
     """The potential between two nuclei, with the screening length that goes with the function.
 
     Of ``"zbl"`` that is c a / (Z1^0.23 + Z2^0.23), of the others Firsov's, c a / (√Z1 + √Z2)^(2/3), with the Bohr
@@ -231,17 +240,19 @@ def _between(
     """
     first, second = positive("Z1", Z1), positive("Z2", Z2)
     length = positive("bohr_radius", bohr_radius) * _core.screening_length(str(screening), first, second)
-    return cls(positive("e2", e2) * first * second, length, screening)
+    made: Any = cls
+    screened: Potential = made(positive("e2", e2) * first * second, length, screening)
+    return screened
 
 
 @known_keywords
 def Custom(  # noqa: N802
-    function: Any,
+    function: sympy.Expr | Callable[..., ArrayLike | Expression] | CompiledFunction,
     r_min: float | None = None,
     r_max: float | None = None,
     *,
     tolerance: float | None = None,
-    parameters: Mapping[Any, float] | None = None,
+    parameters: ParameterValues | None = None,
 ) -> Potential:
     """A potential of one's own: a formula, compiled once and run by the core, or any function, sampled in a range.
 
@@ -357,7 +368,7 @@ __all__ += list(_CLASSES)
 
 
 @known_keywords
-def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
+def potential_by_name(name: str, parameters: Sequence[object]) -> Potential:
     """The potential of a registry name, as files hold it.
 
     Units: those of the caller, one consistent system.

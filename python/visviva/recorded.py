@@ -14,7 +14,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._exported import Columns, Exported, chosen_columns, labels
-from visviva._html import Sheet, Shown
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
 from visviva._text import count
@@ -40,8 +40,8 @@ __all__ = ["Recorded", "Stats"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Stats:
+@dataclass(frozen=True, slots=True, repr=False)
+class Stats(Record):
     """What a run cost, and what ran.
 
     Attributes

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from visviva._progress import Progress
     from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import CollisionRule, ColumnName, EventFunction, MethodName, TransformationName
+    from visviva.typing import CollisionRule, ColumnName, EventFunction, Executor, MethodName, TransformationName
 
 __all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished"]
 
@@ -187,7 +187,7 @@ class RunRequest(PlanRequest):
 
     threads: int | None = None
     progress: Progress = False
-    executor: Any = None
+    executor: Executor | None = None
     save_every: float | None = None
     save_to: str | PathLike[str] | None = None
 
@@ -265,9 +265,25 @@ def execute(
     else:
         from visviva._progress import callback
 
-        with callback(request.progress) as report:
+        shown = _counted(asked, ensemble) if request.progress is True else ()
+        with callback(request.progress, *shown) as report:
             result = _core.run(asked, threads=threads, progress=report, ensemble=ensemble)
     return finished(result, asked, ensemble=ensemble, make=make)
+
+
+def _counted(asked: _core._Request, ensemble: bool) -> tuple[str, tuple[float, float] | None]:
+    """What progress is shown in, as `callback` takes it: what the core counts, or what that is a share of."""
+    if ensemble:
+        return "copies", (0.0, float(len(asked["mass"])))
+    if _core.plan(asked)["solution"].startswith("closed form"):
+        return "times", None
+    if asked["dt"] is not None and asked["time_transformation"] is None:
+        return "steps", None
+    if asked["collisions"] is not None:
+        return "", None  # each stretch between collisions is counted as if it were the last
+    from visviva._progress import TIME
+
+    return TIME, (float(asked["t0"]), float(asked["times"][-1]))
 
 
 def finished(
@@ -284,11 +300,11 @@ def finished(
     if error is not None:
         raise _exception(error, made)
     if ensemble and (result["status"] == Status.INTERRUPTED).any():
-        raise Interrupted("the ensemble was interrupted", made)
+        raise Interrupted("the ensemble was interrupted", cast("Any", made))
     return made
 
 
-def _exception(error: dict[str, Any], trajectory: object) -> BaseException:
+def _exception(error: dict[str, Any], trajectory: Any) -> BaseException:
     if error["kind"] == "close_encounter":
         first, second = error["bodies"]
         return CloseEncounter(error["time"], (first, second), error["distance"], trajectory)

@@ -218,7 +218,7 @@ class RigidBodies(Shown):
     def __len__(self) -> int:
         return len(self.mass)
 
-    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | NDArray[Any]) -> RigidBodies:
+    def __getitem__(self, bodies: str | int | slice | Sequence[str | int] | ArrayLike) -> RigidBodies:
         chosen = body_indices("bodies", bodies, self.names, len(self))
         given: dict[str, Any] = {n: None if array is None else array[chosen] for n, array in self._arrays().items()}
         return RigidBodies(**given, names=[self.names[body] for body in chosen] if self.names else None)
@@ -321,7 +321,7 @@ class RigidBodies(Shown):
         """
         return body_index("name", name, self.names, len(self))
 
-    def core_arguments(self) -> dict[str, NDArray[Any]]:
+    def _core_arguments(self) -> dict[str, NDArray[Any]]:
         """What the core takes: C-contiguous arrays of shape (K, …), float64 but for `pivoted`.
 
         Orientations and angular velocities are those of the body's axes; moments and centers belong to the principal
@@ -332,7 +332,7 @@ class RigidBodies(Shown):
         Examples
         --------
         >>> import visviva as vv
-        >>> sorted(vv.RigidBody(1.0, [1.0, 1.0, 1.0]).core_arguments())  # doctest: +NORMALIZE_WHITESPACE
+        >>> sorted(vv.RigidBody(1.0, [1.0, 1.0, 1.0])._core_arguments())  # doctest: +NORMALIZE_WHITESPACE
         ['angular_velocity', 'axes', 'center', 'mass', 'moments', 'orientation', 'pivoted', 'position', 'velocity']
         """
         names = ("mass", "position", "velocity", "axes", "center", "pivoted", "orientation", "angular_velocity")

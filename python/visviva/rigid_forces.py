@@ -15,6 +15,8 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import CompiledFunction
+
 __all__ = ["AppliedTorque", "CompiledTorque", "RotationalDrag"]
 
 
@@ -177,10 +179,10 @@ class CompiledTorque(BodyForce):
     _dimensions = {}  # noqa: RUF012
     _one_way = "nobody knows the reverse of a function"
 
-    function: Any
+    function: CompiledFunction
     body: int | str | None
 
-    def __init__(self, function: Any, body: int | str | None = None) -> None:
+    def __init__(self, function: CompiledFunction, body: int | str | None = None) -> None:
         of_orientation(function)
         keep(self, function=function, body=body_of("body", body))
 
@@ -201,9 +203,9 @@ class CompiledTorque(BodyForce):
         """
         return of_orientation(self.function)
 
-    def core_arguments(self) -> dict[str, Any]:
+    def _core_arguments(self) -> dict[str, Any]:
         """What the core takes, the address in the place of the function, which has to be kept as long as it is used."""
-        known = BodyForce.core_arguments(self)
+        known = BodyForce._core_arguments(self)
         return {"kind": self.kind, "address": self.address, "body": known["body"]}
 
     def rotated(self, rotation: NDArray[np.float64]) -> Self:

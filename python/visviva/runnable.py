@@ -98,7 +98,9 @@ class Runnable(Shown, ABC, Generic[_Result]):
         threads : int, optional
             Threads to use; by default ``VISVIVA_THREADS``, else the cores available.
         progress : bool or callable, optional
-            True shows a bar (with tqdm installed); a callable is called as ``f(done, total)``.
+            True shows a bar (with tqdm installed, else a line): the steps that were taken, or the time that is reached,
+            or the copies that are done, with the rate and the time that is left. A callable is called as
+            ``f(done, total)``, numbers whose ratio is the part that is done.
         executor : concurrent.futures.Executor or dask.distributed.Client, optional
             Of an ensemble: who runs it. Copies go out in parts, motions come home, with the bits of the run without
             one; the part of a worker that is lost is done again. Each worker uses `threads` threads, or one; `progress`

@@ -21,7 +21,7 @@ from visviva._arrays import positive, whole_number
 from visviva._joined_parts import joined
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
-from visviva._progress import callback
+from visviva._progress import TIME, callback
 from visviva._told_events import from_description
 from visviva.errors import InvalidInput
 from visviva.io import load, to_disk
@@ -151,7 +151,7 @@ def _go_on(folder: Path, scene: Scene, request: RunRequest) -> Trajectory:
     parts = _parts(scene, request, whole, plan)
     results: list[dict[str, Any]] = []
     leg = scene
-    with callback(request.progress) as report:
+    with callback(request.progress, TIME, (scene.t0, float(whole["times"][-1]))) as report:
         for number, part in enumerate(parts):
             file = folder / f"part-{number:06}.npz"
             run = _whole(file)

@@ -243,7 +243,7 @@ class Scene(Runnable[Trajectory], Framed):
         velocity: ArrayLike | None = None,
         mass: ArrayLike | None = None,
         radius: ArrayLike | None = None,
-        parameters: Mapping[Force | int | str, Mapping[str, Any]] | None = None,
+        parameters: Mapping[Force | int | str, Mapping[str, ArrayLike]] | None = None,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
     ) -> EnsembleScene:

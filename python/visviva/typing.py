@@ -3,35 +3,122 @@
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
 has; a test compares. `TransformationName` is what a time transformation watches. `GeneralizedMethodName`,
 `DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
-`FoilTallyName` what Monte Carlo runs count.
+`FoilTallyName` what Monte Carlo runs count, `MaterialName`, `IonName` and `ScreeningName` what foils are made of, and
+`EulerConvention` names the turns of `visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`,
+`GeneralizedEvent` and `GeneralizedPath` are what goes into systems in generalized coordinates. A `CompiledFunction`
+(`NumbaFunction` is one) is at an address, an `Executor` runs parts elsewhere, `RunSettings` is what advice gives, and
+`IonHistory` the way of one ion.
 """
 
-from collections.abc import Callable
-from typing import Any, Literal, TypeAlias
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import TYPE_CHECKING, Literal, Protocol, SupportsFloat, TypeAlias, TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
 
 from visviva._progress import Progress, Report
 
+if TYPE_CHECKING:
+    from ctypes import _CFunctionType
+
+    import sympy
+    from numpy.typing import ArrayLike
+    from scipy import LowLevelCallable
+
+    from visviva.events import Event
+    from visviva.generalized import Expression, GeneralizedTrajectory
+
 __all__ = [
     "CollisionRule",
     "ColumnName",
+    "CompiledFunction",
     "DiscreteMethodName",
+    "EulerConvention",
     "EventFunction",
+    "Executor",
     "FoilTallyName",
+    "Formula",
     "GeneralizedColumnName",
+    "GeneralizedEvent",
     "GeneralizedMethodName",
+    "GeneralizedPath",
+    "IonHistory",
+    "IonName",
+    "MaterialName",
     "MethodName",
+    "NumbaFunction",
+    "ParameterValues",
     "Progress",
     "Report",
+    "RunSettings",
+    "ScreeningName",
     "SolverName",
+    "SymbolicExpression",
     "TallyName",
     "TransformationName",
 ]
 
-EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], Any]
+EventFunction: TypeAlias = Callable[[float, NDArray[np.float64], NDArray[np.float64]], SupportsFloat]
 """A function of time, positions (N, 3) and velocities (N, 3) whose zeros are events."""
+
+SymbolicExpression: TypeAlias = "sympy.Expr | Expression | float"
+"""An expression of SymPy, one that a function of plain Python made, or a number."""
+
+Formula: TypeAlias = "sympy.Expr | Expression | float | Callable[..., SymbolicExpression]"
+"""An expression, or a function of plain Python that gives one: ``f(q, v, t, **parameters)``."""
+
+ParameterValues: TypeAlias = "Mapping[str, float] | Mapping[sympy.Symbol, float] | Mapping[sympy.Symbol | str, float]"
+"""Values of parameters, by their symbols or names."""
+
+GeneralizedEvent: TypeAlias = "Event | str | sympy.Expr | Callable[..., object]"
+"""What is looked for in generalized coordinates: an event, the name of a coordinate, or what passes zero."""
+
+GeneralizedPath: TypeAlias = "GeneralizedTrajectory | tuple[ArrayLike, ArrayLike]"
+"""A path in generalized coordinates: a run, or times and places."""
+
+
+class NumbaFunction(Protocol):
+    """What ``@numba.cfunc`` makes: a function at an address.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> sorted(vv.typing.NumbaFunction.__annotations__)
+    ['native_name']
+    """
+
+    native_name: str
+
+    @property
+    def address(self) -> int:
+        """Where it is."""
+
+
+CompiledFunction: TypeAlias = "int | NumbaFunction | _CFunctionType | LowLevelCallable"
+"""A compiled function: its address, or what numba, ctypes or SciPy make of one."""
+
+
+class Executor(Protocol):
+    """Who runs parts of a piece of work elsewhere, as ``concurrent.futures.Executor`` and a client of Dask do.
+
+    Examples
+    --------
+    >>> from concurrent.futures import ThreadPoolExecutor
+    >>> import visviva as vv
+    >>> copies = vv.problems.figure_eight().scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]])
+    >>> def run_by(executor: vv.typing.Executor) -> vv.EnsembleTrajectory:
+    ...     return copies.run(t=1.0, executor=executor)
+    >>> with ThreadPoolExecutor() as pool:
+    ...     print(run_by(pool))
+    EnsembleTrajectory(2 copies, 2 times, 0 failed)
+    """
+
+    @property
+    def submit(self) -> Callable[..., object]:
+        """Take a function and its arguments, and give a future."""
+
 
 CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
 """What spheres do that touch."""
@@ -54,6 +141,24 @@ FoilTallyName: TypeAlias = Literal[
     "cm_angle",
 ]
 """What `visviva.scattering.Foil` counts of an ion."""
+
+EulerConvention: TypeAlias = Literal[
+    "xyx", "xyz", "xzx", "xzy", "yxy", "yxz", "yzx", "yzy", "zxy", "zxz", "zyx", "zyz",
+    "XYX", "XYZ", "XZX", "XZY", "YXY", "YXZ", "YZX", "YZY", "ZXY", "ZXZ", "ZYX", "ZYZ",
+]  # fmt: skip
+"""Axes of three turns, in order: capitals for axes that move with the body, small letters for axes that stay."""
+
+MaterialName: TypeAlias = Literal[
+    "beryllium", "carbon", "aluminum", "silicon", "titanium", "iron", "nickel", "copper", "germanium", "silver",
+    "tantalum", "tungsten", "platinum", "gold", "lead", "water", "silicon_dioxide", "mylar",
+]  # fmt: skip
+"""Materials of foils that are known by name."""
+
+IonName: TypeAlias = Literal["proton", "deuteron", "triton", "helion", "alpha"]
+"""Ions that are known by name."""
+
+ScreeningName: TypeAlias = Literal["zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi"]
+"""Screening functions of `visviva.potentials.ScreenedCoulomb`."""
 
 DiscreteMethodName: TypeAlias = Literal[
     "variational_midpoint",
@@ -141,6 +246,54 @@ GeneralizedMethodName: TypeAlias = (
     | Literal["gauss4", "gauss8", "gauss16", "matrix_exponential", "rattle", "rattle4", "rattle6", "rattle8"]
 )
 """Methods of systems in generalized coordinates; which of them takes a system, its plan says."""
+
+
+class IonHistory(TypedDict):
+    """The way of one ion through a foil: what `visviva.scattering.Foil.history` gives, with shapes and units.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> way: vv.typing.IonHistory = vv.scattering.Foil("gold", 0.4).history("alpha", beam_energy=7.687e6, seed=1)
+    >>> way["fate"], way["energy"].ndim
+    ('transmitted', 2)
+    """
+
+    depth: NDArray[np.float64]
+    path: NDArray[np.float64]
+    element: NDArray[np.uint64]
+    impact_parameter: NDArray[np.float64]
+    cm_angle: NDArray[np.float64]
+    energy: NDArray[np.float64]
+    direction: NDArray[np.float64]
+    fate: str
+    final_angle: float
+    final_energy: float
+    final_depth: float
+    weight: float
+
+
+class RunSettings(TypedDict, total=False):
+    """What advice gives to ``run``.
+
+    Attributes
+    ----------
+    method : str
+    dt, rtol : float
+        The step, or the relative tolerance.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> scene = vv.problems.figure_eight().scene
+    >>> settings: vv.typing.RunSettings = {"method": "leapfrog", "dt": 0.01}
+    >>> scene.run(t=1.0, **settings).stats.steps
+    100
+    """
+
+    method: MethodName
+    dt: float
+    rtol: float
 
 
 def __dir__() -> list[str]:

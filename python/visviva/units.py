@@ -15,6 +15,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from fractions import Fraction
 
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva._text import table
 
@@ -87,7 +88,7 @@ _COULOMB = ELEMENTARY_CHARGE**2 / (4.0 * 3.141592653589793 * VACUUM_PERMITTIVITY
 
 @known_keywords
 @dataclass(frozen=True, slots=True, kw_only=True)
-class Units:
+class Units(Shown):
     """A system of units: what its units are in SI, and constants in it.
 
     Attributes

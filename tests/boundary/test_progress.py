@@ -1,11 +1,16 @@
 """What ``progress=`` may be and what it shows."""
 
+import re
 import sys
+from collections.abc import Callable
+from pathlib import Path
 
+import numpy as np
 import pytest
 
+import visviva as vv
 from visviva import _core
-from visviva._progress import _scaled, callback
+from visviva._progress import TIME, _scaled, callback
 from visviva.errors import InvalidInput
 
 
@@ -55,6 +60,69 @@ def test_true_is_a_line_without_tqdm(
     assert any("s left" in line for line in lines[:-1])
     assert all(("events/s" in line) is bool(unit) for line in lines[1:])
     assert written.out == ""
+
+
+SHARES = [
+    ("copies", (0.0, 50.0), ("copies/s", "50")),
+    (TIME, (3.0, 10.5), ("t = 10.5 of 10.5", "a second")),
+    (TIME, (3.0, -4.5), ("t = -4.5 of -4.5", "a second")),
+]
+
+
+@pytest.mark.parametrize("tqdm", [True, False])
+@pytest.mark.parametrize(("unit", "of", "shown"), SHARES)
+def test_a_share_is_that_of_what_people_know(
+    unit: str,
+    of: tuple[float, float],
+    shown: tuple[str, ...],
+    tqdm: bool,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    if tqdm:
+        pytest.importorskip("tqdm")
+    else:
+        monkeypatch.setitem(sys.modules, "tqdm.auto", None)
+    with callback(True, unit, of) as report:
+        _core._busy(0.3, 1, report)
+    written = capsys.readouterr().err
+    assert all(text in written.split("\r")[-1] for text in shown)
+    assert re.search(r"\d left|\d s left|\d<\d", written)
+
+
+def runs() -> dict[str, tuple[Callable[[], object], str]]:
+    """Runs of each kind, and what they show when they end."""
+    orbit, pendulum = vv.problems.kepler(e=0.5).scene, vv.systems.pendulum()
+    third = vv.problems.figure_eight().scene
+    copies = third.ensemble(velocity=third.particles.velocity[None] * np.array([1.0, 0.99, 0.98])[:, None, None])
+    balls = vv.Particles([1.0, 1.0], [[-2.0, 0, 0], [2.0, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0]], radius=0.5)
+    bouncing = vv.Scene(balls, vv.Harmonic(1.0))
+    many = pendulum.ensemble(position=[[0.1], [0.2], [0.3]])
+    return {
+        "steps": (lambda: third.run(t=1.0, method="leapfrog", dt=0.01, progress=True), "100/100 .*steps/s"),
+        "time": (lambda: third.run(t=-2.5, method="dop853", progress=True), r"t = -2\.5 of -2\.5, .* a second"),
+        "times of a closed form": (lambda: orbit.run(t=np.arange(40.0), progress=True), r"40\.0/40\.0 .*times/s"),
+        "copies": (lambda: copies.run(t=1.0, progress=True), r"3\.00/3\.00 .*copies/s"),
+        "copies by steps": (lambda: copies.run(t=1.0, method="rk4", dt=0.1, progress=True), r"3\.00/3\.00 .*copies/s"),
+        "generalized copies": (lambda: many.run(t=1.0, progress=True), r"3\.00/3\.00 .*copies/s"),
+        "one generalized": (lambda: pendulum.run(t=1.0, progress=True), r"runs for 00:0\d"),
+        "collisions": (lambda: bouncing.run(t=4.0, collisions="bounce", progress=True), r"100 %"),
+    }
+
+
+@pytest.mark.parametrize("kind", runs())
+def test_runs_say_what_they_have_done(kind: str, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("tqdm")
+    run, shown = runs()[kind]
+    run()
+    assert re.search(shown, capsys.readouterr().err)
+
+
+def test_a_saved_run_tells_the_time_that_is_reached(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("tqdm")
+    scene = vv.problems.figure_eight().scene
+    scene.run(t=[0.5, 3.0], method="dop853", save_every=1.0, save_to=tmp_path / "run", progress=True)
+    assert re.search(r"t = 3 of 3, .* a second", capsys.readouterr().err)
 
 
 @pytest.mark.parametrize(

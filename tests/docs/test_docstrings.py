@@ -69,8 +69,8 @@ def documented() -> dict[str, Any]:
 
 
 DOCUMENTED = documented()
-#: They refuse, whatever they are given, or are for the core alone.
-NO_EXAMPLE = {f"CompiledTorque.{name}" for name in ("core_arguments", "rotated", "rescaled")}
+#: They refuse, whatever they are given.
+NO_EXAMPLE = {f"CompiledTorque.{name}" for name in ("rotated", "rescaled")}
 #: They do what they say with whatever they are given: turn, put together, look up.
 REFUSE_NOTHING = {
     *NO_EXAMPLE, "AppliedTorque.rotated", "AttachedSpring.rotated", "RigidBodies.rotated", "WorkPrecision.joined",

@@ -1,7 +1,10 @@
 """What a notebook shows of an object is a table whose texts are escaped; completion shows public names alone."""
 
 import importlib
+import inspect
 import pkgutil
+import re
+from enum import Enum
 from html.parser import HTMLParser
 from typing import Any
 
@@ -9,6 +12,7 @@ import numpy as np
 import pytest
 
 import visviva as vv
+from visviva._body_force import BodyForce
 from visviva._html import Shown
 
 MODULES = ["visviva", *(found.name for found in pkgutil.walk_packages(vv.__path__, "visviva."))]
@@ -62,7 +66,7 @@ def things() -> dict[str, Any]:
         pendulums.run(t=1.0, events=["theta"]).events,
         vv.RigidBodies([1.0], inertia=np.eye(3)[None]),
         vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0]),
-        *records(),
+        *records(), *motions(), *systems(), *answers(), *beams(),
     ]  # fmt: skip
     return {f"{type(thing).__name__} {index}": thing for index, thing in enumerate(each)}
 
@@ -87,6 +91,71 @@ def records() -> list[Any]:
     ]  # fmt: skip
 
 
+def motions() -> list[Any]:
+    """Parts of runs, and what is told of bodies that turn, orbit or are thrown."""
+    book = vv.RigidBody(1.0, [1.0, 2.0, 2.5], angular_velocity=[0.1, 1.0, 0], name="book")
+    turned = vv.Scene(book).run(t=np.linspace(0.0, 5.0, 50))["book"]
+    top = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0)
+    sun, times = vv.potentials.Coulomb(-1.0), np.linspace(0.0, 3.0, 301)
+    return [
+        turned, turned.turning, vv.rigid.free_rotation([1, 2, 3], [0.1, 1.0, 0.1], times),
+        vv.rigid.polhode([1, 2, 3], [0.1, 1.0, 0.3]), vv.rigid.sphere(2.0, 0.1),
+        top, top.solve(times, theta=0.3, psi_dot=50.0), top.nutation(0.3, psi_dot=50.0),
+        vv.drag.throw(speed=12.0, g=9.80665, tau=1.75), vv.datasets.solar_system(), vv.datasets.outer_solar_system(),
+        vv.orbits.circular_orbit(sun, 1.0), vv.orbits.conic(1.0, 1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0]),
+        vv.orbits.precessing_conic(1.0, 1.0, 0.1, position=[1.0, 0, 0], velocity=[0.0, 1.1, 0.0]),
+        *vv.orbits.range_of_motion(sun, energy=-0.5, angular_momentum=0.6),
+    ]  # fmt: skip
+
+
+def systems() -> list[Any]:
+    """What is told of systems in generalized coordinates."""
+    free = vv.Lagrangian(lambda q, v, t: v[0] ** 2 / 2, ["x"])
+    plane = vv.Hamiltonian(lambda q, p, t: (p[0] ** 2 + q[0] ** 2) / 2, ["x"])
+    swing = vv.systems.oscillator(k=1.0, m=1.0, position=[1.0]).run(t=np.linspace(0.0, 4.0, 81))
+    return [
+        *vv.systems.pendulum().equilibria(), free.action(([0.0, 2.0], [0.0, 1.0])), free.legendre_transform(),
+        free.discrete_action((np.arange(50.0), np.arange(50.0))), free.noether(lambda q, v, t: [1.0]),
+        plane.is_canonical(lambda q, p, t: [2 * q[0], p[0]]), swing.system.accessory_problem(swing),
+    ]  # fmt: skip
+
+
+def answers() -> list[Any]:
+    """What is told of runs before and after them, of methods, and of any equation."""
+    problem = vv.problems.kepler(e=0.5)
+    advice = problem.scene.advise(t=10.0, accuracy=1e-6)
+    plan = problem.scene.plan(t=1.0, method="leapfrog", dt=0.01)
+    points = [vv.Point("rk4", 0.1 / k, 1e-3 * k, 1e-3 / k**4, 1e-3 / k**4) for k in range(1, 20)]
+    report = vv.stress.run(["dop853"], cases=["two bodies in one place"])
+    decay = vv.solve_ivp(lambda t, y: -y, (0.0, 5.0), np.ones(20), dense_output=True)
+    run = problem.scene.run(t=1.0, method="leapfrog", dt=0.01)
+    along = np.zeros((2, 2, 3))
+    return [
+        advice, *advice.options, plan.cost(), run.stats, run.conservation().energy, points[0],
+        vv.WorkPrecision("kepler", tuple(points)), report, *report.verdicts, decay, decay.sol, problem.references[-1],
+        vv.audit.third_law([[0, 0, 0], [1.0, 0, 0]], along), *vv.methods(), vv.events.apsis(1, 0), vv.units.SI,
+    ]  # fmt: skip
+
+
+def beams() -> list[Any]:
+    """What comes and what it meets, and marks of a deflection function."""
+    s, well = vv.scattering, vv.potentials.LennardJones(1.0, 1.0)
+    many = np.linspace(1.0, 2.0, 500)
+    lines, strata = s.Spectrum(many, many), s.Strata(many - 1.0)
+    run = s.monte_carlo(
+        vv.potentials.HardSphere(1.0), beam_energy=lines, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1,
+        importance=strata,
+    )  # fmt: skip
+    foil = s.Foil("gold", 0.4).run("alpha", beam_energy=7e6, n_events=10, seed=1)
+    return [
+        lines, strata, run, run.beam, foil, foil.bombardment, foil.bombardment.foil, foil.bombardment.foil.material,
+        foil.bombardment.ion, s.Spread.gaussian(0.01), s.Bins.linear(4), s.LargeAngles(0.1),
+        s.Channel(q_value=-1.5, probability=(many, many - 1.0)),
+        *s.rainbows(well, energy=10.0), *s.glories(well, energy=10.0),
+        *s.orbiting(vv.potentials.PowerLaw(-1.0, 4), energy=1.0),
+    ]  # fmt: skip
+
+
 THINGS = things()
 
 
@@ -101,16 +170,45 @@ def test_html_is_well_formed_and_text_is_short(name: str) -> None:
     assert " object at 0x" not in text
 
 
-def test_every_kind_that_is_shown_is_tried() -> None:
-    def below(kind: type) -> set[type]:
-        return {kind, *(found for child in kind.__subclasses__() for found in below(child))}
+def public_classes() -> dict[str, type]:
+    """Those that a room shows, by name; no errors, enumerations, named tuples and types to annotate with."""
+    rooms = [vv, *(getattr(vv, room) for room in vv._ROOMS)]
+    found = {f"{room.__name__}.{name}": getattr(room, name) for room in rooms for name in room.__all__}
+    return {
+        name: kind
+        for name, kind in found.items()
+        if isinstance(kind, type)
+        and not issubclass(kind, BaseException | Enum | tuple)
+        and kind.__module__ != "visviva.typing"
+    }
 
-    for name in PUBLIC:
-        importlib.import_module(name)
-    leaves = {kind.__name__ for kind in below(Shown) if not kind.__subclasses__()}
-    tried = {type(thing).__name__ for thing in THINGS.values()}
-    # These print as texts by the very same way as Elements.
-    assert leaves - tried == {"Advice", "CircularOrbits", "Conic", "WorkPrecision"}
+
+#: Arguments that print as the calls that make them, and the numbers of a system that is being written down.
+PARTS = (vv.forces.Force, vv.potentials.Potential, BodyForce, vv.generalized.Expression)
+SHOWN = {name: kind for name, kind in public_classes().items() if not issubclass(kind, PARTS)}
+
+
+@pytest.mark.parametrize("name", SHOWN)
+def test_every_public_class_is_shown_and_tried(name: str) -> None:
+    kind = SHOWN[name]
+    assert issubclass(kind, Shown)
+    assert any(type(thing) is kind for thing in THINGS.values()) or kind.__subclasses__()
+
+
+def test_a_report_shows_what_failed_or_how_many_did_what() -> None:
+    fine = vv.stress.Verdict("two bodies", "rk4", "ok", "", 1e-9, 1e-12, 0.01)
+    bad = vv.stress.Verdict("a <wall>", "dop853", "FAILED", "hangs", 1.0, 1.0, 99.0)
+    assert [*Balanced(vv.stress.Report([fine, fine])._repr_html_()).texts] == ["2 verdicts, 0 failed", "ok", "2"]
+    texts = Balanced(vv.stress.Report([fine, bad])._repr_html_()).texts
+    assert texts[0] == "2 verdicts, 1 failed"
+    assert {"a <wall>", "dop853", "FAILED"} <= set(texts)
+    assert "two bodies" not in texts
+
+
+def test_an_expression_tells_what_it_is() -> None:
+    seen: list[Any] = []
+    vv.Lagrangian(lambda q, v, t: seen.extend([q[0], v[0] ** 2]) or v[0] ** 2, ["x"])
+    assert [repr(each) for each in seen[:2]] == ["Expression(variable)", "Expression(power)"]
 
 
 def test_names_of_bodies_are_escaped() -> None:
@@ -125,6 +223,43 @@ def test_long_tables_are_cut_and_say_so() -> None:
     shown = vv.Particles(np.ones(100), np.zeros((100, 3)))._repr_html_()
     assert shown.count("<tr>") == 13
     assert "and 88 more" in shown
+
+
+#: A word of what is inside.
+INSIDE = {"core"}
+#: They refuse, whatever they are given.
+NO_EXAMPLE = {"CompiledTorque.rotated", "CompiledTorque.rescaled"}
+
+
+def ours(kind: type, name: str) -> bool:
+    """Whether a name of a class is not one of Python's own, as ``items`` of a mapping is."""
+    return next(each for each in kind.__mro__ if name in vars(each)).__module__.startswith("visviva")
+
+
+def is_explained(kind: type, name: str) -> bool:
+    """Whether a name is one that people find in the reference: with an example, or among the attributes."""
+    value = inspect.getattr_static(kind, name, None)
+    told = inspect.getdoc(value) or ""
+    if isinstance(value, property):
+        return bool(told)
+    if inspect.isroutine(getattr(value, "__func__", value)) and not inspect.ismemberdescriptor(value):
+        return ">>>" in told or f"{kind.__name__}.{name}" in NO_EXAMPLE
+    lines = "\n".join(each.__doc__ or "" for each in kind.__mro__ if each.__module__.startswith("visviva"))
+    return re.search(rf"(?m)^ *(\w+, )*{name}\b", lines) is not None
+
+
+@pytest.mark.parametrize("name", public_classes())
+def test_completion_of_a_class_shows_public_names_alone(name: str) -> None:
+    kind = public_classes()[name]
+    shown = [each for each in dir(kind) if not each.startswith("_") and ours(kind, each)]
+    assert [each for each in shown if not is_explained(kind, each) or INSIDE & set(each.split("_"))] == []
+
+
+@pytest.mark.parametrize("name", THINGS)
+def test_completion_of_an_object_shows_public_names_alone(name: str) -> None:
+    thing, kind = THINGS[name], type(THINGS[name])
+    more = {each for each in dir(thing) if not each.startswith("_")} - set(dir(kind))
+    assert [each for each in more if not is_explained(kind, each) or INSIDE & set(each.split("_"))] == []
 
 
 @pytest.mark.parametrize("name", PUBLIC)

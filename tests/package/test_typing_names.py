@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import re
-from typing import Any, get_args
+from contextlib import suppress
+from itertools import product
+from typing import TYPE_CHECKING, Any, get_args
 
 import pytest
 import sympy as sp
@@ -11,6 +13,9 @@ import sympy as sp
 import visviva as vv
 from visviva import typing
 from visviva.generalized._methods import CONSTRAINED, DISCRETE, GAUSS, LINEAR
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
 
 
 def words(alias: Any) -> set[str]:
@@ -59,3 +64,41 @@ def test_tallies() -> None:
             tally="?",  # type: ignore[arg-type]
         )
     assert known(caught.value.message, "expected one of") == words(typing.FoilTallyName)
+
+
+def refused(call: Callable[[], object], before: str) -> set[str]:
+    """The words that a refusal says there are."""
+    with pytest.raises(vv.InvalidInput) as caught:
+        call()
+    return known(caught.value.message, before)
+
+
+def test_what_foils_are_made_of() -> None:
+    foil = vv.scattering.Foil("gold", 0.1)
+    materials = refused(lambda: vv.scattering.Foil("?", 0.1), "a Material or one of")  # type: ignore[arg-type]
+    assert materials == words(typing.MaterialName)
+    ions = refused(lambda: foil.stopping_power("?", 1e6), "an Ion or one of")  # type: ignore[arg-type]
+    assert ions == words(typing.IonName)
+    screenings = refused(lambda: vv.scattering.Foil("gold", 0.1, potential="?"), "expected one of")  # type: ignore[arg-type]
+    assert screenings >= words(typing.ScreeningName) | {"coulomb"}
+    for name in words(typing.ScreeningName):
+        assert vv.potentials.ScreenedCoulomb.between(2, 79, screening=name).screening == name  # type: ignore[arg-type]
+
+
+def test_conventions_of_euler_angles() -> None:
+    taken = set()
+    for letters in product("xyzXYZ", repeat=3):
+        with suppress(vv.InvalidInput):
+            vv.rigid.euler_angles([0.0, 0.0, 0.0, 1.0], "".join(letters))  # type: ignore[arg-type]
+            taken.add("".join(letters))
+    assert taken == words(typing.EulerConvention)
+
+
+def test_the_way_of_an_ion_and_settings_of_a_run() -> None:
+    way = vv.scattering.Foil("gold", 0.1).history("alpha", beam_energy=1e6, seed=1)
+    assert set(way) == set(typing.IonHistory.__annotations__)
+    for name in ("figure_eight", "outer_solar_system"):
+        advice = getattr(vv.problems, name)().scene.advise(t=1.0, accuracy=1e-3)
+        for option in advice.options:
+            assert set(option.how) <= set(typing.RunSettings.__annotations__)
+            assert option.how["method"] in words(typing.MethodName)

@@ -106,7 +106,7 @@ def test_rods_have_a_moment_of_zero() -> None:
 
 
 def test_the_core_is_given_contiguous_arrays() -> None:
-    given = pair().core_arguments()
+    given = pair()._core_arguments()
     shapes = {
         "mass": (2,),
         "position": (2, 3),

@@ -38,7 +38,7 @@ def test_forces_on_bodies_are_values(force) -> None:
     with pytest.raises(vv.FrozenAttribute):
         force.body = 0
     known = force._resolved(BODIES, PARTICLES)
-    arguments = known.core_arguments()
+    arguments = known._core_arguments()
     assert arguments["kind"] == type(force).kind
     assert not any(isinstance(value, str) for name, value in arguments.items() if name not in ("kind", "frame"))
     assert arguments["body"] == (None if force.body is None else 1)
@@ -75,7 +75,7 @@ def test_names_of_bodies_are_looked_up_in_the_scene() -> None:
         ):
             vv.Scene(vv.Particles([1.0], [[0, 0, 0]]), force)
     with pytest.raises(vv.InvalidInput, match="body: expected the index of a body outside a scene, got 'top'"):
-        FORCES[1].core_arguments()
+        FORCES[1]._core_arguments()
 
 
 def test_forces_on_bodies_in_other_frames() -> None:
@@ -143,7 +143,7 @@ def test_compiled_torques_are_what_they_say() -> None:
         rate[0] = t
 
     torque = vv.CompiledTorque(compiled, body="top")
-    assert torque._resolved(BODIES, PARTICLES).core_arguments() == {
+    assert torque._resolved(BODIES, PARTICLES)._core_arguments() == {
         "kind": "compiled_torque",
         "address": compiled.address,
         "body": 1,

@@ -35,7 +35,7 @@ def test_same_bits_for_any_threads_and_pieces(forced):
     assert pickle.loads(pickle.dumps(whole)) == whole
     with pytest.raises(vv.InvalidInput, match="event 0 of seed 7 is in both"):
         whole + pieces[1]
-    with pytest.raises(vv.InvalidInput, match="other"):
+    with pytest.raises(vv.InvalidInput, match=f"^other: expected the same forced_angle, {forced}, got 0.7"):
         whole + foil.run("proton", n_events=5, first_event=9000, forced_angle=0.7, **ASKED)
 
 

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from visviva._html import Sheet, Shown
+from visviva._text import count
 from visviva.forces import Gravity
 from visviva.particles import Particles
 from visviva.scene import Scene
@@ -17,8 +19,8 @@ if TYPE_CHECKING:
 __all__ = ["Bodies", "columns", "read_only"]
 
 
-@dataclass(frozen=True, eq=False)
-class Bodies:
+@dataclass(frozen=True, eq=False, repr=False)
+class Bodies(Shown):
     """Named bodies that attract each other, as somebody published them."""
 
     names: tuple[str, ...]
@@ -28,6 +30,14 @@ class Bodies:
     G: float
     epoch: str
     source: str
+
+    def __repr__(self) -> str:
+        first, last = self.names[0], self.names[-1]
+        return f"{type(self).__name__}({count(len(self.names), 'body', 'bodies')}: {first}, …, {last}; {self.epoch})"
+
+    def _sheet(self) -> Sheet:
+        bodies = self.particles._sheet()
+        return replace(bodies, caption=f"{type(self).__name__}, {self.epoch}, G = {self.G:.10g}", note=self.source)
 
     @property
     def particles(self) -> Particles:

@@ -62,7 +62,7 @@ _APPLEGATE = (
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class OuterSolarSystem(Bodies):
     """Bodies of the outer Solar System; lengths in astronomical units, times in days, masses of the Sun.
 

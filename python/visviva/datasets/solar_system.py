@@ -73,7 +73,7 @@ _COSINE, _SINE = 0.91748206206918181, 0.39777715593191371
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class SolarSystem(Bodies):
     """The Sun and the planets; lengths in astronomical units, times in days, masses of the Sun.
 

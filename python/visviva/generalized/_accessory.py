@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.generalized._action import hessian
@@ -38,8 +39,8 @@ _READ = np.array([0.25, 0.5, 0.75, 1.0])
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class AccessoryProblem:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class AccessoryProblem(Record):
     """The second variation of the action among all variations that vanish at both ends of a path.
 
     Units: those of the system: times, and one over a time squared.

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._quadrature import _DERIVATIVE, _NODES, _WEIGHTS
 from visviva.errors import ConvergenceError, InvalidInput
@@ -33,8 +34,8 @@ _EPS = float(np.finfo(float).eps)
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class PathIntegral:
+@dataclass(frozen=True, slots=True, repr=False)
+class PathIntegral(Record):
     """An integral along a path; ``float`` gives its value.
 
     Units: those of an action in the system, energy times time.

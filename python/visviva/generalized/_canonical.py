@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus, listed
@@ -21,8 +22,8 @@ __all__ = ["CanonicalTest", "canonical_test"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True, eq=False)
-class CanonicalTest:
+@dataclass(frozen=True, slots=True, eq=False, repr=False)
+class CanonicalTest(Record):
     """What became of MᵀJM − J, M being the derivatives of (Q, P) by (q, p); true where it vanishes.
 
     Units: residuals are relative, without dimension.

@@ -67,7 +67,7 @@ def legendre(system: GeneralizedSystem) -> GeneralizedSystem:
     return other
 
 
-def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float] | None) -> GeneralizedSystem:
+def routhian(system: GeneralizedSystem, momenta: Mapping[Any, float | None] | None) -> GeneralizedSystem:
     """Give Routh's function without cyclic coordinates, their momenta as parameters ``p_<name>``."""
     from visviva.generalized._lagrangian import Lagrangian
 

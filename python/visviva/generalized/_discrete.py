@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._methods import DISCRETE, discrete_name
@@ -22,8 +23,8 @@ __all__ = ["DiscreteAction", "discrete_action"]
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class DiscreteAction:
+@dataclass(frozen=True, slots=True, repr=False)
+class DiscreteAction(Record):
     """The action of a discrete path, and its derivatives; ``float`` gives its value.
 
     Made by `Lagrangian.discrete_action`.

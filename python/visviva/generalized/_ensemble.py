@@ -21,17 +21,17 @@ from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
+    import sympy
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.events import Event
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
     from visviva.integrators import Method
-    from visviva.typing import GeneralizedMethodName, Progress
+    from visviva.typing import GeneralizedEvent, GeneralizedMethodName, Progress
 
 __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
 
@@ -63,7 +63,7 @@ class GeneralizedEnsemble(Shown):
         system: GeneralizedSystem,
         position: ArrayLike | None = None,
         second: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
+        parameters: Mapping[str, ArrayLike] | Mapping[sympy.Symbol, ArrayLike] | None = None,
     ) -> None:
         n = len(system.coordinates)
         sizes: dict[str, tuple[int, str]] = {}
@@ -124,7 +124,7 @@ class GeneralizedEnsemble(Shown):
         dt: float | None = None,
         max_step: float | None = None,
         max_steps: int | None = None,
-        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
+        events: Sequence[GeneralizedEvent] | GeneralizedEvent = (),
         threads: int | None = None,
         progress: Progress = False,
     ) -> GeneralizedEnsembleTrajectory:

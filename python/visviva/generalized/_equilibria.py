@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._analysis import linearization
@@ -34,8 +35,8 @@ _MADE_OF_THEM = 0.1
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Equilibrium:
+@dataclass(frozen=True, slots=True, repr=False)
+class Equilibrium(Record):
     """A place where the system stays.
 
     Units: those of the system.

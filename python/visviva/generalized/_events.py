@@ -78,7 +78,7 @@ def described(events: Sequence[Event]) -> tuple[Event, ...]:
 
 
 def _told(system: States, index: int, event: Event) -> dict[str, Any]:
-    parameters = dict(event.parameters)
+    parameters: dict[str, Any] = dict(event.parameters)
     if "name" in parameters:
         raise InvalidInput(
             "events", f"of the function {parameters['name']!r} a run keeps its name alone; give it again"

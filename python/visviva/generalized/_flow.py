@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from visviva.generalized._legendre import LegendreTransform
     from visviva.generalized._nodes import Node
     from visviva.integrators import Method
-    from visviva.typing import GeneralizedMethodName
+    from visviva.typing import Formula, GeneralizedMethodName
 
 __all__ = ["Flow"]
 
@@ -30,7 +30,7 @@ class Flow:
 
     def poincare(
         self: Any,
-        section: Any,
+        section: str | Formula,
         t: float,
         *,
         direction: int = 1,

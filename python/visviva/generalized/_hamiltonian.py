@@ -16,12 +16,14 @@ from visviva.generalized._symbolic import trees
 from visviva.generalized._system import GeneralizedSystem
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping, Sequence
 
+    import sympy
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._equilibria import Equilibrium
     from visviva.generalized._lagrangian import Lagrangian
+    from visviva.typing import Formula, ParameterValues, SymbolicExpression
 
 __all__ = ["Hamiltonian"]
 
@@ -71,14 +73,14 @@ class Hamiltonian(GeneralizedSystem):
 
     def __init__(
         self,
-        H: Any,
-        q: Any,
-        p: Any = None,
+        H: Formula,
+        q: Sequence[sympy.Expr | str] | sympy.Expr,
+        p: Sequence[sympy.Expr] | sympy.Expr | None = None,
         *,
-        parameters: Mapping[Any, float] | None = None,
+        parameters: ParameterValues | None = None,
         position: ArrayLike | None = None,
         momentum: ArrayLike | None = None,
-        forces: Mapping[Any, Any] | None = None,
+        forces: Mapping[str, Formula] | Mapping[sympy.Expr, Formula] | None = None,
         t0: float = 0.0,
     ) -> None:
         source, values = described("hamiltonian", H, q, p, parameters, {"forces": forces})
@@ -110,7 +112,7 @@ class Hamiltonian(GeneralizedSystem):
         return float(self._model.columns(np.array([self.t0]), self._start()[None, :], self._values[None, :])[0, n])
 
     @property
-    def equations(self) -> tuple[list[Any], list[Any]]:
+    def equations(self) -> tuple[list[sympy.Expr], list[sympy.Expr]]:
         """q̇ and ṗ as expressions of SymPy.
 
         Examples
@@ -173,7 +175,7 @@ class Hamiltonian(GeneralizedSystem):
         """
         return fixed_points(self, near)
 
-    def poisson(self, f: Any, g: Any) -> Any:
+    def poisson(self, f: SymbolicExpression, g: SymbolicExpression) -> sympy.Expr:
         """The Poisson bracket {f, g} = Σ ∂f/∂q ∂g/∂p − ∂f/∂p ∂g/∂q, as an expression of SymPy.
 
         Parameters
@@ -201,7 +203,9 @@ class Hamiltonian(GeneralizedSystem):
         first, second, parameters = self._source.symbols
         return trees(found, places, [*first, *second], list(parameters))[0]
 
-    def is_canonical(self, transformation: Any) -> CanonicalTest:
+    def is_canonical(
+        self, transformation: Sequence[SymbolicExpression] | Callable[..., Sequence[SymbolicExpression]]
+    ) -> CanonicalTest:
         """Whether a transformation (q, p) → (Q, P) is canonical: MᵀJM = J for its derivatives M.
 
         Parameters

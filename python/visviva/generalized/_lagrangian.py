@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -13,16 +13,18 @@ from visviva.generalized._consistency import check_on_constraints
 from visviva.generalized._laws import Laws
 from visviva.generalized._small_motions import SmallMotions
 from visviva.generalized._source import described
-from visviva.generalized._symbolic import sympy
+from visviva.generalized._symbolic import sympy as imported_sympy
 from visviva.generalized._system import GeneralizedSystem
 from visviva.generalized._variations import Variations
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
+    import sympy
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._hamiltonian import Hamiltonian
+    from visviva.typing import Formula, ParameterValues
 
 __all__ = ["Lagrangian"]
 
@@ -92,18 +94,18 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
 
     def __init__(
         self,
-        L: Any,
-        coordinates: Any,
+        L: Formula,
+        coordinates: Sequence[sympy.Expr | str] | sympy.Expr,
         *,
-        velocities: Sequence[Any] | None = None,
-        parameters: Mapping[Any, float] | None = None,
+        velocities: Sequence[sympy.Expr] | None = None,
+        parameters: ParameterValues | None = None,
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
-        forces: Mapping[Any, Any] | None = None,
-        dissipation: Any = None,
-        constraints: Any = (),
-        nonholonomic: Any = (),
-        consistent: str | None = None,
+        forces: Mapping[str, Formula] | Mapping[sympy.Expr, Formula] | None = None,
+        dissipation: Formula | None = None,
+        constraints: Sequence[Formula] | Formula = (),
+        nonholonomic: Sequence[Formula] | Formula = (),
+        consistent: Literal["project"] | None = None,
         t0: float = 0.0,
     ) -> None:
         further = {
@@ -165,7 +167,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         return first
 
     @property
-    def mass_matrix(self) -> Any:
+    def mass_matrix(self) -> sympy.Matrix:
         """∂²L/∂q̇∂q̇ as a matrix of SymPy.
 
         Examples
@@ -177,10 +179,10 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         [0, m*r**2]])
         """
         n = len(self.coordinates)
-        return sympy().Matrix(n, n, self._shown("mass_matrix"))
+        return imported_sympy().Matrix(n, n, self._shown("mass_matrix"))
 
     @property
-    def momenta(self) -> list[Any]:
+    def momenta(self) -> list[sympy.Expr]:
         """∂L/∂q̇ as expressions of SymPy.
 
         Examples
@@ -192,7 +194,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         return self._shown("conjugates")
 
     @property
-    def kinetic_split(self) -> tuple[Any, Any, Any]:
+    def kinetic_split(self) -> tuple[sympy.Expr, sympy.Expr, sympy.Expr]:
         """L by degrees of the velocities: its parts L2, L1 and L0, as expressions of SymPy; h = L2 − L0.
 
         Examples
@@ -224,7 +226,9 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         hamiltonian: Hamiltonian = made
         return hamiltonian
 
-    def routhian(self, momenta: Mapping[Any, float] | None = None) -> Lagrangian:
+    def routhian(
+        self, momenta: Mapping[str, float | None] | Mapping[sympy.Expr, float | None] | None = None
+    ) -> Lagrangian:
         """The system without cyclic coordinates, as a Lagrangian with their momenta as parameters ``p_<name>``.
 
         Units: those of the system.

@@ -2,16 +2,27 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Mapping, Sequence
+
     import numpy as np
+    import sympy
     from numpy.typing import NDArray
 
     from visviva.generalized._noether import NoetherSymmetry
     from visviva.generalized._trajectory import GeneralizedTrajectory
+    from visviva.typing import Formula, SymbolicExpression
+
+    Generator: TypeAlias = (
+        Sequence[SymbolicExpression]
+        | Mapping[str, Formula]
+        | Mapping[sympy.Expr, Formula]
+        | Callable[..., Sequence[SymbolicExpression]]
+    )
 
 __all__ = ["Laws"]
 
@@ -22,7 +33,13 @@ class Laws:
 
     __slots__ = ()
 
-    def noether(self: Any, generator: Any, *, time_shift: Any = 0, gauge: Any = None) -> NoetherSymmetry:
+    def noether(
+        self: Any,
+        generator: Generator,
+        *,
+        time_shift: Formula = 0,
+        gauge: Formula | None = None,
+    ) -> NoetherSymmetry:
         """Whether q → q + ε ξ(q, t), t → t + ε τ(q, t) is a symmetry, and the momentum that it conserves.
 
         It is one if L dt changes by the differential of a function F(q, t), further forces do no work along it, and it

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeAlias
 import numpy as np
 
 from visviva._arrays import float_array, number
+from visviva._html import Shown
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, FrozenAttribute, InvalidInput
 
@@ -38,7 +39,7 @@ _NAMES = {"lagrangian": ("momentum", "velocity", "velocities"), "hamiltonian": (
 
 
 @known_keywords
-class LegendreTransform:
+class LegendreTransform(Shown):
     """The Hamiltonian of a Lagrangian, or the Lagrangian of a Hamiltonian, evaluated by numbers.
 
     Made by the method ``legendre_transform`` of either. Called with places and momenta (or velocities), of shape (...,

@@ -107,6 +107,10 @@ class Expression:
         self._nodes = nodes
         self._place = place
 
+    def __repr__(self) -> str:
+        operation, _, value = self._nodes.all[self._place]
+        return f"Expression({value:g})" if operation == "constant" else f"Expression({operation})"
+
     def _with(self, operation: str, *others: object, swapped: bool = False) -> Expression:
         places = [self._place]
         for other in others:

@@ -9,10 +9,11 @@ vanish by the rules of the graph, which proves it, or at states of many sizes.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, TypeAlias
+from typing import TYPE_CHECKING, Any, TypeAlias, overload
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 from visviva.generalized._calculus import Calculus, listed
@@ -22,6 +23,7 @@ from visviva.generalized._source import _label
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    import sympy
     from numpy.typing import NDArray
 
     from visviva.generalized._lagrangian import Lagrangian
@@ -38,7 +40,7 @@ _MOST_PARTS = 256
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class NoetherSymmetry:
+class NoetherSymmetry(Record):
     """Whether a transformation is a symmetry of a Lagrangian, and what it conserves. Made by `Lagrangian.noether`.
 
     Units: residuals are relative, without dimension.
@@ -86,7 +88,7 @@ class NoetherSymmetry:
         return f"NoetherSymmetry(holds={self.holds}, {self.reason})"
 
     @property
-    def expression(self) -> Any:
+    def expression(self) -> sympy.Expr:
         """What is conserved, as an expression of SymPy.
 
         Raises
@@ -107,7 +109,11 @@ class NoetherSymmetry:
             )
         return self._calculus.shown([self._momentum])[0]
 
-    def conserved(self, trajectory: GeneralizedTrajectory | None = None) -> Any:
+    @overload
+    def conserved(self, trajectory: None = None) -> float: ...
+    @overload
+    def conserved(self, trajectory: GeneralizedTrajectory) -> NDArray[np.float64]: ...
+    def conserved(self, trajectory: GeneralizedTrajectory | None = None) -> float | NDArray[np.float64]:
         """Give what is conserved, at the start or along a trajectory; of what is no symmetry it changes.
 
         Parameters

@@ -17,15 +17,14 @@ from visviva.generalized._states import States, whole
 from visviva.status import Status
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.events import Event
     from visviva.generalized._plan import GeneralizedPlan
     from visviva.generalized._trajectory import GeneralizedTrajectory
     from visviva.integrators import Method
-    from visviva.typing import GeneralizedMethodName, Progress
+    from visviva.typing import GeneralizedEvent, GeneralizedMethodName, Progress
 
 __all__ = ["Runs"]
 
@@ -122,7 +121,7 @@ class Runs(States):
         dt: float | None = None,
         max_step: float | None = None,
         max_steps: int | None = None,
-        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
+        events: Sequence[GeneralizedEvent] | GeneralizedEvent = (),
         progress: Progress = False,
     ) -> GeneralizedTrajectory:
         """Run from the start.
@@ -226,7 +225,9 @@ class Runs(States):
             return self._model.run(asked, states, parameters, threads, None)
         from visviva._progress import callback
 
-        with callback(progress) as report:
+        # A single run is counted when it is over.
+        of = ("copies", (0.0, float(len(states)))) if len(states) > 1 else ("", None)
+        with callback(progress, *of) as report:
             return self._model.run(asked, states, parameters, threads, report)
 
     def plan(
@@ -239,7 +240,7 @@ class Runs(States):
         dt: float | None = None,
         max_step: float | None = None,
         max_steps: int | None = None,
-        events: Sequence[Event | str | Callable[..., Any] | Any] = (),
+        events: Sequence[GeneralizedEvent] | GeneralizedEvent = (),
     ) -> GeneralizedPlan:
         """What `run` would do, and why.
 

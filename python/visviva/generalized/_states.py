@@ -19,10 +19,12 @@ from visviva.generalized._source import Source, _label
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
+    import sympy
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.generalized._ensemble import GeneralizedEnsemble
     from visviva.generalized._system import GeneralizedSystem
+    from visviva.typing import ParameterValues
 
 __all__ = ["States", "whole"]
 
@@ -103,7 +105,7 @@ class States(Shown):
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, float] | None = None,
+        parameters: ParameterValues | None = None,
         t0: float | None = None,
     ) -> Self:
         """The same system from another start, or with other parameters; nothing is derived again.
@@ -147,7 +149,7 @@ class States(Shown):
         position: ArrayLike | None = None,
         velocity: ArrayLike | None = None,
         momentum: ArrayLike | None = None,
-        parameters: Mapping[Any, ArrayLike] | None = None,
+        parameters: Mapping[str, ArrayLike] | Mapping[sympy.Symbol, ArrayLike] | None = None,
     ) -> GeneralizedEnsemble:
         """Many copies, from starts or with parameters of their own.
 
@@ -206,7 +208,7 @@ class States(Shown):
         self,
         position: ArrayLike | None,
         second: ArrayLike | None,
-        parameters: Mapping[Any, float] | None = None,
+        parameters: ParameterValues | None = None,
         t0: float | None = None,
     ) -> Self:
         other = object.__new__(type(self))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -10,6 +10,8 @@ from visviva.generalized._nodes import FUNCTIONS, Node, Nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
+
+    from sympy import Symbol
 
 __all__ = ["Symbols", "coordinate", "sympy", "time", "trees"]
 
@@ -95,7 +97,8 @@ class _Time:
         return self._sympy_() >= other
 
 
-time: Any = _Time()
+# What it is to SymPy, wherever it meets an expression.
+time: Symbol = cast("Any", _Time())
 
 
 @known_keywords

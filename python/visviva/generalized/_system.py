@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
     from visviva.generalized._nodes import Node
     from visviva.generalized._trajectory import GeneralizedTrajectory
+    from visviva.typing import Formula
 
 __all__ = ["GeneralizedSystem"]
 
@@ -106,7 +107,7 @@ class GeneralizedSystem(Runs, Flow):
             first, second, parameters = map(list, self._source.symbols)
         return trees(nodes, roots, [*first, *second], parameters)
 
-    def evaluate(self, *expressions: Any, trajectory: GeneralizedTrajectory | None = None) -> NDArray[np.float64]:
+    def evaluate(self, *expressions: Formula, trajectory: GeneralizedTrajectory | None = None) -> NDArray[np.float64]:
         """Values of further expressions, at the start or along a trajectory.
 
         Units: those of the system.

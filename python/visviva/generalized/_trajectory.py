@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     from matplotlib.animation import FuncAnimation
     from matplotlib.axes import Axes
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
     from visviva.generalized._events import GeneralizedEventTable
@@ -84,6 +84,8 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     reactions : ndarray, shape (T, c)
         Multipliers λ of the constraints, in their order, holonomic ones first: the force Σ λ ∂g/∂q acts on the system.
     status : Status
+    method : str
+        What ran.
     steps, evaluations : int
         What it took; an evaluation is one of all stages.
     longest_step : float
@@ -391,7 +393,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         self,
         path: str | PathLike[str] | None = None,
         *,
-        points: Callable[..., Any] | None = None,
+        points: Callable[..., Sequence[Sequence[ArrayLike]]] | None = None,
         plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
         trail: float = 0.1,
         frames: int = 200,

@@ -2,15 +2,22 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    import numpy as np
+    from numpy.typing import ArrayLike, NDArray
+
     from visviva.generalized._accessory import AccessoryProblem
     from visviva.generalized._action import PathIntegral
     from visviva.generalized._discrete import DiscreteAction
-    from visviva.typing import DiscreteMethodName
+    from visviva.typing import DiscreteMethodName, GeneralizedPath
+
+    Variation: TypeAlias = ArrayLike | Callable[[NDArray[np.float64]], ArrayLike]
 
 __all__ = ["Variations"]
 
@@ -21,7 +28,7 @@ class Variations:
 
     __slots__ = ()
 
-    def action(self: Any, path: Any, *, degree: int = 5) -> PathIntegral:
+    def action(self: Any, path: GeneralizedPath, *, degree: int = 5) -> PathIntegral:
         """The action S = ∫ L dt along a path, from its first time to its last.
 
         Along a run backward in time it has the other sign: dt < 0 there, as in the principal function S(q₁, t₁; q₀, t₀)
@@ -66,7 +73,13 @@ class Variations:
 
         return action(self, path, degree)
 
-    def first_variation(self: Any, path: Any, variation: Any, *, degree: int = 5) -> PathIntegral:
+    def first_variation(
+        self: Any,
+        path: GeneralizedPath,
+        variation: Variation,
+        *,
+        degree: int = 5,
+    ) -> PathIntegral:
         """What the action changes by to first order, δS[η] = ∫ (∂L/∂q η + ∂L/∂q̇ η̇) dt.
 
         It is p η at the last time less that at the first for a motion without further forces and constraints: 0 where η
@@ -104,7 +117,13 @@ class Variations:
 
         return first_variation(self, path, variation, degree)
 
-    def second_variation(self: Any, path: Any, variation: Any, *, degree: int = 5) -> PathIntegral:
+    def second_variation(
+        self: Any,
+        path: GeneralizedPath,
+        variation: Variation,
+        *,
+        degree: int = 5,
+    ) -> PathIntegral:
         """What the action changes by to second order: δ²S[η] = d²/dε² S[q + ε η] at ε = 0.
 
         Units: as of `first_variation`.
@@ -139,7 +158,9 @@ class Variations:
 
         return second_variation(self, path, variation, degree)
 
-    def discrete_action(self: Any, path: Any, *, method: DiscreteMethodName | None = None) -> DiscreteAction:
+    def discrete_action(
+        self: Any, path: GeneralizedPath, *, method: DiscreteMethodName | None = None
+    ) -> DiscreteAction:
         """The action of a path of places, segment by segment, as a variational integrator sums it, and its derivatives.
 
         Units: those of an action in the system, energy times time.
@@ -180,7 +201,7 @@ class Variations:
 
         return discrete_action(self, path, method)
 
-    def accessory_problem(self: Any, path: Any, *, degree: int = 5) -> AccessoryProblem:
+    def accessory_problem(self: Any, path: GeneralizedPath, *, degree: int = 5) -> AccessoryProblem:
         """Whether the action is least along a path among its neighbours between the same ends, or only stationary.
 
         Parameters

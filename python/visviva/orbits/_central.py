@@ -9,7 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive
-from visviva._html import Shown
+from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
 from visviva._text import short, table
 from visviva.errors import InvalidInput
@@ -292,8 +292,8 @@ def circular_orbits(
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class RadialRange:
+@dataclass(frozen=True, slots=True, repr=False)
+class RadialRange(Record):
     """A range of distance in which a motion may be.
 
     Units: those of the caller's lengths.

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -17,8 +18,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class PrecessingConic:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class PrecessingConic(Record):
     """A conic that turns about the center, or a spiral; what :func:`precessing_conic` returns.
 
     Units: those of the caller, one consistent system; angles in radians.

@@ -8,6 +8,7 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. ch. 4–5; Landau & Lifshitz, *Mechanics* 3rd ed. ch. VI.
 """
 
+from visviva._body_force import BodyForce
 from visviva.rigid._cones import ConeAngles, cone_angles
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
@@ -46,6 +47,7 @@ from visviva.rigid._top_potential import TopMomenta
 from visviva.rigid._velocity import ScrewAxis, screw_axis, velocity_at
 
 __all__ = [
+    "BodyForce",
     "ConeAngles",
     "FreeRotation",
     "HeavyTop",

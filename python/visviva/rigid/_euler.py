@@ -14,9 +14,11 @@ if TYPE_CHECKING:
     import numpy as np
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import EulerConvention
+
 
 @known_keywords
-def euler_angles(quaternion: ArrayLike, convention: str = "ZXZ") -> NDArray[np.float64]:
+def euler_angles(quaternion: ArrayLike, convention: EulerConvention = "ZXZ") -> NDArray[np.float64]:
     """Give the Euler angles of rotations.
 
     Units: angles in radians; quaternions are without dimension.
@@ -59,7 +61,7 @@ def euler_angles(quaternion: ArrayLike, convention: str = "ZXZ") -> NDArray[np.f
 
 
 @known_keywords
-def quaternion_from_euler(angles: ArrayLike, convention: str = "ZXZ") -> NDArray[np.float64]:
+def quaternion_from_euler(angles: ArrayLike, convention: EulerConvention = "ZXZ") -> NDArray[np.float64]:
     """Give the quaternions of Euler angles.
 
     Units: angles in radians; quaternions are without dimension.
@@ -97,7 +99,11 @@ def quaternion_from_euler(angles: ArrayLike, convention: str = "ZXZ") -> NDArray
 
 @known_keywords
 def angular_velocity_from_euler(
-    angles: ArrayLike, rates: ArrayLike, *, frame: Literal["body", "space"] = "body", convention: str = "ZXZ"
+    angles: ArrayLike,
+    rates: ArrayLike,
+    *,
+    frame: Literal["body", "space"] = "body",
+    convention: EulerConvention = "ZXZ",
 ) -> NDArray[np.float64]:
     """Give the angular velocity of Euler angles that change at such rates.
 
@@ -142,7 +148,7 @@ def euler_rates(
     angular_velocity: ArrayLike,
     *,
     frame: Literal["body", "space"] = "body",
-    convention: str = "ZXZ",
+    convention: EulerConvention = "ZXZ",
 ) -> NDArray[np.float64]:
     """Give the rates of Euler angles under an angular velocity.
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.rigid._arguments import rows
 from visviva.rigid._rotation import Rotation
@@ -23,8 +24,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class FreeRotation(Rotation):
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class FreeRotation(Rotation, Record):
     """The states of a free rotation; what :func:`free_rotation` returns.
 
     Of a single time, arrays have no axis over the times. All are read-only.

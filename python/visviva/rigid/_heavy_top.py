@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.rigid._top_motion import TopMotion
@@ -53,8 +54,8 @@ def _from_the_vertical(theta: float) -> float:
 
 
 @known_keywords
-@dataclass(frozen=True, kw_only=True, slots=True)
-class Nutation:
+@dataclass(frozen=True, kw_only=True, slots=True, repr=False)
+class Nutation(Record):
     """How the axis of a top nods; what `HeavyTop.nutation` returns.
 
     Units: those of the caller, one consistent system; angles in radians.
@@ -97,8 +98,8 @@ class Nutation:
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class HeavyTop:
+@dataclass(frozen=True, slots=True, repr=False)
+class HeavyTop(Record):
     """A symmetric top that turns about a fixed point on its axis, in uniform gravity.
 
     Angles are Euler's, z–x–z: θ from the vertical up to the axis, φ about the vertical, ψ about the axis. The spin is

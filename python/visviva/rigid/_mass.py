@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.rigid._inertia import (
@@ -28,8 +29,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, slots=True)
-class MassProperties:
+@dataclass(frozen=True, eq=False, slots=True, repr=False)
+class MassProperties(Record):
     """Mass, center of mass and inertia tensor of a body; what solids, meshes and composites are made of.
 
     Two bodies are one by ``+``; ``-`` takes a part out of a body, and refuses what no body is left of.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from visviva.rigid._arguments import mapped, rows
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+    from scipy.spatial.transform import Rotation
 
 
 @known_keywords
@@ -268,7 +269,7 @@ def quaternion_from_rotation_vector(rotation_vector: ArrayLike) -> NDArray[np.fl
 
 
 @known_keywords
-def from_scipy(rotation: Any) -> NDArray[np.float64]:
+def from_scipy(rotation: Rotation) -> NDArray[np.float64]:
     """Give the quaternions of a ``scipy.spatial.transform.Rotation``.
 
     Units: none: rotations are without dimension.
@@ -301,7 +302,7 @@ def from_scipy(rotation: Any) -> NDArray[np.float64]:
 
 
 @known_keywords
-def to_scipy(quaternion: ArrayLike) -> Any:
+def to_scipy(quaternion: ArrayLike) -> Rotation:
     """Give a ``scipy.spatial.transform.Rotation`` of quaternions; needs SciPy.
 
     Units: none: rotations are without dimension.

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array
+from visviva._html import Record
 from visviva._keywords import known_keywords
 
 if TYPE_CHECKING:
@@ -18,8 +19,8 @@ _Kind = Literal["steady", "symmetric", "about_smallest", "about_largest", "separ
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class Polhode:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class Polhode(Record):
     """The path of the angular momentum in the body; what :func:`polhode` returns.
 
     Units: those of the caller, one consistent system; angles in radians.

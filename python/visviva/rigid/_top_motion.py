@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.rigid._euler import angular_velocity_from_euler, quaternion_from_euler
 from visviva.rigid._orientation import rotate, rotate_back
@@ -20,8 +21,8 @@ if TYPE_CHECKING:
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False, kw_only=True, slots=True)
-class TopMotion:
+@dataclass(frozen=True, eq=False, kw_only=True, slots=True, repr=False)
+class TopMotion(Record):
     """The states of a heavy top; what `HeavyTop.solve` returns.
 
     Of a single time, arrays have no axis over the times. All are read-only.

@@ -6,10 +6,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
+
     from visviva.potentials import Potential
     from visviva.scattering._channels import Channel
     from visviva.scattering._importance import Strata
@@ -18,8 +21,8 @@ __all__ = ["Beam", "Spectrum", "Spread", "as_spread", "described"]
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Spectrum:
+@dataclass(frozen=True, repr=False)
+class Spectrum(Record):
     """Energies of a beam, each with its part of the projectiles.
 
     Units: energies in those of the potential; weights are without dimension.
@@ -47,9 +50,9 @@ class Spectrum:
     energy: tuple[float, ...]
     weight: tuple[float, ...]
 
-    def __post_init__(self) -> None:
-        for name in ("energy", "weight"):
-            values = float_array(name, getattr(self, name), (None,))
+    def __init__(self, energy: ArrayLike, weight: ArrayLike) -> None:
+        for name, given in (("energy", energy), ("weight", weight)):
+            values = float_array(name, given, (None,))
             if not values.size or not (values > 0.0).all():
                 raise InvalidInput(name, f"expected one or more positive numbers, got {values.tolist()}")
             object.__setattr__(self, name, tuple(values.tolist()))
@@ -60,8 +63,8 @@ class Spectrum:
 
 
 @known_keywords
-@dataclass(frozen=True, init=False)
-class Spread:
+@dataclass(frozen=True, init=False, repr=False)
+class Spread(Record):
     """How energies or directions of a beam lie about their middle.
 
     Units: energies in those of the beam, directions in radians.
@@ -159,8 +162,8 @@ def as_spread(name: str, given: object) -> Spread | None:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Beam:
+@dataclass(frozen=True, repr=False)
+class Beam(Record):
     """A beam on a disc around one centre: what results must have in common to be added.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.

@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from visviva._arrays import float_array, number, whole_number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
@@ -24,8 +25,8 @@ _MOST = 2**16
 
 
 @known_keywords
-@dataclass(frozen=True, init=False)
-class Bins:
+@dataclass(frozen=True, init=False, repr=False)
+class Bins(Record):
     """Bins by name, for any quantity of a Monte Carlo or of a foil.
 
     Edges follow from the name by arithmetic that is the same on every machine; the first and the last are exactly those

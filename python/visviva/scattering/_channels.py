@@ -6,18 +6,21 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from visviva._arrays import float_array, number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from numpy.typing import ArrayLike
+
 __all__ = ["Channel", "as_channels"]
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Channel:
+@dataclass(frozen=True, repr=False)
+class Channel(Record):
     """A reaction that events of a Monte Carlo go through with some probability.
 
     The bodies leave by the angle ψ to which the potential deflects them, with the speeds in the centre-of-mass frame
@@ -80,17 +83,25 @@ class Channel:
     products: tuple[float, float] | None = None
     excitation_function: tuple[tuple[float, ...], tuple[float, ...]] | None = None
 
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "q_value", number("q_value", self.q_value))
-        object.__setattr__(self, "probability", _probability(self.probability))
-        if self.products is not None:
-            pair = float_array("products", self.products, (2,))
+    def __init__(
+        self,
+        q_value: float,
+        probability: float | tuple[ArrayLike, ArrayLike],
+        products: ArrayLike | None = None,
+        excitation_function: tuple[ArrayLike, ArrayLike] | None = None,
+    ) -> None:
+        masses = table = None
+        released, part = number("q_value", q_value), _probability(probability)
+        if products is not None:
+            pair = float_array("products", products, (2,))
             if not (pair > 0.0).all():
                 raise InvalidInput("products", f"expected two positive masses, got {pair.tolist()}")
-            object.__setattr__(self, "products", (float(pair[0]), float(pair[1])))
-        if self.excitation_function is not None:
-            table = _table("excitation_function", "energies", self.excitation_function)
-            object.__setattr__(self, "excitation_function", table)
+            masses = (float(pair[0]), float(pair[1]))
+        if excitation_function is not None:
+            table = _table("excitation_function", "energies", excitation_function)
+        kept = {"q_value": released, "probability": part, "products": masses, "excitation_function": table}
+        for name, value in kept.items():
+            object.__setattr__(self, name, value)
 
 
 def _probability(given: object) -> float | tuple[tuple[float, ...], tuple[float, ...]]:

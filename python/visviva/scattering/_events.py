@@ -47,7 +47,7 @@ def scattering_events(
     importance: Strata | LargeAngles | None = None,
     channels: Channel | Iterable[Channel] | None = None,
     to: str | PathLike[str] | None = None,
-) -> dict[str, NDArray[Any]]:
+) -> dict[str, NDArray[np.float64] | NDArray[np.uint64]]:
     """The very events that `monte_carlo` counts, one by one.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.

@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive, positive_array, whole_number
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
@@ -26,16 +27,17 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Bins
-    from visviva.typing import FoilTallyName
+    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, ScreeningName
 
 __all__ = ["Foil"]
 
-_SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
+Stopping: TypeAlias = Literal["joined", "bethe", "lindhard_scharff", "none"]
+_SCREENINGS: tuple[ScreeningName, ...] = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Foil:
+@dataclass(frozen=True, repr=False)
+class Foil(Record):
     """A foil of amorphous matter, through which ions are followed collision by collision.
 
     Energies are in eV, lengths of the foil in µm, masses in u, angles in radians; a potential is in eV and Å.
@@ -88,17 +90,17 @@ class Foil:
 
     material: Material
     thickness: float
-    potential: Any = "zbl"
-    stopping: Any = "joined"
+    potential: ScreeningName | Literal["coulomb"] | tuple[Potential, ...] = "zbl"
+    stopping: Stopping | tuple[tuple[float, ...], tuple[float, ...]] = "joined"
     minimum_angle: float = 1e-4
 
     def __init__(
         self,
-        material: Material | str,
+        material: Material | MaterialName,
         thickness: float,
         *,
-        potential: str | Potential | Sequence[Potential] = "zbl",
-        stopping: Literal["joined", "bethe", "lindhard_scharff", "none"] | tuple[ArrayLike, ArrayLike] = "joined",
+        potential: ScreeningName | Literal["coulomb"] | Potential | Sequence[Potential] = "zbl",
+        stopping: Stopping | tuple[ArrayLike, ArrayLike] = "joined",
         minimum_angle: float = 1e-4,
     ) -> None:
         made = material_of(material)
@@ -150,13 +152,13 @@ class Foil:
 
     def run(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         *,
         beam_energy: float,
         n_events: int,
         seed: int,
-        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, Any] = USUAL_TALLIES,
-        bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
+        tally: FoilTallyName | Iterable[FoilTallyName] | Mapping[FoilTallyName, ArrayLike | Bins] = USUAL_TALLIES,
+        bins: ArrayLike | Bins | Mapping[FoilTallyName, ArrayLike | Bins] = 180,
         incidence: float = 0.0,
         lowest_energy: float | None = None,
         collisions: Literal["multiple", "single"] = "multiple",
@@ -249,7 +251,9 @@ class Foil:
                 threads=None if threads is None else whole_number("threads", threads, 1, 1024),
                 progress=report,
             )
-        tallies = tuple(FoilTally(name, edges, sums, units, done) for name, edges, sums in columns)
+        tallies = tuple(
+            FoilTally(cast("FoilTallyName", name), edges, sums, units, done) for name, edges, sums in columns
+        )
         events = ((key, first, first + done),)
         result = FoilResult(hit, events, fates, units, tallies, told[0], told[1])
         if stopped or done < count:
@@ -258,7 +262,7 @@ class Foil:
 
     def history(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         *,
         beam_energy: float,
         seed: int,
@@ -267,7 +271,7 @@ class Foil:
         lowest_energy: float | None = None,
         collisions: Literal["multiple", "single"] = "multiple",
         forced_angle: float | None = None,
-    ) -> dict[str, Any]:
+    ) -> IonHistory:
         """The way of one of the very ions that `run` counts.
 
         Parameters
@@ -318,7 +322,7 @@ class Foil:
             "weight": weight,
         }
 
-    def stopping_power(self, ion: Ion | str, energy: ArrayLike) -> NDArray[np.float64]:
+    def stopping_power(self, ion: Ion | IonName, energy: ArrayLike) -> NDArray[np.float64]:
         """What electrons take of an ion, in eV/µm.
 
         Parameters
@@ -347,7 +351,7 @@ class Foil:
         """
         return self._losses(ion, energy, None) * 1e4
 
-    def range(self, ion: Ion | str, energy: ArrayLike, *, lowest_energy: float) -> NDArray[np.float64]:
+    def range(self, ion: Ion | IonName, energy: ArrayLike, *, lowest_energy: float) -> NDArray[np.float64]:
         """How far an ion goes in µm until electrons alone have slowed it down: ∫dE/S.
 
         Parameters
@@ -378,7 +382,7 @@ class Foil:
         """
         return self._losses(ion, energy, positive("lowest_energy", lowest_energy)) / 1e4
 
-    def _losses(self, ion: Ion | str, energy: ArrayLike, lowest: float | None) -> NDArray[np.float64]:
+    def _losses(self, ion: Ion | IonName, energy: ArrayLike, lowest: float | None) -> NDArray[np.float64]:
         given = ion_of(ion)
         energies = positive_array("energy", energy)
         found = _core.foil_stopping(
@@ -391,7 +395,7 @@ class Foil:
 
     def _hit(
         self,
-        ion: Ion | str,
+        ion: Ion | IonName,
         beam_energy: object,
         lowest_energy: object,
         incidence: object,

@@ -3,14 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
+
+if TYPE_CHECKING:
+    from numpy.typing import ArrayLike
 
 __all__ = ["Ion", "Material", "ion_of", "losses_of", "material_of", "screened"]
 
@@ -70,8 +74,8 @@ _IONS = {
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Ion:
+@dataclass(frozen=True, repr=False)
+class Ion(Record):
     """What flies through a foil.
 
     `Foil` also takes ``"proton"``, ``"deuteron"``, ``"triton"``, ``"helion"`` and ``"alpha"``.
@@ -104,8 +108,8 @@ class Ion:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Material:
+@dataclass(frozen=True, repr=False)
+class Material(Record):
     """Amorphous matter of one element or more.
 
     `Foil` also takes a name: ``"beryllium"``, ``"carbon"`` (amorphous), ``"aluminum"``, ``"silicon"``, ``"titanium"``,
@@ -143,25 +147,32 @@ class Material:
     """
 
     density: float
-    atomic_number: Any
-    mass: Any
-    fraction: Any = None
-    mean_excitation_energy: Any = None
+    atomic_number: tuple[float, ...]
+    mass: tuple[float, ...]
+    fraction: tuple[float, ...] = ()
+    mean_excitation_energy: tuple[float, ...] | None = None
 
-    def __post_init__(self) -> None:
-        numbers = _several("atomic_number", self.atomic_number)
-        given = {"mass": self.mass, "fraction": (1.0,) * len(numbers) if self.fraction is None else self.fraction}
-        if self.mean_excitation_energy is not None:
-            one = np.ndim(self.mean_excitation_energy) == 0
+    def __init__(
+        self,
+        density: float,
+        atomic_number: ArrayLike,
+        mass: ArrayLike,
+        fraction: ArrayLike | None = None,
+        mean_excitation_energy: ArrayLike | None = None,
+    ) -> None:
+        numbers = _several("atomic_number", atomic_number)
+        given: dict[str, object] = {"mass": mass, "fraction": (1.0,) * len(numbers) if fraction is None else fraction}
+        if mean_excitation_energy is not None:
+            one = np.ndim(mean_excitation_energy) == 0
             given["mean_excitation_energy"] = (
-                (self.mean_excitation_energy,) * len(numbers) if one else self.mean_excitation_energy
+                (mean_excitation_energy,) * len(numbers) if one else mean_excitation_energy
             )
         for name, value in given.items():
             values = _several(name, value)
             if len(values) != len(numbers):
                 raise InvalidInput(name, f"expected one for each of {len(numbers)} elements, got {len(values)}")
             object.__setattr__(self, name, values)
-        object.__setattr__(self, "density", positive("density", self.density))
+        object.__setattr__(self, "density", positive("density", density))
         object.__setattr__(self, "atomic_number", numbers)
 
     @property

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, NamedTuple
+from dataclasses import dataclass, fields, replace
+from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 
 import numpy as np
 
-from visviva._html import Record
+from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_foil
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from visviva.scattering._foil_material import Ion
     from visviva.typing import FoilTallyName
 
+_T = TypeVar("_T", float, "NDArray[np.float64]")
+
 __all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult", "FoilTally", "Fraction"]
 
 #: What is counted if nobody asks for anything else.
@@ -38,7 +40,7 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
 _FATES = ("transmitted", "reflected", "stopped", "missed")
 
 
-class Fraction(NamedTuple):
+class Fraction(NamedTuple, Generic[_T]):
     """A part of all ions, and its standard error.
 
     Examples
@@ -50,15 +52,15 @@ class Fraction(NamedTuple):
     (True, True)
     """
 
-    value: Any
+    value: _T
     """As a part of the events."""
-    error: Any
+    error: _T
     """One standard deviation."""
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Bombardment:
+@dataclass(frozen=True, repr=False)
+class Bombardment(Record):
     """A foil and what comes to it: what results must have in common to be added.
 
     Attributes
@@ -140,7 +142,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
     True
     """
 
-    name: str
+    name: FoilTallyName
     edges: NDArray[np.float64]
     sums: NDArray[np.uint64]
     units: tuple[float, float]
@@ -212,7 +214,7 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
         """
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
 
-    def fraction(self) -> Fraction:
+    def fraction(self) -> Fraction[NDArray[np.float64]]:
         """As a part of all ions that came, bin by bin, with its standard error.
 
         Examples
@@ -266,8 +268,8 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
 
 
 @known_keywords
-@dataclass(frozen=True, eq=False)
-class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
+@dataclass(frozen=True, eq=False, repr=False)
+class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same bombardment add up, bit for bit, if no event is in both.
 
     Attributes
@@ -376,7 +378,7 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         """
         return int(self.sums[3, 0])
 
-    def fraction(self, fate: str) -> Fraction:
+    def fraction(self, fate: Literal["transmitted", "reflected", "stopped"]) -> Fraction[float]:
         """What part of the ions was transmitted, reflected or stopped, with its standard error.
 
         Parameters
@@ -400,13 +402,13 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
         return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
 
-    def __getitem__(self, name: str) -> FoilTally:
+    def __getitem__(self, name: FoilTallyName) -> FoilTally:
         for tally in self.tallies:
             if tally.name == name:
                 return tally
         raise KeyError(f"no tally {name!r}; this run has {', '.join(self)}")
 
-    def __iter__(self) -> Iterator[str]:
+    def __iter__(self) -> Iterator[FoilTallyName]:
         return (tally.name for tally in self.tallies)
 
     def __len__(self) -> int:
@@ -422,8 +424,10 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     def __add__(self, other: FoilResult) -> FoilResult:
         if not isinstance(other, FoilResult):
             return NotImplemented
-        if self.bombardment != other.bombardment:
-            raise InvalidInput("other", f"expected one of {self.bombardment}, got one of {other.bombardment}")
+        for name in (field.name for field in fields(self.bombardment)):
+            mine, theirs = getattr(self.bombardment, name), getattr(other.bombardment, name)
+            if mine != theirs:
+                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
         events = merged((*self.events, *other.events))
@@ -433,6 +437,20 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     def __radd__(self, other: int) -> FoilResult:
         """Begin a `sum`."""
         return self if is_zero(other) else NotImplemented
+
+    def _sheet(self) -> Sheet:
+        fates = [(name, f"{number}", "", "") for name, number in zip(_FATES, self.sums[:, 0].tolist(), strict=True)]
+        rows = [
+            (
+                str(tally.name),
+                f"{int(tally.counts.sum())}",
+                f"{tally.counts.size}",
+                f"{tally.edges[0]:.6g} to {tally.edges[-1]:.6g}",
+            )
+            for tally in self.tallies
+        ]
+        caption = f"{self.n_events} ions on {self.bombardment.foil!r}, {self.bombardment.beam_energy:g} eV"
+        return Sheet(caption, [*fates[: 3 + bool(self.missed)], *rows], ("", "events", "bins", "range"))
 
     def __repr__(self) -> str:
         parts = ", ".join(

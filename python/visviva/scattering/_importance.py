@@ -9,13 +9,14 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Spectrum
 from visviva.scattering._structure import impact_parameter
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike, NDArray
 
     from visviva.scattering._beam import Beam
 
@@ -25,8 +26,8 @@ _MOST, _LEAST = 2**10, 1e-6
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Strata:
+@dataclass(frozen=True, repr=False)
+class Strata(Record):
     """Rings of impact parameters, each with its part of the events of a Monte Carlo.
 
     In each ring b² is uniform, and each of its events stands for equally many of a beam that fills the disc evenly.
@@ -68,14 +69,14 @@ class Strata:
     edges: tuple[float, ...]
     fractions: tuple[float, ...] = ()
 
-    def __post_init__(self) -> None:
-        edges = float_array("edges", self.edges, (None,)).tolist()
+    def __init__(self, edges: ArrayLike, fractions: ArrayLike | None = ()) -> None:
+        radii = float_array("edges", edges, (None,)).tolist()
         # None and nothing at all are the default.
-        given = () if self.fractions is None else self.fractions
-        fractions = float_array("fractions", given, (None,)).tolist() or [1.0] * max(0, len(edges) - 1)
-        _core.strata_weights(edges, fractions)
-        object.__setattr__(self, "edges", tuple(edges))
-        object.__setattr__(self, "fractions", tuple(fractions))
+        given = () if fractions is None else fractions
+        parts = float_array("fractions", given, (None,)).tolist() or [1.0] * max(0, len(radii) - 1)
+        _core.strata_weights(radii, parts)
+        object.__setattr__(self, "edges", tuple(radii))
+        object.__setattr__(self, "fractions", tuple(parts))
 
     @property
     def weights(self) -> NDArray[np.float64]:
@@ -125,8 +126,8 @@ class Strata:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class LargeAngles:
+@dataclass(frozen=True, repr=False)
+class LargeAngles(Record):
     """Force a part of the events of a Monte Carlo to be within what is deflected by more than some angle.
 
     The disc is divided at the greatest impact parameter that leads to the angle, of all branches and of all energies of

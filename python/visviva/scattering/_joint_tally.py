@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -16,12 +16,15 @@ from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
+    from boost_histogram.storage import Storage
+    from hist import Hist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
     from xarray import Dataset
 
     from visviva.scattering._beam import Beam
+    from visviva.typing import TallyName
 
 __all__ = ["JointTally"]
 
@@ -64,7 +67,7 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     (10, 10)
     """
 
-    name: tuple[str, ...]
+    name: tuple[TallyName, TallyName]
     edges: tuple[NDArray[np.float64], ...]
     flow: NDArray[np.uint64]
     captured: int
@@ -113,7 +116,7 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     def _weighted(self, power: int) -> NDArray[np.float64]:
         return weighted(self, power, self.flow)[1:-1, 1:-1]
 
-    def to_hist(self) -> Any:
+    def to_hist(self) -> Hist[Storage]:
         """As a ``hist.Hist`` with both axes, what is below and above too.
 
         Raises

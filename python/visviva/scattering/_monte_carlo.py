@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
@@ -29,7 +29,13 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.scattering._bins import Axes, Bins
-    from visviva.typing import TallyName
+    from visviva.typing import Executor, TallyName
+
+    Tallies: TypeAlias = (
+        Mapping[TallyName, ArrayLike | Bins]
+        | Mapping[tuple[TallyName, TallyName], tuple[ArrayLike | Bins, ArrayLike | Bins]]
+        | Mapping[TallyName | tuple[TallyName, TallyName], ArrayLike | Bins | tuple[ArrayLike | Bins, ArrayLike | Bins]]
+    )
 
 __all__ = ["monte_carlo"]
 
@@ -43,12 +49,12 @@ def monte_carlo(
     b_max: float,
     n_events: int,
     seed: int,
-    tally: TallyName | Iterable[TallyName | tuple[TallyName, TallyName]] | Mapping[Any, Any] = "cm_angle",
-    bins: int | ArrayLike | Bins | Mapping[str, Any] = 180,
+    tally: TallyName | Iterable[TallyName | tuple[TallyName, TallyName]] | Tallies = "cm_angle",
+    bins: ArrayLike | Bins | Mapping[TallyName, ArrayLike | Bins] = 180,
     threads: int | None = None,
     first_event: int = 0,
     progress: Progress = False,
-    executor: Any = None,
+    executor: Executor | None = None,
     energy_spread: float | Spread | None = None,
     divergence: float | Spread | None = None,
     spot: float | None = None,

@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING, Any, overload
+from operator import add
+from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
 
     from visviva._progress import Progress
     from visviva.potentials import Potential
+    from visviva.typing import Executor, TallyName
 
 __all__ = ["MonteCarlo"]
 
@@ -40,7 +42,7 @@ _FORMAT, _VERSION = "visviva scattering", 5
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as its tallies
+class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyName]", Tally | JointTally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -151,17 +153,17 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         return self.events[-1][2]
 
     @overload
-    def __getitem__(self, name: str) -> Tally: ...
+    def __getitem__(self, name: TallyName) -> Tally: ...
     @overload
-    def __getitem__(self, name: tuple[str, ...]) -> JointTally: ...
-    def __getitem__(self, name: str | tuple[str, ...]) -> Tally | JointTally:
+    def __getitem__(self, name: tuple[TallyName, TallyName]) -> JointTally: ...
+    def __getitem__(self, name: TallyName | tuple[TallyName, TallyName]) -> Tally | JointTally:
         for tally in self.tallies:
             if tally.name == name:
                 return tally
         known = ", ".join(str(tally.name) for tally in self.tallies)
         raise KeyError(f"no tally {name!r}; this run has {known}")
 
-    def __iter__(self) -> Iterator[Any]:
+    def __iter__(self) -> Iterator[TallyName | tuple[TallyName, TallyName]]:
         return (tally.name for tally in self.tallies)
 
     def __len__(self) -> int:
@@ -178,7 +180,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         events = self._merged_events(other)
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        return replace(self, events=events, tallies=tuple(self[name] + other[name] for name in self))
+        return replace(self, events=events, tallies=tuple(map(add, self.tallies, other.tallies)))
 
     def _sheet(self) -> Sheet:
         rows = [
@@ -232,7 +234,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
 
     @known_keywords
     def resume(
-        self, n_events: int, *, threads: int | None = None, progress: Progress = False, executor: Any = None
+        self, n_events: int, *, threads: int | None = None, progress: Progress = False, executor: Executor | None = None
     ) -> MonteCarlo:
         """Go on with the next ``n_events``: the same bits as one run of them all.
 
@@ -269,7 +271,7 @@ class MonteCarlo(OfEvents, Shown, Mapping[Any, Any]):  # noqa: PLW1641 — as it
         try:
             return self + again(self, n_events, threads, progress, executor)
         except Interrupted as stopped:
-            stopped.result = self if stopped.result is None else self + stopped.result
+            stopped.result = self + stopped.result if isinstance(stopped.result, MonteCarlo) else self
             raise
 
     @known_keywords
@@ -413,7 +415,18 @@ def _restored(arrays: dict[str, Any]) -> MonteCarlo:
             covered = (told["covered"][0], told["covered"][1])
             flows = (told["underflow"], told["overflow"])
             captured = told["captured"]
-            tally = Tally(told["name"], edges, counts, *flows, reachable, covered, beam, events, captured, by_stratum)
+            tally = Tally(
+                cast("TallyName", told["name"]),
+                edges,
+                counts,
+                *flows,
+                reachable,
+                covered,
+                beam,
+                events,
+                captured,
+                by_stratum,
+            )
             slots = np.concatenate([[flows[0]], counts, [flows[1], captured]])
             if len(edges) != len(counts) + 1 or len(reachable) != len(counts):
                 raise ValueError("its edges and counts do not fit")

@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.potentials import Potential
@@ -20,8 +21,8 @@ __all__ = ["Glory", "Orbit", "Rainbow", "glories", "impact_parameter", "orbiting
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Rainbow:
+@dataclass(frozen=True, repr=False)
+class Rainbow(Record):
     """An extremum of ψ(b): the cross section is infinite at its angle, beyond which its branches do not go.
 
     Units: those of the potential, energies and lengths; angles in radians.
@@ -51,8 +52,8 @@ class Rainbow:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Glory:
+@dataclass(frozen=True, repr=False)
+class Glory(Record):
     """An impact parameter other than 0 that leads straight on or straight back: ψ = kπ.
 
     Units: those of the potential, energies and lengths; angles in radians.
@@ -90,8 +91,8 @@ class Glory:
 
 
 @known_keywords
-@dataclass(frozen=True)
-class Orbit:
+@dataclass(frozen=True, repr=False)
+class Orbit(Record):
     """A circular orbit at the top of a barrier, which impact parameters near its own approach.
 
     Units: those of the potential, energies and lengths; angles in radians.

@@ -18,12 +18,15 @@ from visviva.scattering._of_events import OfEvents
 from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
+    from boost_histogram.storage import Storage
+    from hist import Hist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
     from xarray import Dataset
 
     from visviva.scattering._beam import Beam
+    from visviva.typing import TallyName
 
 __all__ = ["CrossSection", "Tally"]
 
@@ -105,7 +108,7 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     ('cm_angle', array([0.   , 0.785, 1.571, 2.356, 3.142]), 1000)
     """
 
-    name: str
+    name: TallyName
     edges: NDArray[np.float64]
     counts: NDArray[np.uint64]
     underflow: int
@@ -300,7 +303,7 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         scale[known] = np.pi * self.b_max**2 / (self.n_events * (width * self.reachable)[known])
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
-    def to_hist(self) -> Any:
+    def to_hist(self) -> Hist[Storage]:
         """As a ``hist.Hist``, what is below and above too; with `importance` of ``Weight`` storage, of variance Σ w² n.
 
         Raises

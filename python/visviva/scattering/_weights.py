@@ -9,6 +9,8 @@ import numpy as np
 from visviva._exported import needed
 
 if TYPE_CHECKING:
+    from boost_histogram.storage import Storage
+    from hist import Hist
     from numpy.typing import NDArray
 
     from visviva.scattering._joint_tally import JointTally
@@ -48,13 +50,13 @@ def to_hist(
     names: tuple[str, ...],
     edges: tuple[NDArray[np.float64], ...],
     flow: NDArray[np.uint64],
-) -> Any:
+) -> Hist[Storage]:
     """As a ``hist.Hist``: of integers, or of weights and their squares."""
     hist = needed("hist", "to_hist")
     axes = [hist.axis.Variable(values, name=name) for name, values in zip(names, edges, strict=True)]
     storage = hist.storage.Int64() if tally.by_stratum is None else hist.storage.Weight()
-    filled = hist.Hist(*axes, storage=storage)
-    view = filled.view(flow=True)
+    filled: Hist[Storage] = hist.Hist(*axes, storage=storage)
+    view: Any = filled.view(flow=True)
     if tally.by_stratum is None:
         view[...] = flow
     else:

@@ -6,9 +6,12 @@ and has no name, an exception that is not of this package and a run that hangs a
 
 from __future__ import annotations
 
+from collections import Counter
 from typing import TYPE_CHECKING
 
+from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.integrators import methods as all_methods
 from visviva.stress.cases import CASES
@@ -16,6 +19,8 @@ from visviva.stress.verdict import Verdict, judged
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+
+    from visviva.typing import MethodName
 
 __all__ = ["Report", "Verdict", "run"]
 
@@ -25,7 +30,7 @@ def __dir__() -> list[str]:
 
 
 @known_keywords
-class Report:
+class Report(Shown):
     """The verdicts on every case, method by method.
 
     Attributes
@@ -45,6 +50,18 @@ class Report:
     def __init__(self, verdicts: Sequence[Verdict]) -> None:
         self.verdicts = list(verdicts)
         self.failures = [verdict for verdict in self.verdicts if verdict.word == "FAILED"]
+
+    def __repr__(self) -> str:
+        return f"Report({count(len(self.verdicts), 'verdict')}, {len(self.failures)} failed; print shows them)"
+
+    def _sheet(self) -> Sheet:
+        caption = f"{count(len(self.verdicts), 'verdict')}, {len(self.failures)} failed"
+        if not self.failures:
+            words = Counter(verdict.word for verdict in self.verdicts)
+            return Sheet(caption, [(word, f"{number}") for word, number in words.items()])
+        bad = [(verdict.case, *line(verdict).split(maxsplit=2)) for verdict in self.failures]
+        rows, note = first_rows(len(bad), bad.__getitem__)
+        return Sheet(caption, rows, ("case", "method", "", ""), note)
 
     def __str__(self) -> str:
         lines = []
@@ -71,7 +88,9 @@ def line(verdict: Verdict) -> str:
 
 
 @known_keywords
-def run(methods: Sequence[str] | None = None, *, long: bool = False, cases: Sequence[str] | None = None) -> Report:
+def run(
+    methods: Sequence[MethodName] | None = None, *, long: bool = False, cases: Sequence[str] | None = None
+) -> Report:
     """Put methods under abuse.
 
     Parameters

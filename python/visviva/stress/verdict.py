@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import AccuracyWarning, Error, InvalidInput
 from visviva.status import Status
@@ -33,8 +34,8 @@ _LONGEST = 30.0
 
 
 @known_keywords
-@dataclass(frozen=True, slots=True)
-class Verdict:
+@dataclass(frozen=True, slots=True, repr=False)
+class Verdict(Record):
     """What a method made of a case.
 
     Attributes

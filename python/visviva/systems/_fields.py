@@ -18,6 +18,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from visviva.typing import SymbolicExpression
+
 __all__ = ["central_force", "charged_particle", "henon_heiles"]
 
 
@@ -88,7 +90,7 @@ def charged_particle(
 
 @known_keywords
 def central_force(
-    potential: Callable[..., Any] | None = None,
+    potential: Callable[..., SymbolicExpression] | None = None,
     *,
     m: float = 1.0,
     parameters: Mapping[str, float] | None = None,
