@@ -181,6 +181,18 @@ class Declared:
     def __post_init__(self) -> None:
         for parameter in self._parameters:
             object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
+        self._check_pairs()
+
+    def _check_pairs(self) -> None:
+        """Refuse pairs of one body, of what acts between listed ones; names are judged when the scene knows them."""
+        ends = [getattr(self, p.name) for p in self._parameters if p.kind == "indices"]
+        if len(ends) != 2 or any(isinstance(end, str | tuple) for end in ends):
+            return
+        first, second = map(np.atleast_1d, ends)
+        same = first[first == second] if first.shape == second.shape else first[:0]
+        if same.size:
+            i, j = (p.name for p in self._parameters if p.kind == "indices")
+            raise InvalidInput(j, f"expected another body than {i}, got {same[0]} for both; give two that are apart")
 
     def _values(self) -> dict[str, Any]:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}

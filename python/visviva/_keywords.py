@@ -86,6 +86,8 @@ mean 'distance'?
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
             called = target.__name__ if attribute == "__init__" else attribute
             setattr(target, attribute, _checked(value, called, 1))
+        elif attribute == "__new__" and isinstance(value, staticmethod):  # of a NamedTuple
+            target.__new__ = staticmethod(_checked(value.__func__, target.__name__, 1))  # type: ignore[method-assign]
         elif isinstance(value, classmethod) and not attribute.startswith("_"):
             made = _checked(value.__func__, attribute, 1)
             setattr(target, attribute, classmethod(made))
@@ -220,6 +222,9 @@ def check_call(
         signature(function).bind(*places, **dict.fromkeys(keywords))
     except TypeError as error:
         called = ", ".join([*places, *(f"{name}=" for name in keywords)])
-        raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
+        taken = ", ".join([*places, *keywords])
+        raise InvalidInput(
+            argument, f"the function is called with ({called}): {error}; define it as f({taken})"
+        ) from None
     except ValueError:  # one that does not tell what it takes
         pass

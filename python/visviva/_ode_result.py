@@ -10,6 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -44,6 +45,7 @@ class OdeSolution:
     _extension: tuple[NDArray[np.float64], ...]
 
     def __post_init__(self) -> None:
+        made_by(self, "visviva.solve_ivp(..., dense_output=True)", ts=(self.ts, np.ndarray))
         # The solution is evaluated with them.
         self.ts.setflags(write=False)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import frozen, known_keywords
+from visviva._made_by import made_by
 from visviva._names import body_label
 from visviva.errors import InvalidInput
 
@@ -52,6 +53,9 @@ class BodyMotion:
     _run: Recorded
 
     def __init__(self, run: Recorded, index: int) -> None:
+        from visviva.recorded import Recorded
+
+        made_by(self, "out.body(name) of a run", run=(run, Recorded))
         for attribute, value in {
             "_run": run,
             "index": index,

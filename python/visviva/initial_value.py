@@ -12,9 +12,9 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._compiled import compiled
-from visviva._keywords import known_keywords
+from visviva._keywords import check_call, known_keywords
 from visviva._ode_result import OdeResult, OdeSolution
-from visviva.errors import Interrupted, InvalidInput
+from visviva.errors import Interrupted, InvalidInput, WrongArguments
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -173,7 +173,12 @@ def solve_ivp(
         "vectorized": bool(vectorized),
         "compiled": None if native is None else native.where,
     }
-    found = _core.solve_ivp(fun, asked)
+    try:
+        found = _core.solve_ivp(fun, asked)
+    except TypeError:
+        # Looked at only here: a signature costs as much as a run of a compiled function.
+        _check_calls(fun if native is None else None, watched, asked["args"])
+        raise
     result = _result(found, asked, looked_for=events is not None)
     if found["interrupted"]:
         raise Interrupted("the run was interrupted", result) from found["cause"]
@@ -288,13 +293,9 @@ def _relative(rtol: object) -> list[float] | None:
     return values
 
 
-class _NotSeveral(InvalidInput, TypeError):
-    """What SciPy calls a TypeError."""
-
-
 def _unpacked(args: object) -> list[Any]:
     if not isinstance(args, Iterable):
-        raise _NotSeveral(
+        raise WrongArguments(
             "args", f"Supplied 'args' cannot be unpacked. Please supply `args` as a tuple (e.g. `args=({args},)`)"
         )
     return list(args)
@@ -305,6 +306,14 @@ def _events(events: Any) -> list[tuple[Function, float, int | None]]:
         return []
     several = list(events) if not callable(events) and isinstance(events, Iterable) else [events]
     return [(event, _direction(event), _last(event)) for event in several]
+
+
+def _check_calls(fun: Any, watched: list[tuple[Function, float, int | None]], args: list[Any]) -> None:
+    """Refuse functions that do not take what they were called with; what they raise themselves is theirs."""
+    places = ["t", "y", *(f"args[{index}]" for index in range(len(args)))]
+    for argument, function in [("fun", fun), *(("events", event) for event, _, _ in watched)]:
+        if function is not None:
+            check_call(argument, function, places)
 
 
 def _direction(event: Function) -> float:

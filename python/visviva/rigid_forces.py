@@ -10,10 +10,11 @@ import numpy as np
 from visviva._body_force import BodyForce, Vector, body_of, keep, not_negative, vector
 from visviva._compiled import of_orientation
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._moves import orthogonal
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
 __all__ = ["AppliedTorque", "CompiledTorque", "RotationalDrag"]
 
@@ -59,7 +60,7 @@ class AppliedTorque(BodyForce):
             hint = did_you_mean(str(frame), ("space", "body"))
             raise InvalidInput("frame", f"expected 'space' or 'body', got {frame!r}{hint}")
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """The torque turned with space, or as it is in the body; an axial vector.
 
         Parameters
@@ -71,6 +72,11 @@ class AppliedTorque(BodyForce):
         -------
         AppliedTorque
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For a matrix that is not orthogonal.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -78,9 +84,10 @@ class AppliedTorque(BodyForce):
         >>> vv.AppliedTorque([1.0, 0.0, 0.0]).rotated(quarter)
         AppliedTorque(torque=(0.0, 1.0, 0.0), body=None, frame='space')
         """
+        matrix = orthogonal(rotation)
         if self.frame == "body":
             return self
-        return self._with(torque=np.sign(np.linalg.det(rotation)) * rotation @ np.array(self.torque))
+        return self._with(torque=np.sign(np.linalg.det(matrix)) * matrix @ np.array(self.torque))
 
 
 @known_keywords
@@ -174,9 +181,9 @@ class CompiledTorque(BodyForce):
         known = BodyForce.core_arguments(self)
         return {"kind": self.kind, "address": self.address, "body": known["body"]}
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """Refuse: the function is of the axes of space that it was written for."""
-        if np.array_equal(rotation, np.eye(3)):
+        if np.array_equal(orthogonal(rotation), np.eye(3)):
             return self
         raise InvalidInput("forces", "CompiledTorque cannot be rotated: what it computes is along the axes it knows")
 

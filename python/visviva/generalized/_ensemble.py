@@ -12,6 +12,7 @@ from visviva._arrays import float_array
 from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._resolved import judge
@@ -65,6 +66,9 @@ class GeneralizedEnsemble(Shown):
         second: ArrayLike | None = None,
         parameters: Mapping[Any, ArrayLike] | None = None,
     ) -> None:
+        from visviva.generalized._system import GeneralizedSystem
+
+        made_by(self, "ensemble(...) of a Lagrangian or a Hamiltonian", system=(system, GeneralizedSystem))
         n = len(system.coordinates)
         sizes: dict[str, tuple[int, str]] = {}
         halves = [
@@ -198,6 +202,12 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
     __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
 
     def __init__(self, ensemble: GeneralizedEnsemble, result: dict[str, Any], asked: dict[str, Any]) -> None:
+        made_by(
+            self,
+            "the run of an ensemble of a Lagrangian or a Hamiltonian",
+            ensemble=(ensemble, GeneralizedEnsemble),
+            result=(result, dict),
+        )
         self.ensemble = ensemble
         self.t: NDArray[np.float64] = asked["outputs"]
         self._result = result

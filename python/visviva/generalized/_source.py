@@ -72,7 +72,7 @@ def described(
         symbols = None
         walk = calls(nodes, names, keys, _SECOND[kind])
     else:
-        sp = sympy()
+        sp = sympy(argument)
         first = tuple(_coordinate(sp, each) for each in listed)
         others = _second(sp, kind, first, second)
         names = tuple(_label(each) for each in first)
@@ -193,6 +193,6 @@ def calls(
         second = row(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
         check_call(argument, function, ("position", second_name, "t"), parameters)
-        return recorded(nodes, called(argument, function, (first, second, expression("time")), values), argument)
+        return recorded(nodes, called(nodes, argument, function, (first, second, expression("time")), values), argument)
 
     return walk

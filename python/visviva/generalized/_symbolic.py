@@ -6,21 +6,29 @@ from typing import TYPE_CHECKING, Any
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, Node, Nodes
+from visviva.generalized._nodes import FUNCTIONS, SWITCH, Node, Nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
 __all__ = ["Symbols", "coordinate", "sympy", "time", "trees"]
 
+#: What may stand in the place of what switches, by its name.
+_INSTEAD = {
+    "Max": "write (x + y + Abs(x - y))/2, or ",
+    "Min": "write (x + y - Abs(x - y))/2, or ",
+    "sign": "write x/Abs(x), which has no value at 0, or tanh(x/width), or ",
+    "Heaviside": "write (1 + tanh(x/width))/2, or ",
+}
 
-def sympy() -> Any:
-    """Give the module, or say how to get it."""
+
+def sympy(argument: str = "L") -> Any:
+    """Give the module, or say how to get it, naming the argument that needs it."""
     try:
         import sympy
     except ImportError:
         raise InvalidInput(
-            "L",
+            argument,
             "expressions need SymPy: pip install 'visviva[symbolic]', or pass a function of (position, velocity, t)",
         ) from None
     return sympy
@@ -205,9 +213,10 @@ class Symbols:
             return nodes.add("sqrt", (nodes.add("product", (inner, inner)),))
         if isinstance(tree, (sp.cot, sp.sec, sp.csc, sp.coth, sp.sech, sp.csch)):
             return self._walk(argument, self._inverse(tree))
-        if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign)):
+        if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign, sp.floor, sp.ceiling)):
+            instead = _INSTEAD.get(name, "")
             raise InvalidInput(
-                argument, f"{name} switches inside a step, where no method keeps its order; leave it out"
+                argument, f"{name} switches inside a step, where no method keeps its order; {instead}{SWITCH}"
             )
         if isinstance(tree, sp.core.function.AppliedUndef):
             raise InvalidInput(

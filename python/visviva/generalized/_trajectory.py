@@ -10,6 +10,7 @@ import numpy as np
 from visviva._exported import Columns, Exported, chosen_columns
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
@@ -123,6 +124,11 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
     ) -> None:
+        from visviva.generalized._system import GeneralizedSystem
+
+        made_by(
+            self, "the run of a Lagrangian or a Hamiltonian", system=(system, GeneralizedSystem), result=(result, dict)
+        )
         lengths = result["lengths"]
         first = sum(lengths[:member])
         rows = slice(first, first + lengths[member])

@@ -10,8 +10,10 @@ import numpy as np
 
 from visviva._html import Record
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._of_events import is_zero, merged
+from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -45,6 +47,7 @@ _AXES = {
 }
 
 
+@known_keywords
 class Fraction(NamedTuple):
     """A part of all ions, and its standard error.
 
@@ -150,8 +153,9 @@ class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no has
     n_events: int
 
     def __post_init__(self) -> None:
-        for array in (self.edges, self.sums):
-            array.setflags(write=False)
+        arrays = {"edges": self.edges, "sums": self.sums}
+        made_by(self, "a run of a Foil", **{name: (array, np.ndarray) for name, array in arrays.items()})
+        read_only(*arrays.values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -263,7 +267,8 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
     table_error: float
 
     def __post_init__(self) -> None:
-        self.sums.setflags(write=False)
+        made_by(self, "a run of a Foil", sums=(self.sums, np.ndarray))
+        read_only(self.sums)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
