@@ -44,6 +44,17 @@ _ELSEWHERE = {
     ("from_elements", "mu"): "it follows from G and the masses",
 }
 
+# Only scenes are saved while they run: what to do elsewhere, by the qualified name of what is called.
+_IN_PARTS = {
+    "Runs.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on from "
+    "visviva.load(path).final",
+    "GeneralizedEnsemble.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on "
+    "from visviva.load(path)[i].final, copy by copy",
+    "monte_carlo": "count events in parts: save each result, go on with first_event=result.next_event, and add them",
+    "Foil.run": "bombard in parts: go on with first_event=result.next_event, and add the results",
+}
+_ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
+
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
 _T = TypeVar("_T")
@@ -173,7 +184,7 @@ def _checked(function: Callable[_P, _R], called: str, bound: int) -> Callable[_P
     @wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
         if not are_known(kwargs):
-            raise _unknown(called, names, next(name for name in kwargs if name not in names))
+            raise _unknown(function, called, names, next(name for name in kwargs if name not in names))
         try:
             return function(*args, **kwargs)
         except TypeError:
@@ -206,9 +217,10 @@ def _wrong(
     return None
 
 
-def _unknown(called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
+def _unknown(function: Callable[..., object], called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     expected = f"a keyword of {called} ({', '.join(names)})" if names else f"no keyword, {called} takes none"
-    elsewhere = _ELSEWHERE.get(("run" if called == "plan" else called, came))
+    by_name = _ELSEWHERE.get(("run" if called == "plan" else called, came))
+    elsewhere = _ELSEWHERE.get((function.__qualname__, came), by_name)
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
 

@@ -16,6 +16,7 @@ from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._resolved import judge
+from visviva.generalized._saved import Saved
 from visviva.generalized._source import _label
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
 from visviva.status import Status
@@ -176,7 +177,7 @@ class GeneralizedEnsemble(Shown):
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
+class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     """The motions of an ensemble.
 
     Attributes

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
@@ -11,7 +11,10 @@ from visviva.generalized._nodes import FUNCTIONS, SWITCH, Node, Nodes
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-__all__ = ["Symbols", "coordinate", "sympy", "time", "trees"]
+__all__ = ["Symbols", "coordinate", "named_symbols", "symbols_of_names", "sympy", "time", "trees"]
+
+#: Symbols of coordinates, of velocities or momenta, and of parameters.
+_Groups: TypeAlias = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
 
 #: What may stand in the place of what switches, by its name.
 _INSTEAD = {
@@ -283,3 +286,36 @@ def _fraction(sp: Any, value: float) -> Any:
     """Give a small fraction where that is the very number."""
     fraction = sp.Rational(value).limit_denominator(10**4)
     return fraction if float(fraction) == value else sp.Float(value)
+
+
+def named_symbols(symbols: _Groups) -> list[list[dict[str, Any]]] | None:
+    """Give symbols as JSON has them, in their groups; None if names would not make the very same."""
+    kept = [[_named(each) for each in group] for group in symbols]
+    return kept if symbols_of_names(kept) == symbols else None
+
+
+def _named(symbol: Any) -> dict[str, Any]:
+    sp = sympy()
+    if isinstance(symbol, sp.Derivative):
+        return {"velocity": _named(symbol.args[0])}
+    if isinstance(symbol, sp.core.function.AppliedUndef):
+        return {"function": symbol.func.__name__}
+    return {"symbol": str(symbol), "assumptions": getattr(symbol, "assumptions0", {})}
+
+
+def symbols_of_names(kept: list[list[dict[str, Any]]]) -> _Groups | None:
+    """Give the symbols that `named_symbols` kept; None without SymPy, which nothing but expressions needs."""
+    try:
+        sp = sympy()
+    except InvalidInput:
+        return None
+
+    def made(each: dict[str, Any]) -> Any:
+        if "velocity" in each:
+            return made(each["velocity"]).diff(time._sympy_())
+        if "function" in each:
+            return sp.Function(str(each["function"]))(time._sympy_())
+        return sp.Symbol(str(each["symbol"]), **each["assumptions"])
+
+    first, second, parameters = (tuple(made(each) for each in group) for group in kept)
+    return first, second, parameters

@@ -12,6 +12,7 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
+from visviva.generalized._saved import Saved
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
@@ -67,7 +68,7 @@ def exported(
 
 
 @known_keywords
-class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
+class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Attributes
