@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, in_range, number, positive, whole_number
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 
@@ -80,10 +80,7 @@ class Parameter:
             return table
         if self.kind == "potential":
             return _potential(self.name, value)
-        if value not in self.choices:
-            hint = did_you_mean(str(value), self.choices)
-            raise InvalidInput(self.name, f"expected one of {', '.join(self.choices)}, got {value!r}{hint}")
-        return value
+        return one_of(self.name, value, self.choices)
 
     def _signed(self, value: float) -> float:
         if self.sign == "positive":

@@ -19,7 +19,7 @@ from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongA
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "refuse_subclass"]
+__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "one_of", "refuse_subclass"]
 
 # What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
 _ELSEWHERE = {
@@ -223,6 +223,29 @@ def _unknown(function: Callable[..., object], called: str, names: tuple[str, ...
     elsewhere = _ELSEWHERE.get((function.__qualname__, came), by_name)
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
+
+
+def one_of(argument: str, given: object, known: Iterable[str]) -> str:
+    """Check a word out of several.
+
+    Raises
+    ------
+    InvalidInput
+        For anything else, with the nearest of them.
+
+    Examples
+    --------
+    >>> from visviva._keywords import one_of
+    >>> one_of("frame", "spce", ("body", "space"))
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: frame: expected one of body, space, got 'spce'; did you mean 'space'?
+    """
+    words = tuple(known)
+    if not isinstance(given, str) or given not in words:
+        near = did_you_mean(given, words) if isinstance(given, str) else ""
+        raise InvalidInput(argument, f"expected one of {', '.join(words)}, got {given!r}{near}")
+    return given
 
 
 def check_call(

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 __all__ = ["made_by", "refuse_value"]
 
+# What is always in what the core gives, and in what it was asked.
+_TIMES = {"result": "t", "asked": "outputs"}
 _WORDS = {"dict": "what the core gives", "ndarray": "an array"}
 
 
@@ -45,8 +47,7 @@ def made_by(made: object, how: str, /, **given: tuple[object, type]) -> None:
 visviva.load
     """
     for argument, (value, kind) in given.items():
-        # What the core gives has its times.
-        if not isinstance(value, kind) or (isinstance(value, dict) and "t" not in value):
+        if not isinstance(value, kind) or (isinstance(value, dict) and _TIMES[argument] not in value):
             wanted = _WORDS.get(kind.__name__) or article(kind.__name__)
             came, result = article(type(value).__name__), article(type(made).__name__)
             raise InvalidInput(argument, f"expected {wanted}, got {came}; {result} is made by {how}")

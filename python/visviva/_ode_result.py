@@ -164,7 +164,7 @@ class OdeResult:
         >>> vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).get("status")
         0
         """
-        return getattr(self, name) if name in self.keys() else default
+        return getattr(self, name) if isinstance(name, str) and name in self.keys() else default
 
     def values(self) -> list[Any]:
         """All fields, in the order of their names.

@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeAlias
 
+from visviva._keywords import check_call
 from visviva.errors import InvalidInput
 
 __all__ = ["Progress", "Report", "callback"]
@@ -55,6 +56,7 @@ def callback(progress: Progress, unit: str = "") -> Iterator[Report | None]:
         with _bar(unit) as report:
             yield report
     elif callable(progress) and not isinstance(progress, type):
+        check_call("progress", progress, ("done", "total"))
         yield progress
     else:
         # Calling a class, tqdm for one, would make something new at every report.

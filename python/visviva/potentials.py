@@ -387,9 +387,9 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
         raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
     made = _BY_NAME[name]
     names = [parameter.name for parameter in made._parameters]
-    if len(parameters) != len(names):
+    if not hasattr(parameters, "__len__") or len(parameters) != len(names):
         expected = f"{len(names)} ({', '.join(names)})"
-        raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
+        raise InvalidInput("parameters", f"expected {expected} for {name}, got {parameters!r}")
     found: Potential = made(*parameters)
     return found
 

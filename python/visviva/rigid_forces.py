@@ -56,7 +56,7 @@ class AppliedTorque(BodyForce):
         self, torque: ArrayLike, body: int | str | None = None, frame: Literal["space", "body"] = "space"
     ) -> None:
         keep(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
-        if frame not in ("space", "body"):
+        if not isinstance(frame, str) or frame not in ("space", "body"):
             hint = did_you_mean(str(frame), ("space", "body"))
             raise InvalidInput("frame", f"expected 'space' or 'body', got {frame!r}{hint}")
 

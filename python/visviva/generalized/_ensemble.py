@@ -16,6 +16,7 @@ from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._resolved import judge
+from visviva.generalized._runs import RTOL
 from visviva.generalized._saved import Saved
 from visviva.generalized._source import _label
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
@@ -124,7 +125,7 @@ class GeneralizedEnsemble(Shown):
         t: ArrayLike,
         *,
         method: GeneralizedMethodName | Method = "auto",
-        rtol: float = 1e-12,
+        rtol: float = RTOL,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
@@ -208,6 +209,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Show
             "the run of an ensemble of a Lagrangian or a Hamiltonian",
             ensemble=(ensemble, GeneralizedEnsemble),
             result=(result, dict),
+            asked=(asked, dict),
         )
         self.ensemble = ensemble
         self.t: NDArray[np.float64] = asked["outputs"]

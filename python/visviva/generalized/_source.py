@@ -91,7 +91,7 @@ def described(
         if symbol in (*all_first, *all_second[:place], *all_parameters, time._sympy_()):
             raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
     root = walk(argument, function)
-    forces = further.get("forces") or {}
+    forces = {} if further.get("forces") is None else further["forces"]
     if not isinstance(forces, Mapping):
         raise InvalidInput("forces", f"expected forces by coordinate, as {{theta: Q}}, got {type(forces).__name__}")
     by_name = {_label(key): value for key, value in forces.items()}

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from visviva._arrays import whole_number
 from visviva._exported import Columns, Exported, chosen_columns
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
@@ -127,10 +128,10 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     ) -> None:
         from visviva.generalized._system import GeneralizedSystem
 
-        made_by(
-            self, "the run of a Lagrangian or a Hamiltonian", system=(system, GeneralizedSystem), result=(result, dict)
-        )
+        how = "the run of a Lagrangian or a Hamiltonian"
+        made_by(self, how, system=(system, GeneralizedSystem), result=(result, dict), asked=(asked, dict))
         lengths = result["lengths"]
+        member = whole_number("member", member, 0, len(lengths) - 1)
         first = sum(lengths[:member])
         rows = slice(first, first + lengths[member])
         self.system = system
@@ -169,7 +170,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
         return len(self.t)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        if name not in self.system.coordinates:
+        if not isinstance(name, str) or name not in self.system.coordinates:
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
         return self.position[:, self.system.coordinates.index(name)]
 

@@ -8,7 +8,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive, whole_number
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
 from visviva.scattering._structure import angles_within, described, orbits
 
@@ -74,9 +74,7 @@ def cross_section(
     >>> vv.scattering.cross_section(vv.potentials.HardSphere(2.0), energy=1.0, angle=[0.5, 2.0, np.pi])
     array([1., 1., 1.])
     """
-    if frame not in _FRAMES:
-        hint = did_you_mean(str(frame), _FRAMES)
-        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}{hint}")
+    one_of("frame", frame, _FRAMES)
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
     limit, bound = (np.pi / 2.0, "[0, π/2]") if frame == "recoil" else (np.pi, "[0, π]")

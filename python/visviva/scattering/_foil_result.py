@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva._html import Record
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._of_events import is_zero, merged
@@ -331,8 +331,7 @@ class FoilResult(Mapping[str, FoilTally]):  # noqa: PLW1641 — as its tallies
         >>> out.fraction("transmitted")
         Fraction(value=1.0, error=0.0)
         """
-        if fate not in _FATES[:3]:
-            raise InvalidInput("fate", f"expected one of {', '.join(_FATES[:3])}, got {fate!r}")
+        one_of("fate", fate, _FATES[:3])
         weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
         return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
 

@@ -68,7 +68,9 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     by_stratum: NDArray[np.uint64] | None = None
 
     def __post_init__(self) -> None:
-        made_by(self, "visviva.scattering.monte_carlo", edges=(self.edges, tuple), flow=(self.flow, np.ndarray))
+        arrays = {"flow": self.flow} | ({} if self.by_stratum is None else {"by_stratum": self.by_stratum})
+        each = {name: (array, np.ndarray) for name, array in arrays.items()}
+        made_by(self, "visviva.scattering.monte_carlo", edges=(self.edges, tuple), **each)
         read_only(*self.edges, self.flow, self.by_stratum)
 
     @property

@@ -113,8 +113,9 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
 
     def __post_init__(self) -> None:
         arrays = {"edges": self.edges, "counts": self.counts, "reachable": self.reachable}
+        arrays |= {} if self.by_stratum is None else {"by_stratum": self.by_stratum}
         made_by(self, "visviva.scattering.monte_carlo", **{name: (array, np.ndarray) for name, array in arrays.items()})
-        read_only(*arrays.values(), self.by_stratum)
+        read_only(*arrays.values())
 
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
