@@ -160,7 +160,9 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
     """What `Scene.advise` gives; `asked` is the request of the whole span, `closed` whether there is a closed form."""
     wanted = number("accuracy", accuracy)
     if not _FLOOR <= wanted < 1.0:
-        raise InvalidInput("accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1")
+        raise InvalidInput(
+            "accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1, got {wanted:g}"
+        )
     one_of("of", of, ("energy", "position"))
     if prepared["rigid"] is not None:
         raise InvalidInput("rigid_bodies", "trials know points only: try steps of vv.rigid.methods() by themselves")

@@ -100,7 +100,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
         if not given and own_forces is None and not turning:
             raise InvalidInput(
-                "position", "give position, velocity, mass, radius or parameters with a leading axis over the copies"
+                "position",
+                "expected position, velocity, mass, radius or parameters with a leading axis over the copies, got none",
             )
         lengths = {name: array.shape[0] for name, array in (given | turning).items()}
         if own_forces is not None:

@@ -78,7 +78,9 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     -2.000000 True
     """
     if (potential is None) == (force is None):
-        raise InvalidInput("potential", "expected one of potential and force")
+        raise InvalidInput(
+            "potential", f"expected one of potential and force, got {'neither' if force is None else 'both'}"
+        )
     names, values = _expression_table.named(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
     argument: Literal["potential", "force"] = "potential" if force is None else "force"

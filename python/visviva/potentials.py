@@ -387,9 +387,10 @@ def potential_by_name(name: str, parameters: Sequence[float]) -> Potential:
         raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
     made = _BY_NAME[name]
     names = [parameter.name for parameter in made._parameters]
-    if not hasattr(parameters, "__len__") or len(parameters) != len(names):
+    came = len(parameters) if hasattr(parameters, "__len__") else repr(parameters)
+    if came != len(names):
         expected = f"{len(names)} ({', '.join(names)})"
-        raise InvalidInput("parameters", f"expected {expected} for {name}, got {parameters!r}")
+        raise InvalidInput("parameters", f"expected {expected} for {name}, got {came}")
     found: Potential = made(*parameters)
     return found
 
