@@ -148,7 +148,7 @@ def solve_ivp(
         raise InvalidInput("vectorized", "expected False for a compiled function, got True; leave vectorized out")
     span = _span(t_span)
     first = None if first_step is None else number("first_step", first_step)
-    longest = None if max_step is None or max_step == math.inf else number("max_step", max_step)
+    longest = None if max_step is None or (_endless(max_step) and max_step > 0.0) else number("max_step", max_step)
     if first is not None and longest is not None and 0.0 < longest < first <= abs(span[1] - span[0]):
         first = longest
     watched = _events(events)
@@ -167,10 +167,10 @@ def solve_ivp(
         "max_step": longest,
         "dt": None if dt is None else _fixed_step(dt, span),
         "t_eval": None if t_eval is None else float_array("t_eval", t_eval, (None,)),
-        "dense_output": bool(dense_output),
+        "dense_output": _flag("dense_output", dense_output),
         "events": watched,
         "args": [] if native is not None or args is None else _unpacked(args),
-        "vectorized": bool(vectorized),
+        "vectorized": _flag("vectorized", vectorized),
         "compiled": None if native is None else native.where,
     }
     try:
@@ -235,11 +235,23 @@ def _span(t_span: object) -> tuple[float, float]:
     if len(times) != 2:
         raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}")
     t0, end = times
-    endless = isinstance(end, float | np.floating) and math.isinf(end)
+    endless = _endless(end)
     start, last = number("t_span", t0), float(end) if endless else number("t_span", end)
     if not endless and math.isinf(last - start):
         raise InvalidInput("t_span", f"expected times that are less than 1.8e308 apart, got {start:g} and {last:g}")
     return start, last
+
+
+def _endless(value: object) -> bool:
+    return isinstance(value, float | np.floating) and math.isinf(value)
+
+
+def _flag(name: str, value: object) -> bool:
+    """Give what counts as true or false, as SciPy does; of an array neither is told."""
+    try:
+        return bool(value)
+    except ValueError:
+        raise InvalidInput(name, f"expected True or False, got an array of shape {np.asarray(value).shape}") from None
 
 
 def _fixed_step(dt: object, span: tuple[float, float]) -> float:

@@ -33,7 +33,10 @@ WRONG = [
 
 
 # What was expected, or what is wrong with what came.
-SAID = "expected|there is no|is called with|is none of|must be|has (a fixed|no) |out of bounds|cannot be|estimates no|is (no|bent) "
+SAID = (
+    "expected|there is no|is called with|is none of|must be|has (a fixed|no) |out of bounds|cannot be|estimates no|"
+    "is (no|bent) "
+)
 
 
 def test_there_are_enough() -> None:

@@ -122,6 +122,17 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
         },
     ),
     (
+        vv.scattering.total_cross_section,
+        {"potential": vv.potentials.Coulomb(1.0), "energy": 1.0, "theta_min": 1.0},
+        {"theta_min": ([], [0.1, 0.2], NAN, "x", -1.0, 4.0)},
+    ),
+    (
+        vv.scattering.collision_integral,
+        {"potential": vv.potentials.LennardJones(1.0, 1.0), "temperature": 1.0, "diameter": 1.0},
+        {"orders": (3, None, (1,), "ab")},
+    ),
+    (vv.scattering.Foil, {"material": "gold", "thickness": 0.1}, {"material": (np.zeros(3), ["gold"])}),
+    (
         plain,
         {"system": lambda q, v, t: v[0] ** 2},
         {"L": ()},
@@ -143,6 +154,9 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
             "fun": (lambda y: -y, lambda t, y: None, lambda t, y, k: -y, 3, 0, -1, 10**30),
             "events": (lambda y: y[0], lambda t, y: None, 3),
             "args": (3,),
+            "max_step": (-1.0, -np.inf, "x", np.zeros(2)),
+            "dense_output": (np.zeros(2),),
+            "vectorized": (np.zeros(2),),
         },
     ),
 ]
