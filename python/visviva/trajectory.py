@@ -78,9 +78,11 @@ class Trajectory(Recorded):
     scene: Scene
 
     def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
-        from visviva.scene import Scene
+        # Words only for what is wrong: a closed form at one time must not pay for them.
+        if getattr(scene, "_is_ensemble", None) is not False or type(result) is not dict or "t" not in result:
+            from visviva.scene import Scene
 
-        made_by(self, "the run of a scene, or visviva.load", scene=(scene, Scene), result=(result, dict))
+            made_by(self, "the run of a scene, or visviva.load", scene=(scene, Scene), result=(result, dict))
         super().__init__(result)
         object.__setattr__(self, "scene", scene)
 
