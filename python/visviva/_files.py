@@ -38,9 +38,9 @@ def write(path: str | PathLike[str], header: Mapping[str, Any], arrays: Mapping[
     # A link stays a link: what it points to is written.
     target = Path(os.path.realpath(name)) if name else Path()
     if not target.parent.is_dir():
-        raise FileNotFoundError(errno.ENOENT, "no such folder to save the run in", str(target.parent))
+        raise FileNotFoundError(errno.ENOENT, "no such folder to save in", str(target.parent))
     if target.is_dir():
-        raise IsADirectoryError(errno.EISDIR, "expected a file to save the run in, but this is a folder", name)
+        raise IsADirectoryError(errno.EISDIR, "expected a file to save in, but this is a folder", name)
     # A name of its own for each call: two threads or processes that save to one path do not meet.
     partial = target.with_name(f"{target.name}.{secrets.token_hex(8)}.part")
     try:
