@@ -69,6 +69,13 @@ OTHERS: dict[str, tuple[Callable[[], Any], str]] = {
     "math of a function": (lambda: wrong_results.plain(lambda q, v, t: round(q[0])), "L"),
     "larger of a function": (lambda: wrong_results.plain(lambda q, v, t: np.fmax(q[0], 1.0)), "L"),
     "collisions of a wrong kind": (lambda: wrong_calls.SCENE.run(1.0, collisions="bang"), "collisions"),  # type: ignore[arg-type]
+    "a copy": (lambda: wrong_results.SWINGS["x"], "index"),  # type: ignore[index]
+    "a motion of a copy": (lambda: wrong_results.SWINGS.run(t=1.0)[0.5], "index"),  # type: ignore[index]
+    "several copies": (lambda: wrong_results.SWINGS[0:2], "index"),  # type: ignore[misc]
+    "lines of events": (
+        lambda: wrong_calls.PENDULUM.run(t=1.0, events=["theta"]).events[[0.5]],  # type: ignore[index]
+        "index",
+    ),
     "no problem": (lambda: vv.work_precision([]), "problem"),  # type: ignore[arg-type]
     "events of a Monte Carlo": (
         lambda: vv.scattering.monte_carlo(  # type: ignore[call-arg]

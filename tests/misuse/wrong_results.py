@@ -85,7 +85,6 @@ CALLS: list[tuple[Callable[..., Any], dict[str, Any], dict[str, tuple[Any, ...]]
     (vv.scattering.FoilTally, fields(CAME["stopped_depth"]), {"edges": NO_ARRAY, "sums": NO_ARRAY}),
     (vv.scattering.FoilResult, fields(CAME), {"sums": NO_ARRAY}),
     (CAME.fraction, {"fate": "stopped"}, {"fate": (3, "lost", None, np.zeros(2))}),
-    (vv.Status, {"value": 0}, {"Status": ()}),
     (vv.Gravity(1.0).rotated, TURN, {"rotation": NO_MATRIX}),
     (vv.UniformField([0, 0, 1]).rotated, TURN, {"rotation": NO_MATRIX}),
     (WHEEL.rigid_bodies.rotated, TURN, {"rotation": NO_MATRIX}),

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -14,6 +13,7 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
+from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._resolved import judge
 from visviva.generalized._runs import RTOL
@@ -37,6 +37,14 @@ if TYPE_CHECKING:
     from visviva.typing import GeneralizedMethodName, Progress
 
 __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
+
+
+def _which(member: object, count: int) -> int:
+    """Give the place of one copy, from 0."""
+    chosen = one_or_some(member, count)
+    if isinstance(chosen, slice):
+        raise InvalidInput("index", "expected the number of a copy, got a slice; take several one by one")
+    return chosen
 
 
 @known_keywords
@@ -115,7 +123,7 @@ class GeneralizedEnsemble(Shown):
         return len(self._states)
 
     def __getitem__(self, member: int) -> GeneralizedSystem:
-        n, member = len(self.system.coordinates), index(member)
+        n, member = len(self.system.coordinates), _which(member, len(self))
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
@@ -250,7 +258,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Show
         return len(self.status)
 
     def __getitem__(self, member: int) -> GeneralizedTrajectory:
-        member = range(len(self))[index(member)]
+        member = _which(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
     def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
