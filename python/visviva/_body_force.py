@@ -14,12 +14,13 @@ import numpy as np
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._declared import scaled
 from visviva._keywords import known_keywords, refuse_subclass
+from visviva._moves import displacement, orthogonal
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from _typeshed import DataclassInstance
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike
 
 __all__ = ["BodyForce", "Vector", "body_of", "keep", "not_negative", "vector"]
 
@@ -93,7 +94,7 @@ class BodyForce:
         given = {name: (getattr(self, name), *known[of]) for name, of in self._bodies.items()}
         return self._with(**{name: _found(name, *each) for name, each in given.items() if each[0] is not None})
 
-    def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
+    def shifted(self, position: ArrayLike, velocity: ArrayLike) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
         Parameters
@@ -109,7 +110,7 @@ class BodyForce:
         Raises
         ------
         visviva.InvalidInput
-            For a boost, if the force has a fixed place, which would move.
+            For what are not three numbers each; for a boost, if the force has a fixed place, which would move.
 
         Examples
         --------
@@ -117,9 +118,10 @@ class BodyForce:
         >>> vv.RotationalDrag(0.5).shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3))
         RotationalDrag(coefficient=0.5, body=None)
         """
+        displacement(position, velocity)
         return self
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).
 
         Parameters
@@ -135,7 +137,7 @@ class BodyForce:
         Raises
         ------
         visviva.InvalidInput
-            For a compiled function, which knows the axes that it was written for.
+            For a matrix that is not orthogonal; for a compiled function, which knows the axes that it was written for.
 
         Examples
         --------
@@ -143,6 +145,7 @@ class BodyForce:
         >>> vv.RotationalDrag(0.5).rotated(np.diag([1.0, -1.0, 1.0]))
         RotationalDrag(coefficient=0.5, body=None)
         """
+        orthogonal(rotation)
         return self
 
     def reversed(self) -> Self:

@@ -7,7 +7,7 @@ without.
 from __future__ import annotations
 
 import ctypes
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeGuard
 
 import numpy as np
 
@@ -38,8 +38,8 @@ class Compiled:
     """
 
     def __init__(self, address: int | None, data: int | None, *keep: object) -> None:
-        if address is None or not 0 < address < 1 << 8 * ctypes.sizeof(ctypes.c_void_p):
-            raise InvalidInput("fun", f"expected the address of {_SIGNATURE}, got {address}")
+        if not _can_be_called(address):
+            raise InvalidInput("fun", f"expected the address of {_SIGNATURE}, got {address}; pass the function itself")
         self.where = (address, data)
         self._keep = keep
 
@@ -114,9 +114,17 @@ def _address(function: Any, expected: str, described: str) -> int | None:
         return None
     if signature != expected:
         raise InvalidInput("function", f"expected a compiled function {described}, got {signature}")
-    if not address or address < 0:
-        raise InvalidInput("function", f"expected the address of {described}, got {address}")
+    if not _can_be_called(address):
+        raise InvalidInput("function", f"expected the address of {described}, got {address}; pass the function itself")
     return address
+
+
+def _can_be_called(address: int | None) -> TypeGuard[int]:
+    """Whether there may be code at an address: a slip as 0 or 3 would end the process.
+
+    No system maps the first 64 KiB.
+    """
+    return address is not None and 1 << 16 <= address < 1 << 8 * ctypes.sizeof(ctypes.c_void_p)
 
 
 def sampled(function: Any, of: str) -> Callable[[NDArray[np.float64]], NDArray[np.float64]]:

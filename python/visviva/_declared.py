@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, in_range, number, positive, whole_number
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 
@@ -81,10 +81,7 @@ class Parameter:
             return table
         if self.kind == "potential":
             return _potential(self.name, value)
-        if value not in self.choices:
-            hint = did_you_mean(str(value), self.choices)
-            raise InvalidInput(self.name, f"expected one of {', '.join(self.choices)}, got {value!r}{hint}")
-        return value
+        return one_of(self.name, value, self.choices)
 
     def _signed(self, value: float) -> float:
         if self.sign == "positive":
@@ -182,6 +179,18 @@ class Declared:
     def __post_init__(self) -> None:
         for parameter in self._parameters:
             object.__setattr__(self, parameter.name, parameter.check(getattr(self, parameter.name)))
+        self._check_pairs()
+
+    def _check_pairs(self) -> None:
+        """Refuse pairs of one body, of what acts between listed ones; names are judged when the scene knows them."""
+        ends = [getattr(self, p.name) for p in self._parameters if p.kind == "indices"]
+        if len(ends) != 2 or any(isinstance(end, str | tuple) for end in ends):
+            return
+        first, second = map(np.atleast_1d, ends)
+        same = first[first == second] if first.shape == second.shape else first[:0]
+        if same.size:
+            i, j = (p.name for p in self._parameters if p.kind == "indices")
+            raise InvalidInput(j, f"expected another body than {i}, got {same[0]} for both; give two that are apart")
 
     def _values(self) -> dict[str, Any]:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}

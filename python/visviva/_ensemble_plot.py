@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva._exported import AXES
-from visviva._keywords import did_you_mean
+from visviva._keywords import one_of
 from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
@@ -37,7 +37,7 @@ def plot_ensemble(
     run: EnsembleTrajectory, column: object, body: object, component: object, kind: object, ax: Axes | None
 ) -> Figure:
     """As `EnsembleTrajectory.plot`."""
-    name = _one_of("column", column, tuple(COLUMN_AXES))
+    name = one_of("column", column, tuple(COLUMN_AXES))
     over = COLUMN_AXES[name]
     if over[:1] == ("rigid_body",) and run.ensemble.scene.rigid_bodies is None:
         raise InvalidInput("column", f"{name} is that of a rigid body, and there is none")
@@ -46,7 +46,7 @@ def plot_ensemble(
     if component is not None:
         if not letters:
             raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
-        at = letters.index(_one_of("component", component, letters))
+        at = letters.index(one_of("component", component, letters))
         letters, values = [letters[at]], values[..., at : at + 1]
     panels = values if letters else values[..., None]
     labels = [f"{name}, {letter}" for letter in letters] or [name.replace("_", " ")]
@@ -63,7 +63,7 @@ def plot_generalized(
     run: GeneralizedEnsembleTrajectory, column: object, coordinate: object, kind: object, ax: Axes | None
 ) -> Figure:
     """As `GeneralizedEnsembleTrajectory.plot`."""
-    name = _one_of("column", column, ("position", "velocity", "momentum", "energy"))
+    name = one_of("column", column, ("position", "velocity", "momentum", "energy"))
     names = list(run.ensemble.system.coordinates)
     if name == "energy":
         if coordinate is not None:
@@ -72,17 +72,10 @@ def plot_generalized(
         kinetic = 0.5 * (run.momentum * run.velocity).sum(axis=-1)
         terms = sizes_of_terms(np.abs(kinetic), run.energy)
         return _panels(run.t, run.energy[..., None], [name], kind, ax, terms=terms)
-    chosen = names if coordinate is None else [_one_of("coordinate", coordinate, names)]
+    chosen = names if coordinate is None else [one_of("coordinate", coordinate, names)]
     values = getattr(run, name)[..., [names.index(each) for each in chosen]]
     before = "" if name == "position" else f"{name} of "
     return _panels(run.t, values, [before + each for each in chosen], kind, ax)
-
-
-def _one_of(argument: str, given: object, known: Any) -> str:
-    if not isinstance(given, str) or given not in known:
-        near = did_you_mean(given, tuple(known)) if isinstance(given, str) else ""
-        raise InvalidInput(argument, f"expected one of {', '.join(known)}, got {given!r}{near}")
-    return given
 
 
 def _whole(run: EnsembleTrajectory, name: str, body: object) -> NDArray[np.float64]:
@@ -113,7 +106,7 @@ def _panels(
 ) -> Figure:
     """One panel for each number of the last axis of (B, T, K); with `terms`, of energies, of their changes."""
     copies = len(values)
-    drawn = None if kind is None else _one_of("kind", kind, _KINDS)
+    drawn = None if kind is None else one_of("kind", kind, _KINDS)
     if not len(t):
         raise InvalidInput("plot", "expected a run with times, got 0 times")
     if ax is not None:

@@ -66,7 +66,14 @@ class Lines(Exported[str], Shown):
     def __getitem__(self, chosen: slice | ArrayLike) -> Self:
         if not isinstance(chosen, slice) and np.ndim(chosen) == 0:
             raise InvalidInput("index", f"expected a slice or an array, got {chosen!r}; use its columns, table.t[i]")
-        return self._from_core({name: getattr(self, name)[chosen] for name in self._names()}, self.definitions)
+        try:
+            picked: Any = chosen
+            rows = np.arange(len(self))[picked]
+        except (IndexError, TypeError, ValueError) as error:
+            raise InvalidInput(
+                "index", f"expected a slice, a mask or numbers of lines, got {chosen!r}: {error}"
+            ) from None
+        return self._from_core({name: getattr(self, name)[rows] for name in self._names()}, self.definitions)
 
     def __iter__(self) -> NoReturn:
         raise TypeError(f"an {type(self).__name__} is read by its columns: {', '.join(self._names())}")

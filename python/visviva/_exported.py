@@ -248,10 +248,13 @@ def chosen_columns(given: str | Sequence[str] | None, default: Sequence[str], kn
     """
     if given is None:
         return list(default)
+    known = tuple(known)
     if not isinstance(given, Iterable):
         raise InvalidInput("columns", f"expected a name or several of {', '.join(sorted(known))}, got {given!r}")
     names = [given] if isinstance(given, str) else list(given)
+    if not names:
+        raise InvalidInput("columns", f"expected one or several of {', '.join(sorted(known))}, got none")
     for name in names:
-        if name not in known:
+        if not isinstance(name, str) or name not in known:
             raise InvalidInput("columns", f"there is no column {name!r}; there are {', '.join(sorted(known))}")
     return list(dict.fromkeys(names))

@@ -75,13 +75,13 @@ def of_distance(function: Any, parameters: Mapping[Any, float] | None) -> tuple[
             Expression(nodes, nodes.add(operation, (), float(index)))
             for operation, index in [("variable", 0), *(("parameter", index) for index in range(len(names)))]
         )
-        result = called("function", function, (r,), dict(zip(names, own, strict=True)))
+        result = called(nodes, "function", function, (r,), dict(zip(names, own, strict=True)))
         root = recorded(nodes, result, "function")
     return table(nodes, [root], names), values
 
 
 def _of_symbols(nodes: Nodes, function: Any, names: tuple[str, ...]) -> int:
-    sp = sympy()
+    sp = sympy("function")
     # Symbols go by their names: what is assumed of them makes others of them.
     found = {symbol.name: symbol for symbol in function.free_symbols}
     plain = {found[name]: sp.Symbol(name) for name in ("r", *names) if name in found}

@@ -8,11 +8,9 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
 from visviva._arrays import float_array, in_range
 from visviva._keywords import known_keywords
-from visviva.errors import InvalidInput
+from visviva._moves import displacement, orthogonal
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -70,11 +68,11 @@ class Framed(ABC):
         >>> scene.particles.position
         array([[1., 2., 3.]])
         """
-        displacement, boost = float_array("position", position, (3,)), float_array("velocity", velocity, (3,))
+        moved_by, boost = displacement(position, velocity)
         p = self.particles
-        moved = p._changed(position=p.position + displacement, velocity=p.velocity + boost)
-        forces = (force.shifted(displacement, boost) for force in self.forces)
-        return self._like(moved, forces, self.t0, lambda part: part.shifted(displacement, boost))
+        moved = p._changed(position=p.position + moved_by, velocity=p.velocity + boost)
+        forces = (force.shifted(moved_by, boost) for force in self.forces)
+        return self._like(moved, forces, self.t0, lambda part: part.shifted(moved_by, boost))
 
     def in_frame(self, *, velocity: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
         """The scene as seen from a frame that moves at the constant `velocity`: r′ = r − origin − V t.
@@ -146,10 +144,7 @@ class Framed(ABC):
         >>> float(mirror.invariants().angular_momentum[2]) < 0.0
         True
         """
-        matrix = float_array("rotation", rotation, (3, 3))
-        defect = float(np.abs(matrix @ matrix.T - np.eye(3)).max())
-        if defect > 1e-12:
-            raise InvalidInput("rotation", f"expected an orthogonal matrix, but |R Rᵀ − 1| is {defect:.1e}")
+        matrix = orthogonal(rotation)
         p = self.particles
         turned = p._changed(position=p.position @ matrix.T, velocity=p.velocity @ matrix.T)
         forces = (force.rotated(matrix) for force in self.forces)
@@ -209,16 +204,29 @@ class Framed(ABC):
 
     def with_state(
         self,
-        position: ArrayLike,
-        velocity: ArrayLike,
+        position: ArrayLike | None = None,
+        velocity: ArrayLike | None = None,
         t0: float | None = None,
         *,
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
     ) -> Self:
-        """The scene with other positions and velocities, and another time if given.
+        """The scene with other positions, velocities, or another time; what is not given stays.
 
-        Rigid bodies may be given other orientations (K, 4) and angular velocities (K, 3), too.
+        Parameters
+        ----------
+        position, velocity : array_like, shape (N, 3), optional
+            Of the particles.
+        t0 : float, optional
+            The time of the scene.
+        orientation : array_like, shape (K, 4), optional
+        angular_velocity : array_like, shape (K, 3), optional
+            Of the rigid bodies.
+
+        Raises
+        ------
+        visviva.InvalidInput
+            For other shapes.
 
         Parameters
         ----------
@@ -242,8 +250,14 @@ class Framed(ABC):
         >>> scene = vv.problems.pythagorean().scene
         >>> scene.with_state(2 * scene.particles.position, scene.particles.velocity).particles.position[0]
         array([2., 6., 0.])
+
+        From rest, at the same places:
+
+        >>> float(abs(scene.with_state(velocity=0 * scene.particles.velocity).particles.velocity).max())
+        0.0
         """
-        moved = self.particles._changed(position=position, velocity=velocity)
+        state = {name: value for name, value in (("position", position), ("velocity", velocity)) if value is not None}
+        moved = self.particles._changed(**state) if state else self.particles
         given = {"orientation": orientation, "angular_velocity": angular_velocity}
         turning: dict[str, Any] = {name: value for name, value in given.items() if value is not None}
         return self._like(moved, self.forces, self.t0 if t0 is None else t0, **turning)

@@ -19,7 +19,7 @@ from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongA
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "refuse_subclass"]
+__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "one_of", "refuse_subclass"]
 
 # What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
 _ELSEWHERE = {
@@ -43,6 +43,17 @@ _ELSEWHERE = {
     ("from_elements", "apocenter"): "give semi_major_axis and eccentricity",
     ("from_elements", "mu"): "it follows from G and the masses",
 }
+
+# Only scenes are saved while they run: what to do elsewhere, by the qualified name of what is called.
+_IN_PARTS = {
+    "Runs.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on from "
+    "visviva.load(path).final",
+    "GeneralizedEnsemble.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on "
+    "from visviva.load(path)[i].final, copy by copy",
+    "monte_carlo": "count events in parts: save each result, go on with first_event=result.next_event, and add them",
+    "Foil.run": "bombard in parts: go on with first_event=result.next_event, and add the results",
+}
+_ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -86,6 +97,8 @@ mean 'distance'?
         if isinstance(value, FunctionType) and (attribute == "__init__" or not attribute.startswith("_")):
             called = target.__name__ if attribute == "__init__" else attribute
             setattr(target, attribute, _checked(value, called, 1))
+        elif attribute == "__new__" and isinstance(value, staticmethod):  # of a NamedTuple
+            target.__new__ = staticmethod(_checked(value.__func__, target.__name__, 1))  # type: ignore[method-assign]
         elif isinstance(value, classmethod) and not attribute.startswith("_"):
             made = _checked(value.__func__, attribute, 1)
             setattr(target, attribute, classmethod(made))
@@ -171,7 +184,7 @@ def _checked(function: Callable[_P, _R], called: str, bound: int) -> Callable[_P
     @wraps(function)
     def checked(*args: _P.args, **kwargs: _P.kwargs) -> _R:
         if not are_known(kwargs):
-            raise _unknown(called, names, next(name for name in kwargs if name not in names))
+            raise _unknown(function, called, names, next(name for name in kwargs if name not in names))
         try:
             return function(*args, **kwargs)
         except TypeError:
@@ -204,11 +217,35 @@ def _wrong(
     return None
 
 
-def _unknown(called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
+def _unknown(function: Callable[..., object], called: str, names: tuple[str, ...], came: str) -> UnknownKeyword:
     expected = f"a keyword of {called} ({', '.join(names)})" if names else f"no keyword, {called} takes none"
-    elsewhere = _ELSEWHERE.get(("run" if called == "plan" else called, came))
+    by_name = _ELSEWHERE.get(("run" if called == "plan" else called, came))
+    elsewhere = _ELSEWHERE.get((function.__qualname__, came), by_name)
     advice = did_you_mean(came, names) if elsewhere is None else f"; {elsewhere}"
     return UnknownKeyword(came, f"expected {expected}, got {came!r}{advice}")
+
+
+def one_of(argument: str, given: object, known: Iterable[str]) -> str:
+    """Check a word out of several.
+
+    Raises
+    ------
+    InvalidInput
+        For anything else, with the nearest of them.
+
+    Examples
+    --------
+    >>> from visviva._keywords import one_of
+    >>> one_of("frame", "spce", ("body", "space"))
+    Traceback (most recent call last):
+      ...
+    visviva.errors.InvalidInput: frame: expected one of body, space, got 'spce'; did you mean 'space'?
+    """
+    words = tuple(known)
+    if not isinstance(given, str) or given not in words:
+        near = did_you_mean(given, words) if isinstance(given, str) else ""
+        raise InvalidInput(argument, f"expected one of {', '.join(words)}, got {given!r}{near}")
+    return given
 
 
 def check_call(
@@ -220,6 +257,9 @@ def check_call(
         signature(function).bind(*places, **dict.fromkeys(keywords))
     except TypeError as error:
         called = ", ".join([*places, *(f"{name}=" for name in keywords)])
-        raise InvalidInput(argument, f"the function is called with ({called}): {error}") from None
+        taken = ", ".join([*places, *keywords])
+        raise InvalidInput(
+            argument, f"the function is called with ({called}): {error}; define it as f({taken})"
+        ) from None
     except ValueError:  # one that does not tell what it takes
         pass

@@ -11,6 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array
 from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -50,6 +51,7 @@ class OdeSolution(Shown):
     _extension: tuple[NDArray[np.float64], ...]
 
     def __post_init__(self) -> None:
+        made_by(self, "visviva.solve_ivp(..., dense_output=True)", ts=(self.ts, np.ndarray))
         # The solution is evaluated with them.
         self.ts.setflags(write=False)
 
@@ -220,7 +222,7 @@ class OdeResult(Record):
         >>> vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0]).get("status")
         0
         """
-        return getattr(self, name) if name in self.keys() else default
+        return getattr(self, name) if isinstance(name, str) and name in self.keys() else default
 
     def values(self) -> list[object]:
         """All fields, in the order of their names.

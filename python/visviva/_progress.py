@@ -12,6 +12,7 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from typing import TypeAlias
 
+from visviva._keywords import check_call
 from visviva.errors import InvalidInput
 
 __all__ = ["TIME", "Progress", "Report", "Span", "callback"]
@@ -65,6 +66,7 @@ def callback(progress: Progress, unit: str = "", of: Span | None = None) -> Iter
         with _bar(unit, of) as report:
             yield report
     elif callable(progress) and not isinstance(progress, type):
+        check_call("progress", progress, ("done", "total"))
         yield progress
     else:
         # Calling a class, tqdm for one, would make something new at every report.

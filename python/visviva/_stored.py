@@ -21,9 +21,22 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["FORMAT", "GROUPS", "VERSION", "Damaged", "checked"]
+__all__ = [
+    "FORMAT",
+    "GENERALIZED",
+    "GROUPS",
+    "VERSION",
+    "Damaged",
+    "check_all",
+    "check_keys",
+    "check_version",
+    "checked",
+    "opened",
+]
 
 FORMAT = "visviva run"
+#: Of runs in generalized coordinates, which have a module of their own: `visviva.generalized._saved`.
+GENERALIZED = "visviva generalized run"
 VERSION = 1
 GROUPS = ("columns", "final", "per_trajectory")
 
@@ -140,13 +153,13 @@ class Damaged(Exception):
         self.message = message
 
 
-def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
-    """The header and the arrays of a saved run, all that a result needs among them.
+def opened(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]:
+    """The header and the arrays of a file that visviva wrote, of whatever format.
 
     Raises
     ------
     Damaged
-        If something is missing or not as it should be.
+        If there is no header that names a format.
     Exception
         Whatever zipfile, zlib, NumPy and json raise for a file that is not theirs.
     """
@@ -157,18 +170,39 @@ def checked(stream: IO[bytes]) -> tuple[dict[str, Any], dict[str, NDArray[Any]]]
     header = json.loads(arrays.pop("header").tobytes(), parse_constant=_no_number)
     if not isinstance(header, dict) or not isinstance(header.get("format"), str):
         raise Damaged("expected a run that visviva saved, but the header does not say so")
+    return header, arrays
+
+
+def check_version(header: dict[str, Any], newest: int) -> None:
+    """Refuse a file of a later version of its format.
+
+    Raises
+    ------
+    Damaged
+        Saying which version can be read.
+    """
+    check_keys("header", header, {"version": int})
+    if header["version"] > newest:
+        raise Damaged(
+            f"the file has format version {header['version']}, this visviva reads up to {newest}; use a newer visviva"
+        )
+
+
+def checked(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+    """Make sure that all is there that a result of a scene needs.
+
+    Raises
+    ------
+    Damaged
+        If something is missing or not as it should be.
+    """
     if header["format"] != FORMAT:
         others = {"visviva scattering": "; visviva.scattering.MonteCarlo.load reads it"}
         cure = others.get(header["format"], "")
         raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}{cure}")
-    _check_keys("header", header, {"version": int})
-    if header["version"] > VERSION:
-        raise Damaged(
-            f"the file has format version {header['version']}, this visviva reads up to {VERSION}; use a newer visviva"
-        )
+    check_version(header, VERSION)
     _check_header(header)
     _check_arrays(arrays, header)
-    return header, arrays
 
 
 def _no_number(word: str) -> float:
@@ -195,7 +229,14 @@ def _array(archive: zipfile.ZipFile, info: zipfile.ZipInfo) -> NDArray[Any]:
     return array
 
 
-def _check_keys(where: str, found: dict[str, Any], expected: dict[str, type | tuple[type, ...]]) -> None:
+def check_keys(where: str, found: dict[str, Any], expected: dict[str, type | tuple[type, ...]]) -> None:
+    """Refuse what lacks a key, or has another kind of value for it.
+
+    Raises
+    ------
+    Damaged
+        Naming the key.
+    """
     for name, kind in expected.items():
         if name not in found:
             raise Damaged(f"the {where} of the file lacks {name!r}")
@@ -205,21 +246,21 @@ def _check_keys(where: str, found: dict[str, Any], expected: dict[str, type | tu
 
 
 def _check_header(header: dict[str, Any]) -> None:
-    _check_keys("header", header, _HEADER)
+    check_keys("header", header, _HEADER)
     if not all(isinstance(force, dict) and isinstance(force.get("kind"), str) for force in header["forces"]):
         raise Damaged("the header of the file has a force without a kind")
     if "events" in header:
-        _check_keys("header", header, {"events": list})
+        check_keys("header", header, {"events": list})
         if not all(isinstance(event, dict) and isinstance(event.get("kind"), str) for event in header["events"]):
             raise Damaged("the header of the file has an event without a kind")
     if "names" in header:
-        _check_keys("header", header, {"names": list})
-    _check_keys("account of what the run cost", header["stats"], _STATS)
-    _check_keys("plan", header["plan"], _PLAN)
+        check_keys("header", header, {"names": list})
+    check_keys("account of what the run cost", header["stats"], _STATS)
+    check_keys("plan", header["plan"], _PLAN)
     for name, own in (("continuation", {"goes_on": bool}), ("start_continuation", {"node": int})):
         if name in header:
-            _check_keys("header", header, {name: dict})
-            _check_keys("header", header[name], {**_SHARED, **own})
+            check_keys("header", header, {name: dict})
+            check_keys("header", header[name], {**_SHARED, **own})
     if header.get("continuation", {}).get("goes_on") and "start_continuation" not in header:
         raise Damaged("the file has a run that goes on with another, and not what it goes on with")
     for name, length in (("rows", 3), ("skipped", 2)):
@@ -230,19 +271,19 @@ def _check_header(header: dict[str, Any]) -> None:
 
 def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> None:
     lengths: dict[str, int] = {}
-    _check_all(_ARRAYS, arrays, lengths)
+    check_all(_ARRAYS, arrays, lengths)
     if "continuation" in header:
-        _check_all(_HELD, arrays, lengths)
+        check_all(_HELD, arrays, lengths)
         if (arrays["final/node"] < 0).any():
             raise Damaged("the file has a node before the first")
     if "start_continuation" in header:
-        _check_all(_START, arrays, lengths)
+        check_all(_START, arrays, lengths)
         if _START_TURNED.keys() & arrays.keys():
-            _check_all(_START_TURNED, arrays, lengths)
+            check_all(_START_TURNED, arrays, lengths)
         if header["start_continuation"]["node"] < 0:
             raise Damaged("the file has a node before the first")
     if any(name.startswith("events/") for name in arrays):
-        _check_all(_EVENTS, arrays, lengths)
+        check_all(_EVENTS, arrays, lengths)
         # Files of before definitions were kept have none.
         looked_for = len(header["events"]) if "events" in header else np.inf
         copies = arrays["events/member"]
@@ -252,12 +293,12 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
         if ((which < 0) | (which >= looked_for)).any():
             raise Damaged("the file has an event that was not looked for")
     if "rigid" in header:
-        _check_keys("header", header, {"rigid": dict})
-        _check_keys("account of rigid bodies", header["rigid"], {"forces": list, "names": list})
-        _check_all(_RIGID, arrays, lengths)
-        _check_all({name: _RIGID_OWN[name] for name in _RIGID_OWN if name in arrays}, arrays, lengths)
+        check_keys("header", header, {"rigid": dict})
+        check_keys("account of rigid bodies", header["rigid"], {"forces": list, "names": list})
+        check_all(_RIGID, arrays, lengths)
+        check_all({name: _RIGID_OWN[name] for name in _RIGID_OWN if name in arrays}, arrays, lengths)
     if "radius" in arrays:
-        _check_all(_RADIUS, arrays, lengths)
+        check_all(_RADIUS, arrays, lengths)
     if any(name.startswith("collisions/") for name in arrays):
         _check_collisions(arrays, lengths)
     for name, array in arrays.items():
@@ -278,7 +319,7 @@ def _check_arrays(arrays: dict[str, NDArray[Any]], header: dict[str, Any]) -> No
 
 
 def _check_collisions(arrays: dict[str, NDArray[Any]], lengths: dict[str, int]) -> None:
-    _check_all(_COLLISIONS, arrays, lengths)
+    check_all(_COLLISIONS, arrays, lengths)
     copies, first, second = (arrays[f"collisions/{name}"] for name in ("member", "first", "second"))
     survivor = arrays["collisions/survivor"]
     if ((copies < 0) | (copies >= lengths["B"])).any():
@@ -289,9 +330,16 @@ def _check_collisions(arrays: dict[str, NDArray[Any]], lengths: dict[str, int]) 
         raise Damaged("the file has a merger of which another body is left")
 
 
-def _check_all(
+def check_all(
     expected: dict[str, tuple[str, tuple[str | int, ...]]], arrays: dict[str, NDArray[Any]], lengths: dict[str, int]
 ) -> None:
+    """Refuse what lacks an array, or has one of another type or shape; `lengths` are those of the axes by name.
+
+    Raises
+    ------
+    Damaged
+        Naming the array.
+    """
     for name, (dtype, axes) in expected.items():
         if name not in arrays:
             raise Damaged(f"the file lacks the array {name!r}")

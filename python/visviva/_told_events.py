@@ -24,7 +24,10 @@ def to_core(given: Any) -> list[dict[str, Any]]:
             told.append(event._to_core())
         elif callable(event):
             way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
-            told.append(function(event, direction=way, terminal=last)._to_core())
+            try:
+                told.append(function(event, direction=way, terminal=last)._to_core())
+            except InvalidInput as error:
+                raise InvalidInput("events", f"events[{index}]: {error.message}") from None
         else:
             raise InvalidInput(
                 "events",

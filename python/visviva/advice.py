@@ -17,7 +17,7 @@ import numpy as np
 
 from visviva._arrays import number
 from visviva._html import Record, Sheet, Shown
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva._text import count
 from visviva._trial import stretch
 from visviva.errors import ConvergenceError, InvalidInput
@@ -184,9 +184,10 @@ def advise(prepared: _core._Scene, asked: _core._Request, accuracy: float, of: s
     """What `Scene.advise` gives; `asked` is the request of the whole span, `closed` whether there is a closed form."""
     wanted = number("accuracy", accuracy)
     if not _FLOOR <= wanted < 1.0:
-        raise InvalidInput("accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1")
-    if of not in ("energy", "position"):
-        raise InvalidInput("of", f"expected 'energy' or 'position', got {of!r}")
+        raise InvalidInput(
+            "accuracy", f"expected an error from {_FLOOR:g}, below which float64 tells little, to 1, got {wanted:g}"
+        )
+    one_of("of", of, ("energy", "position"))
     if prepared["rigid"] is not None:
         raise InvalidInput("rigid_bodies", "trials know points only: try steps of vv.rigid.methods() by themselves")
     massless = of == "energy" and bool((prepared["mass"][0] == 0.0).any())

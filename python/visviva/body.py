@@ -4,8 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from visviva._arrays import whole_number
 from visviva._html import Sheet, Shown, briefly
 from visviva._keywords import frozen, known_keywords
+from visviva._made_by import made_by
 from visviva._names import body_label
 from visviva.errors import InvalidInput
 
@@ -55,6 +57,10 @@ class BodyMotion(Shown):
     _run: Recorded
 
     def __init__(self, run: Recorded, index: int) -> None:
+        from visviva.recorded import Recorded
+
+        made_by(self, "out.body(name) of a run", run=(run, Recorded))
+        index = whole_number("index", index, 0, run._start._keywords["mass"].shape[-1] - 1)
         for attribute, value in {
             "_run": run,
             "index": index,

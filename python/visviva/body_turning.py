@@ -8,6 +8,7 @@ import numpy as np
 
 from visviva._html import Sheet, Shown, briefly
 from visviva._keywords import frozen, known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.rigid._orientation import quaternion_product, rotate_back
 from visviva.rigid._rotation import Rotation
@@ -73,6 +74,9 @@ class BodyTurning(Rotation, Shown):
     _motion: BodyMotion
 
     def __init__(self, motion: BodyMotion) -> None:
+        from visviva.body import BodyMotion
+
+        made_by(self, "out.body(name).turning of a run", motion=(motion, BodyMotion))
         run = motion._run
         if run._start._is_ensemble:
             raise InvalidInput("turning", "expected the run of one member: out[i] of an ensemble has them")

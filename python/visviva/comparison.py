@@ -12,12 +12,12 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from visviva._arrays import positive, whole_number
+from visviva._arrays import number, positive, whole_number
 from visviva._html import Shown
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._problem import Problem
 from visviva._sweeps import Point, Runner
-from visviva._text import count
+from visviva._text import article, count
 from visviva.errors import InvalidInput
 from visviva.integrators import Method
 from visviva.integrators import methods as all_methods
@@ -75,7 +75,7 @@ class WorkPrecision(Shown):
         Raises
         ------
         visviva.InvalidInput
-            For arguments of other names; a series that there is not has no best run.
+            For what is no number; a series that there is not has no best run.
 
         Examples
         --------
@@ -83,7 +83,8 @@ class WorkPrecision(Shown):
         >>> vv.WorkPrecision("none", ()).best(1e-6) is None
         True
         """
-        good = (p for p in self.points if p.position_error <= error and series in (None, p.series))
+        limit = number("error", error)
+        good = (p for p in self.points if p.position_error <= limit and series in (None, p.series))
         return min(good, key=lambda point: point.seconds, default=None)
 
     def envelope(self) -> tuple[Point, ...]:
@@ -115,13 +116,25 @@ class WorkPrecision(Shown):
         -------
         WorkPrecision
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For what are no points.
+
         Examples
         --------
         >>> import visviva as vv
         >>> vv.WorkPrecision("one", ()).joined([vv.Point("peer", 0.1, 2.0, 1e-6, 1e-7)]).best(1e-5).series
         'peer'
         """
-        return WorkPrecision(self.name, (*self.points, *points))
+        more = tuple(points) if isinstance(points, Iterable) else (points,)
+        for point in more:
+            if not isinstance(point, Point):
+                raise InvalidInput(
+                    "points",
+                    f"expected several Point(series, setting, seconds, …), got {article(type(point).__name__)}",
+                )
+        return WorkPrecision(self.name, (*self.points, *more))
 
     def only(self, series: Iterable[str]) -> WorkPrecision:
         """The same of some of the series, for a picture in which each line can be followed.
@@ -143,7 +156,7 @@ class WorkPrecision(Shown):
         >>> both.only(["b"]).series
         ('b',)
         """
-        wanted = [series] if isinstance(series, str) else list(series)
+        wanted = [series] if isinstance(series, str) or not isinstance(series, Iterable) else list(series)
         for name in wanted:
             if name not in self.series:
                 near = did_you_mean(str(name), self.series)

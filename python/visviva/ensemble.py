@@ -10,6 +10,7 @@ from visviva._arrays import float_array, mass_array
 from visviva._continuation import attached, of_copies
 from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
+from visviva._made_by import made_by
 from visviva._own_forces import described, forces_of_copies
 from visviva._text import count
 from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
@@ -83,6 +84,9 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         orientation: ArrayLike | None = None,
         angular_velocity: ArrayLike | None = None,
     ) -> None:
+        from visviva.scene import Scene
+
+        made_by(self, "scene.ensemble(...)", scene=(scene, Scene))
         own = {name: getattr(scene.particles, name) for name in ("mass", "position", "velocity", "radius")}
         given = {
             name: read_only(float_array(name, value, ("B", *own[name].shape)), value)
@@ -98,7 +102,8 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
         own_forces = None if parameters is None else forces_of_copies(scene, parameters)
         if not given and own_forces is None and not turning:
             raise InvalidInput(
-                "position", "give position, velocity, mass, radius or parameters with a leading axis over the copies"
+                "position",
+                "expected position, velocity, mass, radius or parameters with a leading axis over the copies, got none",
             )
         lengths = {name: array.shape[0] for name, array in (given | turning).items()}
         if own_forces is not None:

@@ -13,6 +13,7 @@ import numpy as np
 
 from visviva._continuation import attached, left_behind
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.recorded import Recorded
@@ -72,6 +73,11 @@ class EnsembleTrajectory(Recorded):
     ensemble: EnsembleScene
 
     def __init__(self, ensemble: EnsembleScene, result: dict[str, Any]) -> None:
+        from visviva.ensemble import EnsembleScene
+
+        made_by(
+            self, "the run of an ensemble, or visviva.load", ensemble=(ensemble, EnsembleScene), result=(result, dict)
+        )
         super().__init__(result)
         object.__setattr__(self, "ensemble", ensemble)
 

@@ -187,7 +187,7 @@ def plane(
     """
     through, perpendicular = _point("point", point), _point("normal", normal)
     if not any(perpendicular):
-        raise InvalidInput("normal", "expected a vector other than 0")
+        raise InvalidInput("normal", "expected a vector other than 0, got 0.0 in every component")
     return _made("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Literal
 
-from visviva import _expression_table
+from visviva import _core, _expression_table
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 from visviva.forces import ExpressedForce
@@ -80,13 +80,17 @@ def ExpressionForce(  # noqa: N802  (it stands among classes of forces, and make
     -2.000000 True
     """
     if (potential is None) == (force is None):
-        raise InvalidInput("potential", "expected one of potential and force")
+        raise InvalidInput(
+            "potential", f"expected one of potential and force, got {'neither' if force is None else 'both'}"
+        )
     names, values = _expression_table.named(parameters, (*_PLACES, *_VELOCITIES, "t"))
     nodes = Nodes()
     argument: Literal["potential", "force"] = "potential" if force is None else "force"
     roots = (potential,) if force is None else _components(force, names)
     found = [_node(argument, root, nodes, names) for root in roots]
-    return ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
+    made = ExpressedForce(argument, _expression_table.table(nodes, found, names), values, *_AXES)
+    _core.acts_between(made._to_core())  # which compiles it: whatever is wrong with it is refused here
+    return made
 
 
 def _components(force: Any, names: tuple[str, ...]) -> tuple[Any, ...]:
@@ -113,7 +117,7 @@ def _node(argument: str, expression: Any, nodes: Nodes, names: tuple[str, ...]) 
     """Give the node of one expression, of SymPy or a function."""
     if not hasattr(expression, "free_symbols"):
         return calls(nodes, _PLACES, names, "velocity")(argument, expression)
-    sp = sympy()
+    sp = sympy(argument)
     # Symbols go by their names: what is assumed of them makes others of them.
     found = {symbol.name: symbol for symbol in expression.free_symbols}
     plain = {found[name]: sp.Symbol(name) for name in (*_PLACES, *_VELOCITIES, "t", *names) if name in found}

@@ -14,10 +14,11 @@ import numpy as np
 from visviva import _core
 from visviva._declared import Declared, make
 from visviva._keywords import known_keywords, refuse_subclass
+from visviva._moves import displacement, orthogonal
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from numpy.typing import NDArray
+    from numpy.typing import ArrayLike
 
 
 @known_keywords
@@ -40,12 +41,16 @@ class Force(Declared):
 
     __slots__ = ()
 
+    def __init__(self) -> None:
+        """Refuse: kinds of it have parameters, and say how to act."""
+        raise InvalidInput("Force", "expected one of its kinds, as Gravity(G=1.0) or Harmonic(k=1.0), got Force itself")
+
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         if "_parameters" not in vars(cls):
             refuse_subclass(cls, "forces are described in it, one file each: docs/how-to/add-a-force.md")
 
-    def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
+    def shifted(self, position: ArrayLike, velocity: ArrayLike) -> Self:
         """The force as it acts on bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
         Units: those of the scene.
@@ -63,7 +68,8 @@ class Force(Declared):
         Raises
         ------
         visviva.InvalidInput
-            For a boost, if the force has a place or a medium at rest, which would move.
+            For what are not three numbers each; for a boost, if the force has a place or a medium at rest, which would
+            move.
 
         Examples
         --------
@@ -71,15 +77,16 @@ class Force(Declared):
         >>> vv.Harmonic(2.0).shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3))
         Harmonic(k=2.0, center=(1.0, 0.0, 0.0))
         """
+        moved_by, boost = displacement(position, velocity)
         points = [p.name for p in self._parameters if p.kind == "point"]
-        if velocity.any() and self._at_rest:
+        if boost.any() and self._at_rest:
             advice = ", or let a heavy body be the center" if points else ""
             raise InvalidInput(
                 "velocity",
                 f"{type(self).__name__} has a fixed {self._at_rest}, which would move in the boosted frame; "
                 f"shift the position only{advice}",
             )
-        moved = {name: np.add(getattr(self, name), position) for name in points}
+        moved = {name: np.add(getattr(self, name), moved_by) for name in points}
         return type(self)(**(self._values() | moved)) if moved else self
 
     def _resolved(self, names: tuple[str, ...], count: int) -> Self:
@@ -88,7 +95,7 @@ class Force(Declared):
         found = {p.name: p.resolved(getattr(self, p.name), names, count) for p in named}
         return type(self)(**(self._values() | found)) if found else self
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """The force as it acts on bodies turned (or reflected) by an orthogonal matrix (3, 3).
 
         Parameters
@@ -101,6 +108,11 @@ class Force(Declared):
         Force
             Of the same kind.
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For a matrix that is not orthogonal.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -108,12 +120,13 @@ class Force(Declared):
         >>> vv.UniformField([1.0, 0.0, 0.0]).rotated(quarter)
         UniformField(g=(0.0, 1.0, 0.0))
         """
+        matrix = orthogonal(rotation)
         turned = {
-            p.name: rotation @ np.array(getattr(self, p.name))
+            p.name: matrix @ np.array(getattr(self, p.name))
             for p in self._parameters
             if p.kind in ("vector", "direction", "point")
         }
-        axial = np.sign(np.linalg.det(rotation)) * rotation
+        axial = np.sign(np.linalg.det(matrix)) * matrix
         turned |= {
             p.name: axial @ np.array(getattr(self, p.name)) for p in self._parameters if p.kind == "axial_vector"
         }

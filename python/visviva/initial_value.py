@@ -12,9 +12,9 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, number
 from visviva._compiled import compiled
-from visviva._keywords import known_keywords
+from visviva._keywords import check_call, known_keywords
 from visviva._ode_result import OdeResult, OdeSolution
-from visviva.errors import Interrupted, InvalidInput
+from visviva.errors import Interrupted, InvalidInput, WrongArguments
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
@@ -150,7 +150,7 @@ def solve_ivp(
         raise InvalidInput("vectorized", "expected False for a compiled function, got True; leave vectorized out")
     span = _span(t_span)
     first = None if first_step is None else number("first_step", first_step)
-    longest = None if max_step is None or max_step == math.inf else number("max_step", max_step)
+    longest = None if max_step is None or (_endless(max_step) and max_step > 0.0) else number("max_step", max_step)
     if first is not None and longest is not None and 0.0 < longest < first <= abs(span[1] - span[0]):
         first = longest
     watched = _events(events)
@@ -169,13 +169,18 @@ def solve_ivp(
         "max_step": longest,
         "dt": None if dt is None else _fixed_step(dt, span),
         "t_eval": None if t_eval is None else float_array("t_eval", t_eval, (None,)),
-        "dense_output": bool(dense_output),
+        "dense_output": _flag("dense_output", dense_output),
         "events": watched,
         "args": [] if native is not None or args is None else _unpacked(args),
-        "vectorized": bool(vectorized),
+        "vectorized": _flag("vectorized", vectorized),
         "compiled": None if native is None else native.where,
     }
-    found = _core.solve_ivp(fun, asked)
+    try:
+        found = _core.solve_ivp(fun, asked)
+    except TypeError:
+        # Looked at only here: a signature costs as much as a run of a compiled function.
+        _check_calls(fun if native is None else None, watched, asked["args"])
+        raise
     result = _result(found, asked, looked_for=events is not None)
     if found["interrupted"]:
         raise Interrupted("the run was interrupted", result) from found["cause"]
@@ -232,11 +237,23 @@ def _span(t_span: object) -> tuple[float, float]:
     if len(times) != 2:
         raise InvalidInput("t_span", f"expected two times (t0, tf), got {t_span!r}")
     t0, end = times
-    endless = isinstance(end, float | np.floating) and math.isinf(end)
+    endless = _endless(end)
     start, last = number("t_span", t0), float(end) if endless else number("t_span", end)
     if not endless and math.isinf(last - start):
         raise InvalidInput("t_span", f"expected times that are less than 1.8e308 apart, got {start:g} and {last:g}")
     return start, last
+
+
+def _endless(value: object) -> bool:
+    return isinstance(value, float | np.floating) and math.isinf(value)
+
+
+def _flag(name: str, value: object) -> bool:
+    """Give what counts as true or false, as SciPy does; of an array neither is told."""
+    try:
+        return bool(value)
+    except ValueError:
+        raise InvalidInput(name, f"expected True or False, got an array of shape {np.asarray(value).shape}") from None
 
 
 def _fixed_step(dt: object, span: tuple[float, float]) -> float:
@@ -290,13 +307,9 @@ def _relative(rtol: object) -> list[float] | None:
     return values
 
 
-class _NotSeveral(InvalidInput, TypeError):
-    """What SciPy calls a TypeError."""
-
-
 def _unpacked(args: object) -> list[Any]:
     if not isinstance(args, Iterable):
-        raise _NotSeveral(
+        raise WrongArguments(
             "args", f"Supplied 'args' cannot be unpacked. Please supply `args` as a tuple (e.g. `args=({args},)`)"
         )
     return list(args)
@@ -307,6 +320,14 @@ def _events(events: Any) -> list[tuple[Function, float, int | None]]:
         return []
     several = list(events) if not callable(events) and isinstance(events, Iterable) else [events]
     return [(event, _direction(event), _last(event)) for event in several]
+
+
+def _check_calls(fun: Any, watched: list[tuple[Function, float, int | None]], args: list[Any]) -> None:
+    """Refuse functions that do not take what they were called with; what they raise themselves is theirs."""
+    places = ["t", "y", *(f"args[{index}]" for index in range(len(args)))]
+    for argument, function in [("fun", fun), *(("events", event) for event, _, _ in watched)]:
+        if function is not None:
+            check_call(argument, function, places)
 
 
 def _direction(event: Function) -> float:

@@ -6,25 +6,22 @@ A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, `
 ``events/<name>`` of a run with events, whose definitions are in the header, as are the names of bodies. What a run left
 behind for another to go on with is in ``final/held`` and ``final/node``; what the run itself went on with in
 ``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
+Files of runs in generalized coordinates are those of `visviva.generalized._saved`.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
 from __future__ import annotations
 
-import errno
-import json
-import os
-import secrets
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 import visviva
 from visviva._continuation import ARRAYS, SHARED, attached, turning
+from visviva._files import write
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
-from visviva._stored import FORMAT, GROUPS, VERSION, Damaged, checked
+from visviva._stored import FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, checked, opened
 from visviva._turning import restored, saved
 from visviva.ensemble import EnsembleScene
 from visviva.ensemble_trajectory import EnsembleTrajectory
@@ -37,8 +34,8 @@ from visviva.trajectory import Trajectory
 
 if TYPE_CHECKING:
     from os import PathLike
-    from typing import IO
 
+    from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
     from visviva.recorded import Recorded
 
 __all__ = ["load", "save"]
@@ -61,7 +58,7 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
     OSError
         If it cannot be written.
     """
-    name = path_text("path", path)
+    path_text("path", path)  # before anything is gathered
     result = run._result
     start = run._start._keywords
     header = {
@@ -98,33 +95,14 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
         before = dict(start["continuation"])
         header["start_continuation"] = {name: before.pop(name) for name in (*SHARED, "node")}
         arrays |= {f"final/start_{name}": array for name, array in before.items()}
-    text = json.dumps(header, default=_plain).encode()
-    # A link stays a link: what it points to is written.
-    target = Path(os.path.realpath(name)) if name else Path()
-    if not target.parent.is_dir():
-        raise FileNotFoundError(errno.ENOENT, "no such folder to save the run in", str(target.parent))
-    if target.is_dir():
-        raise IsADirectoryError(errno.EISDIR, "expected a file to save the run in, but this is a folder", name)
-    # A name of its own for each call: two threads or processes that save to one path do not meet.
-    partial = target.with_name(f"{target.name}.{secrets.token_hex(8)}.part")
-    try:
-        with partial.open("xb") as file:
-            np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
-            to_disk(file)
-        partial.replace(target)
-    finally:
-        partial.unlink(missing_ok=True)
-
-
-def to_disk(file: IO[Any]) -> None:
-    """Wait until the disk has it: a file that takes its name before that is empty after a power cut."""
-    file.flush()
-    os.fsync(file.fileno())
+    write(path, header, arrays)
 
 
 @known_keywords
-def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
-    """Read a file that `Trajectory.save` or `EnsembleTrajectory.save` wrote, of this or an earlier version.
+def load(
+    path: str | PathLike[str],
+) -> Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory:
+    """Read a file that ``save`` of a trajectory or of an ensemble wrote, of this or an earlier version.
 
     Parameters
     ----------
@@ -132,7 +110,8 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
 
     Returns
     -------
-    Trajectory or EnsembleTrajectory
+    Trajectory or EnsembleTrajectory, or in generalized coordinates GeneralizedTrajectory or \
+GeneralizedEnsembleTrajectory
         Whichever was saved.
 
     Raises
@@ -154,7 +133,13 @@ def load(path: str | PathLike[str]) -> Trajectory | EnsembleTrajectory:
     name = path_text("path", path)
     with open(name, "rb") as stream:
         try:
-            return _restored(*checked(stream))
+            header, arrays = opened(stream)
+            if header["format"] == GENERALIZED:
+                from visviva.generalized._saved import restored as of_coordinates
+
+                return of_coordinates(header, arrays)
+            checked(header, arrays)
+            return _restored(header, arrays)
         except MemoryError:  # a good file may be too large
             raise
         except Damaged as error:
@@ -214,13 +199,6 @@ def _restored(header: dict[str, Any], arrays: dict[str, Any]) -> Trajectory | En
     _ = run.stats, run.plan, run.status, "events" in result and run.events
     _ = "collisions" in result and run.collisions
     return run
-
-
-def _plain(value: object) -> Any:
-    """NumPy scalars and arrays of the header as JSON has them; floats keep every bit."""
-    if isinstance(value, np.ndarray | np.generic):
-        return value.tolist()
-    raise TypeError(f"cannot write {type(value).__name__} into the header")
 
 
 def __dir__() -> list[str]:

@@ -150,7 +150,7 @@ def directions(position: NDArray[np.float64], plane: object) -> Sequence[int]:
     if plane is None:
         extent = np.ptp(position.reshape(-1, 3), axis=0)
         return sorted(np.argsort(-extent, kind="stable")[:2].tolist())
-    if plane not in PLANES:
+    if not isinstance(plane, str) or plane not in PLANES:
         near = did_you_mean(plane, PLANES) if isinstance(plane, str) else ""
         raise InvalidInput("plane", f"expected one of {', '.join(PLANES)}, or None, got {plane!r}{near}")
     return ["xyz".index(letter) for letter in str(plane)]

@@ -26,6 +26,13 @@ if TYPE_CHECKING:
     from visviva.typing import CompiledFunction, ParameterValues, ScreeningName
 
 
+# What a parameter of the wrong sign was meant for.
+_CURES = {
+    ("power_law", "n"): "a potential that grows with distance is Custom(lambda r, k: k * r**2, parameters={'k': 1.0}), "
+    "and k r² / 2 about a point the force Harmonic(k)"
+}
+
+
 @known_keywords
 class Potential(Declared):
     """A potential energy V(r) of the distance between two bodies, or from a fixed centre.
@@ -48,13 +55,26 @@ class Potential(Declared):
 
     name: ClassVar[str]
 
+    def __init__(self) -> None:
+        """Refuse: kinds of it have a formula."""
+        raise InvalidInput(
+            "Potential",
+            "expected one of its kinds, as Coulomb(k=1.0) or Yukawa(k=1.0, length=2.0), got Potential itself",
+        )
+
     def __init_subclass__(cls, **arguments: Any) -> None:
         super().__init_subclass__(**arguments)
         if "_parameters" not in vars(cls):
             refuse_subclass(cls, "a force along the line to a fixed center is CentralField(one of visviva.potentials)")
 
     def __post_init__(self) -> None:
-        super().__post_init__()
+        try:
+            super().__post_init__()
+        except InvalidInput as error:
+            cure = _CURES.get((self.kind, error.argument))
+            if cure is None or "expected a positive number" not in error.message:
+                raise
+            raise InvalidInput(error.argument, f"{error.message}; {cure}") from None
         _core.check_potential(self._to_core())
 
     @property
@@ -400,9 +420,10 @@ def potential_by_name(name: str, parameters: Sequence[object]) -> Potential:
         raise InvalidInput("potential", f"expected one of {', '.join(_BY_NAME)}, got {name!r}{hint}")
     made = _BY_NAME[name]
     names = [parameter.name for parameter in made._parameters]
-    if len(parameters) != len(names):
+    came = len(parameters) if hasattr(parameters, "__len__") else repr(parameters)
+    if came != len(names):
         expected = f"{len(names)} ({', '.join(names)})"
-        raise InvalidInput("parameters", f"expected {expected} for {name}, got {len(parameters)}")
+        raise InvalidInput("parameters", f"expected {expected} for {name}, got {came}")
     found: Potential = made(*parameters)
     return found
 

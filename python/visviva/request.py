@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, fields
-from functools import wraps
+from functools import cache, wraps
 from inspect import Parameter, Signature, signature
 from typing import TYPE_CHECKING, Any, Concatenate, ParamSpec, TypeVar, cast
 
@@ -138,6 +138,15 @@ def _told(check: Callable[[str, object], object]) -> dict[str, Any]:
     return {"check": check}
 
 
+_RTOL = 1e-9
+
+
+@cache
+def _fixed_steps() -> frozenset[str]:
+    """Names of the methods that choose no step."""
+    return frozenset(method["name"] for method in _core.methods(rigid=True) if not method["adaptive"])
+
+
 # What is recorded of points if nothing is said; of rigid bodies how they turn, too.
 _RECORDED: tuple[ColumnName, ...] = ("position", "velocity")
 
@@ -150,7 +159,7 @@ class PlanRequest:
     method: MethodName | Method = field(default="auto", metadata=_told(_method))
     dt: float | None = field(default=None, metadata=_told(_or_none(_step)))
     time_transformation: TransformationName | None = field(default=None, metadata=_told(_or_none(_word)))
-    rtol: float = field(default=1e-9, metadata=_told(number))
+    rtol: float = field(default=_RTOL, metadata=_told(number))
     atol: ArrayLike | Mapping[str, ArrayLike] | None = field(default=None, metadata=_told(_or_none(_tolerances)))
     max_step: float | None = field(default=None, metadata=_told(_or_none(number)))
     max_steps: int | None = field(default=None, metadata=_told(_or_none(whole_number)))
@@ -174,6 +183,12 @@ class PlanRequest:
             asked[name] = ready if value is default else check(name, value)
         if prepared["rigid"] is not None and self.record is _RECORDED:
             asked["record"] = [*_RECORDED, "orientation", "angular_velocity"]
+        if self.rtol != _RTOL and asked["method"] in _fixed_steps():
+            raise InvalidInput(
+                "rtol",
+                f"{asked['method']} has a fixed step, dt, which nothing else changes: expected none, got {self.rtol}; "
+                "leave rtol out and choose dt, or name an adaptive method such as dop853",
+            )
         if asked["events"]:
             from visviva._told_events import resolved
 

@@ -14,6 +14,7 @@ import numpy as np
 from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._moves import displacement, orthogonal
 from visviva._names import body_index, body_indices, body_label, checked_names
 from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
 from visviva._text import count
@@ -338,7 +339,7 @@ class RigidBodies(Shown):
         names = ("mass", "position", "velocity", "axes", "center", "pivoted", "orientation", "angular_velocity")
         return {name: getattr(self, name) for name in names} | {"moments": self.principal_moments}
 
-    def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> RigidBodies:
+    def shifted(self, position: ArrayLike, velocity: ArrayLike) -> RigidBodies:
         """The bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
 
         Units: those of the scene.
@@ -355,7 +356,7 @@ class RigidBodies(Shown):
         Raises
         ------
         visviva.InvalidInput
-            For a boost of a body with a fixed point, which would move.
+            For what are not three numbers each; for a boost of a body with a fixed point, which would move.
 
         Examples
         --------
@@ -364,14 +365,15 @@ class RigidBodies(Shown):
         >>> vv.Scene(wheel).rigid_bodies.shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3)).position
         array([[1., 0., 0.]])
         """
-        if velocity.any() and self.pivoted.any():
+        moved_by, boost = displacement(position, velocity)
+        if boost.any() and self.pivoted.any():
             which = body_label(int(np.flatnonzero(self.pivoted)[0]), self.names)
             raise InvalidInput(
                 "velocity", f"the fixed point of {which} would move in the boosted frame; shift the position only"
             )
-        return self._changed(position=self.position + position, velocity=self.velocity + velocity)
+        return self._changed(position=self.position + moved_by, velocity=self.velocity + boost)
 
-    def rotated(self, rotation: NDArray[np.float64]) -> RigidBodies:
+    def rotated(self, rotation: ArrayLike) -> RigidBodies:
         """The bodies turned (or reflected) about the origin by an orthogonal matrix (3, 3).
 
         A reflected body is the mirrored one, of which all places in the body change sign.
@@ -387,6 +389,11 @@ class RigidBodies(Shown):
         -------
         RigidBodies
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For a matrix that is not orthogonal.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -395,11 +402,12 @@ class RigidBodies(Shown):
         >>> vv.Scene(wheel).rigid_bodies.rotated(quarter).position
         array([[0., 1., 0.]])
         """
-        sign = np.sign(np.linalg.det(rotation))
-        turn = quaternion_from_matrix(sign * rotation)
+        matrix = orthogonal(rotation)
+        sign = np.sign(np.linalg.det(matrix))
+        turn = quaternion_from_matrix(sign * matrix)
         return self._changed(
-            position=self.position @ rotation.T,
-            velocity=np.where(self.pivoted[:, None], 0.0, self.velocity @ rotation.T),
+            position=self.position @ matrix.T,
+            velocity=np.where(self.pivoted[:, None], 0.0, self.velocity @ matrix.T),
             orientation=quaternion_product(turn, self.orientation),
             pivot=None if self.pivot is None else sign * self.pivot,
         )

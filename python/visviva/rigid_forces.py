@@ -10,10 +10,11 @@ import numpy as np
 from visviva._body_force import BodyForce, Vector, body_of, keep, not_negative, vector
 from visviva._compiled import of_orientation
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._moves import orthogonal
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
     from visviva.typing import CompiledFunction
 
@@ -63,11 +64,11 @@ class AppliedTorque(BodyForce):
         self, torque: ArrayLike, body: int | str | None = None, frame: Literal["space", "body"] = "space"
     ) -> None:
         keep(self, torque=vector("torque", torque), body=body_of("body", body), frame=frame)
-        if frame not in ("space", "body"):
+        if not isinstance(frame, str) or frame not in ("space", "body"):
             hint = did_you_mean(str(frame), ("space", "body"))
             raise InvalidInput("frame", f"expected 'space' or 'body', got {frame!r}{hint}")
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """The torque turned with space, or as it is in the body; an axial vector.
 
         Units: the matrix is without dimension.
@@ -81,6 +82,11 @@ class AppliedTorque(BodyForce):
         -------
         AppliedTorque
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For a matrix that is not orthogonal.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -88,9 +94,10 @@ class AppliedTorque(BodyForce):
         >>> vv.AppliedTorque([1.0, 0.0, 0.0]).rotated(quarter)
         AppliedTorque(torque=(0.0, 1.0, 0.0), body=None, frame='space')
         """
+        matrix = orthogonal(rotation)
         if self.frame == "body":
             return self
-        return self._with(torque=np.sign(np.linalg.det(rotation)) * rotation @ np.array(self.torque))
+        return self._with(torque=np.sign(np.linalg.det(matrix)) * matrix @ np.array(self.torque))
 
 
 @known_keywords
@@ -208,12 +215,12 @@ class CompiledTorque(BodyForce):
         known = BodyForce._core_arguments(self)
         return {"kind": self.kind, "address": self.address, "body": known["body"]}
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """Refuse: the function is of the axes of space that it was written for.
 
         A matrix, shape (3, 3), without dimension, does not turn it.
         """
-        if np.array_equal(rotation, np.eye(3)):
+        if np.array_equal(orthogonal(rotation), np.eye(3)):
             return self
         raise InvalidInput("forces", "CompiledTorque cannot be rotated: what it computes is along the axes it knows")
 

@@ -9,10 +9,11 @@ import numpy as np
 
 from visviva._body_force import BodyForce, Vector, body_of, keep, not_negative, vector
 from visviva._keywords import known_keywords
+from visviva._moves import displacement, orthogonal
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
-    from numpy.typing import ArrayLike, NDArray
+    from numpy.typing import ArrayLike
 
 __all__ = ["AttachedSpring"]
 
@@ -121,7 +122,7 @@ class AttachedSpring(BodyForce):
         if self.to == self.body:
             raise InvalidInput("to", f"expected another rigid body, got {self.to!r} at both ends")
 
-    def shifted(self, position: NDArray[np.float64], velocity: NDArray[np.float64]) -> Self:
+    def shifted(self, position: ArrayLike, velocity: ArrayLike) -> Self:
         """The spring with its anchor displaced.
 
         Units: those of the scene.
@@ -138,7 +139,7 @@ class AttachedSpring(BodyForce):
         Raises
         ------
         visviva.InvalidInput
-            For a boost, if there is an anchor.
+            For what are not three numbers each; for a boost, if there is an anchor.
 
         Examples
         --------
@@ -147,16 +148,17 @@ class AttachedSpring(BodyForce):
         >>> spring.shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3)).anchor
         (4.0, 0.0, 0.0)
         """
+        moved_by, boost = displacement(position, velocity)
         if self.anchor is None:
             return self
-        if velocity.any():
+        if boost.any():
             advice = "shift the position only, or let a heavy body be the anchor"
             raise InvalidInput(
                 "velocity", f"AttachedSpring has a fixed anchor, which would move in the boosted frame; {advice}"
             )
-        return self._with(anchor=np.add(self.anchor, position))
+        return self._with(anchor=np.add(self.anchor, moved_by))
 
-    def rotated(self, rotation: NDArray[np.float64]) -> Self:
+    def rotated(self, rotation: ArrayLike) -> Self:
         """The spring with its anchor turned; of a mirrored body, points change sign.
 
         Units: the matrix is without dimension.
@@ -170,6 +172,11 @@ class AttachedSpring(BodyForce):
         -------
         AttachedSpring
 
+        Raises
+        ------
+        visviva.InvalidInput
+            For a matrix that is not orthogonal.
+
         Examples
         --------
         >>> import numpy as np, visviva as vv
@@ -177,8 +184,9 @@ class AttachedSpring(BodyForce):
         >>> spring.rotated(np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])).anchor
         (0.0, 3.0, 0.0)
         """
-        anchor = None if self.anchor is None else rotation @ np.array(self.anchor)
-        sign = np.sign(np.linalg.det(rotation))
+        matrix = orthogonal(rotation)
+        anchor = None if self.anchor is None else matrix @ np.array(self.anchor)
+        sign = np.sign(np.linalg.det(matrix))
         return self._with(anchor=anchor, point=np.multiply(sign, self.point), to_point=np.multiply(sign, self.to_point))
 
     def reversed(self) -> Self:

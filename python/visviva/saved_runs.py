@@ -18,13 +18,14 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive, whole_number
+from visviva._files import to_disk
 from visviva._joined_parts import joined
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva._progress import TIME, callback
 from visviva._told_events import from_description
 from visviva.errors import InvalidInput
-from visviva.io import load, to_disk
+from visviva.io import load
 from visviva.plan import told
 from visviva.request import RunRequest, finished
 from visviva.status import Status

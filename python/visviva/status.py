@@ -1,6 +1,9 @@
 """How a run ends: the codes of the core, of results and of files."""
 
 from enum import IntEnum
+from typing import NoReturn
+
+from visviva._made_by import refuse_value
 
 __all__ = ["Status"]
 
@@ -26,6 +29,10 @@ class Status(IntEnum):
     STOPPED = 5
     OUTSIDE_DOMAIN = 6
     RESTING = 7
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        refuse_value(cls, value)
 
 
 def __dir__() -> list[str]:

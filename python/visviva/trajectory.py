@@ -10,6 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._continuation import attached, left_behind
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.recorded import Recorded
@@ -79,6 +80,11 @@ class Trajectory(Recorded):
     scene: Scene
 
     def __init__(self, scene: Scene, result: dict[str, Any]) -> None:
+        # Words only for what is wrong: a closed form at one time must not pay for them.
+        if getattr(scene, "_is_ensemble", None) is not False or type(result) is not dict or "t" not in result:
+            from visviva.scene import Scene
+
+            made_by(self, "the run of a scene, or visviva.load", scene=(scene, Scene), result=(result, dict))
         super().__init__(result)
         object.__setattr__(self, "scene", scene)
 

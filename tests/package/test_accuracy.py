@@ -74,7 +74,7 @@ DAMPED = [
 
 @pytest.mark.parametrize("forces", DAMPED)
 def test_energy_that_grows_where_forces_take_it_is_said(forces: tuple[vv.forces.Force, ...]) -> None:
-    """Beyond the limit of stability every step multiplies a velocity by more than one: 1e229 was told with status OK."""
+    """Beyond the limit of stability every step multiplies a velocity by more than one: 1e229 came with status OK."""
     scene = vv.Scene(BALLS, *forces)
     with pytest.warns(vv.AccuracyWarning, match="kinetic") as caught:
         scene.run(t=0.4, method="rk4", dt=0.4)

@@ -5,6 +5,7 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,3 +92,22 @@ def test_extreme_masses_and_potentials_lose_no_event(masses: tuple[float, float]
     for tally in result.values():
         assert int(tally.counts.sum()) == 10_000
         assert np.isfinite(tally.edges).all()
+
+
+def test_a_failed_write_leaves_the_old_file(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    path = tmp_path / "counts.npz"
+    result = vv.scattering.monte_carlo(
+        vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1
+    )
+    result.save(path)
+    before = path.read_bytes()
+
+    def full_disk(file: Any, **_: object) -> None:
+        file.write(b"half")
+        raise OSError("no space left")
+
+    monkeypatch.setattr(np, "savez", full_disk)
+    with pytest.raises(OSError, match="no space left"):
+        result.save(path)
+    assert path.read_bytes() == before
+    assert [entry.name for entry in tmp_path.iterdir()] == ["counts.npz"]

@@ -10,9 +10,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.datasets._bodies import Bodies, columns
-from visviva.errors import InvalidInput
 
 __all__ = ["OuterSolarSystem", "outer_solar_system"]
 
@@ -129,21 +128,19 @@ def outer_solar_system(
     >>> data.names[1], data.position[1]
     ('Jupiter', array([-3.5023653, -3.8169847, -1.5507963]))
     """
-    if variant == "hairer_lubich_wanner":
+    if one_of("variant", variant, ("hairer_lubich_wanner", "applegate")) == "hairer_lubich_wanner":
         return _make(
             _HLW,
             2.95912208286e-4,
             "1994-09-05 00:00",
             "Hairer, Lubich & Wanner, Geometric Numerical Integration, 2nd ed. (2006), I.2.4",
         )
-    if variant == "applegate":
-        return _make(
-            _APPLEGATE,
-            0.01720209895**2,
-            "JD 2430000.5",
-            "Applegate, Douglas, Gürsel, Sussman & Wisdom, Astron. J. 92 (1986) 176",
-        )
-    raise InvalidInput("variant", f"expected 'hairer_lubich_wanner' or 'applegate', got {variant!r}")
+    return _make(
+        _APPLEGATE,
+        0.01720209895**2,
+        "JD 2430000.5",
+        "Applegate, Douglas, Gürsel, Sussman & Wisdom, Astron. J. 92 (1986) 176",
+    )
 
 
 def _make(

@@ -13,9 +13,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.datasets._bodies import Bodies, columns
-from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from numpy.typing import NDArray
@@ -146,8 +145,7 @@ def solar_system(frame: Literal["ecliptic", "equatorial"] = "ecliptic") -> Solar
     >>> out["Earth"].elements(about="Sun").semi_major_axis.round(2).tolist()
     [1.0, 1.0]
     """
-    if frame not in ("ecliptic", "equatorial"):
-        raise InvalidInput("frame", f"expected 'ecliptic' or 'equatorial', got {frame!r}")
+    one_of("frame", frame, ("ecliptic", "equatorial"))
     planets = tuple(zip(*_PLANETS.values(), strict=True))
     still = (0.0, 0.0, 0.0)
     mass, position, velocity = columns(

@@ -243,7 +243,7 @@ class PoincareSection(Record):
         from visviva.plot import axes_or_new
 
         name = self.coordinates[-1] if name is None else name
-        if name not in self.coordinates:
+        if not isinstance(name, str) or name not in self.coordinates:
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.coordinates)}")
         index = self.coordinates.index(name)
         ax = axes_or_new(ax)

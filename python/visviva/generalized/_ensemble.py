@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from operator import index
 from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
@@ -12,9 +11,13 @@ from visviva._arrays import float_array
 from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva._text import count
+from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import Interrupted, InvalidInput
 from visviva.generalized._resolved import judge
+from visviva.generalized._runs import RTOL
+from visviva.generalized._saved import Saved
 from visviva.generalized._source import _label
 from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
 from visviva.status import Status
@@ -34,6 +37,14 @@ if TYPE_CHECKING:
     from visviva.typing import GeneralizedEvent, GeneralizedMethodName, Progress
 
 __all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
+
+
+def _which(member: object, count: int) -> int:
+    """Give the place of one copy, from 0."""
+    chosen = one_or_some(member, count)
+    if isinstance(chosen, slice):
+        raise InvalidInput("index", "expected the number of a copy, got a slice; take several one by one")
+    return chosen
 
 
 @known_keywords
@@ -65,6 +76,9 @@ class GeneralizedEnsemble(Shown):
         second: ArrayLike | None = None,
         parameters: Mapping[str, ArrayLike] | Mapping[sympy.Symbol, ArrayLike] | None = None,
     ) -> None:
+        from visviva.generalized._system import GeneralizedSystem
+
+        made_by(self, "ensemble(...) of a Lagrangian or a Hamiltonian", system=(system, GeneralizedSystem))
         n = len(system.coordinates)
         sizes: dict[str, tuple[int, str]] = {}
         halves = [
@@ -109,7 +123,7 @@ class GeneralizedEnsemble(Shown):
         return len(self._states)
 
     def __getitem__(self, member: int) -> GeneralizedSystem:
-        n, member = len(self.system.coordinates), index(member)
+        n, member = len(self.system.coordinates), _which(member, len(self))
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
@@ -119,7 +133,7 @@ class GeneralizedEnsemble(Shown):
         t: ArrayLike,
         *,
         method: GeneralizedMethodName | Method = "auto",
-        rtol: float = 1e-12,
+        rtol: float = RTOL,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
@@ -175,7 +189,7 @@ class GeneralizedEnsemble(Shown):
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
+class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     """The motions of an ensemble.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -203,6 +217,13 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
     __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
 
     def __init__(self, ensemble: GeneralizedEnsemble, result: dict[str, Any], asked: dict[str, Any]) -> None:
+        made_by(
+            self,
+            "the run of an ensemble of a Lagrangian or a Hamiltonian",
+            ensemble=(ensemble, GeneralizedEnsemble),
+            result=(result, dict),
+            asked=(asked, dict),
+        )
         self.ensemble = ensemble
         self.t: NDArray[np.float64] = asked["outputs"]
         self._result = result
@@ -242,7 +263,7 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Shown):
         return len(self.status)
 
     def __getitem__(self, member: int) -> GeneralizedTrajectory:
-        member = range(len(self))[index(member)]
+        member = _which(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
     def _column(self, first: int, last: int | None) -> NDArray[np.float64]:

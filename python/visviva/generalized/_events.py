@@ -120,7 +120,7 @@ def _nodes(system: States, index: int, given: Any) -> tuple[list[Node], int]:
             root = _symbols(system, nodes).node("events", given)
     except InvalidInput as error:
         hint = ""
-        if "truth value" in error.message or "functions, as np.sin" in error.message:
+        if any(word in error.message for word in ("truth value", "functions, as np.sin", "where it leaps")):
             hint = "; vv.events.function takes a function that is called with numbers"
         raise InvalidInput("events", f"events[{index}]: {error.message}{hint}") from None
     return nodes.all, root

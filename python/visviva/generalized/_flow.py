@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
+import numpy as np
+
 from visviva._arrays import number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, InvalidInput
 
 if TYPE_CHECKING:
-    import numpy as np
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
@@ -77,7 +78,7 @@ class Flow:
         """
         from visviva.generalized._analysis import PoincareSection
 
-        if direction not in (1, -1, 0):
+        if not isinstance(direction, int | np.integer) or direction not in (1, -1, 0):
             raise InvalidInput("direction", f"expected 1, -1 or 0, got {direction!r}")
         if isinstance(section, str):
             if section not in self.coordinates:

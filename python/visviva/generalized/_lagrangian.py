@@ -119,7 +119,7 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
             self._prepare(source, values, (position, velocity, t0))
         except InvalidInput as error:
             raise _named(error, source.names) from None
-        if consistent not in (None, "project"):
+        if consistent is not None and (not isinstance(consistent, str) or consistent != "project"):
             raise InvalidInput("consistent", f"expected 'project' or None, got {consistent!r}")
         if consistent == "project" and self._constraints() and self.position is not None:
             state = self._model.projected(self.t0, self._start(), self._values)[2]

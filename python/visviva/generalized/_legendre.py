@@ -13,6 +13,7 @@ import numpy as np
 from visviva._arrays import float_array, number
 from visviva._html import Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import ConvergenceError, FrozenAttribute, InvalidInput
 
 if TYPE_CHECKING:
@@ -70,6 +71,9 @@ class LegendreTransform(Shown):
     _parts: dict[str, tuple[list[Node], list[int]]]
 
     def __init__(self, system: GeneralizedSystem) -> None:
+        from visviva.generalized._system import GeneralizedSystem
+
+        made_by(self, "legendre_transform() of a Lagrangian or a Hamiltonian", system=(system, GeneralizedSystem))
         n = len(system.coordinates)
         nodes, all_second = system._model.expressions("curvatures")
         square = [all_second[i * 2 * n + j] for i in range(n, 2 * n) for j in range(n, 2 * n)]

@@ -10,7 +10,17 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.generalized._states import States
 
-__all__ = ["ACROSS_KINKS", "CONSTRAINED", "DISCRETE", "GAUSS", "LINEAR", "check_atol", "discrete_name", "method_name"]
+__all__ = [
+    "ACROSS_KINKS",
+    "CONSTRAINED",
+    "DISCRETE",
+    "GAUSS",
+    "LINEAR",
+    "check_atol",
+    "check_rtol",
+    "discrete_name",
+    "method_name",
+]
 
 #: What solves linear equations with constant coefficients, without steps.
 LINEAR = "matrix_exponential"
@@ -52,6 +62,14 @@ def check_atol(method: str) -> None:
         )
     if not any(each.name == method and each.adaptive for each in methods()):
         raise InvalidInput("atol", f"{method} estimates no error that atol could bound; leave it out")
+
+
+def check_rtol(rtol: float, usual: float, dt: float | None) -> None:
+    """Refuse a relative tolerance beside equal steps, which it would not change."""
+    if dt is not None and rtol != usual:
+        raise InvalidInput(
+            "rtol", f"expected none beside dt = {dt:g}, which is the length of every step; leave one of them out"
+        )
 
 
 def _check_max_step(method: str, dt: float | None, max_step: float | None) -> None:

@@ -26,6 +26,11 @@ FUNCTIONS = (
     "sin", "cos", "tan", "exp", "log", "sqrt", "sinh", "cosh", "tanh",
     "asin", "acos", "atan", "asinh", "acosh", "atanh",
 )  # fmt: skip
+#: Where two laws meet.
+SWITCH = "end the run by an event where it switches, and go on from out.final with the other law"
+_LARGER = "write (x + y + abs(x - y)) / 2"
+_SMALLER = "write (x + y - abs(x - y)) / 2"
+_WHOLE = f"{{}} is the same between leaps: put a number in its place, or {SWITCH}"
 #: What leaps, and what to write instead.
 _LEAPS = {
     "floor_divide": "x // y leaps; write x / y, or end the run by an event where parts differ, and go on from there",
@@ -33,7 +38,9 @@ _LEAPS = {
     "divmod": "divmod leaps; end the run by an event where parts differ, and go on from there",
     "sign": "write x / abs(x), which has no value at 0, or np.tanh(x / width)",
     "heaviside": "write (1 + x / abs(x)) / 2, which has no value at 0, or (1 + np.tanh(x / width)) / 2",
-}
+} | {name: _WHOLE.format(name) for name in ("floor", "ceil", "trunc", "rint", "round")}
+#: What is bent where its arguments meet.
+_BENT = {"maximum": _LARGER, "fmax": _LARGER, "minimum": _SMALLER, "fmin": _SMALLER}
 _NUMPY = {
     "arcsin": "asin",
     "arccos": "acos",
@@ -59,10 +66,12 @@ _KNOWN = ", ".join((*FUNCTIONS, "cbrt", "exp2", "log2", "log10", "deg2rad", "rad
 class Nodes:
     """A growing list of nodes."""
 
-    __slots__ = ("_places", "all")
+    __slots__ = ("_places", "all", "argument")
 
     def __init__(self) -> None:
         self.all: list[Node] = []
+        #: What is written down: the argument that errors name.
+        self.argument = "L"
         self._places: dict[tuple[str, tuple[int, ...], float], int] = {}
 
     def add(self, operation: str, arguments: tuple[int, ...] = (), value: float = 0.0) -> int:
@@ -117,7 +126,7 @@ class Expression:
             if isinstance(other, Expression):
                 places.append(other._place)
             else:
-                places.append(self._nodes.constant(_number(other)))
+                places.append(self._nodes.constant(self._number(other)))
         if swapped:
             places.reverse()
         return Expression(self._nodes, self._nodes.add(operation, tuple(places)))
@@ -132,7 +141,9 @@ class Expression:
     def __sub__(self, other: object) -> Expression:
         if _is_array(other):
             return NotImplemented  # the array does it number by number
-        return self._with("sum", other._with("product", -1.0) if isinstance(other, Expression) else -_number(other))
+        if isinstance(other, Expression):
+            return self._with("sum", other._with("product", -1.0))
+        return self._with("sum", -self._number(other))
 
     def __rsub__(self, other: object) -> Expression:
         return self._with("product", -1.0)._with("sum", other)
@@ -170,7 +181,19 @@ class Expression:
         return self._with("product", self)._with("sqrt")
 
     def _leaps(self, name: str) -> NoReturn:
-        raise InvalidInput("L", f"{name} of coordinates has no derivatives where it leaps: {_LEAPS[name]}")
+        raise self._refused(f"{name} of coordinates has no derivatives where it leaps: {_LEAPS[name]}")
+
+    def _refused(self, message: str) -> InvalidInput:
+        return InvalidInput(self._nodes.argument, message)
+
+    def _number(self, other: object) -> float:
+        """Give what is no expression as a number."""
+        if isinstance(other, (SupportsFloat, SupportsIndex)):
+            try:
+                return _finite(self._nodes.argument, float(other))
+            except TypeError:  # an array of several
+                pass
+        raise self._refused(f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it")
 
     def __floordiv__(self, other: object) -> NoReturn:
         self._leaps("floor_divide")
@@ -234,7 +257,10 @@ class Expression:
         return squares._with("sqrt")
 
     def __bool__(self) -> NoReturn:
-        raise InvalidInput("L", "an expression has no truth value: the function must not branch on coordinates")
+        raise self._refused(
+            "an expression has no truth value: the function must not branch on coordinates, nor use np.where; "
+            f"{SWITCH}, or blend both with a smooth step, as (1 + np.tanh(x / width)) / 2"
+        )
 
     def __eq__(self, other: object) -> NoReturn:
         self.__bool__()
@@ -243,7 +269,13 @@ class Expression:
     __hash__ = object.__hash__
 
     def __float__(self) -> float:
-        raise InvalidInput("L", "an expression is no number: use NumPy's functions, as np.sin, and not those of math")
+        raise self._refused("an expression is no number: use NumPy's functions, as np.sin, and not those of math")
+
+    def _rounded(self, *_: object) -> NoReturn:
+        self._leaps("round")
+
+    # What round, math.floor, math.ceil and math.trunc, and NumPy's functions of these names, call.
+    __round__ = __floor__ = __ceil__ = __trunc__ = _rounded
 
     def arctan2(self, other: object) -> Expression:
         """Give the angle of the point (other, self) from the first axis, in radians: what ``np.arctan2`` calls.
@@ -272,6 +304,11 @@ class Expression:
     def __array_ufunc__(self, ufunc: Any, method: str, *inputs: Any, **options: Any) -> Any:
         if ufunc.__name__ in _LEAPS:
             self._leaps(ufunc.__name__)
+        if ufunc.__name__ in _BENT:
+            raise self._refused(
+                f"{ufunc.__name__} is bent where its arguments meet, and the function must not branch on coordinates; "
+                f"{_BENT[ufunc.__name__]}"
+            )
         # NumPy asks the first argument for these, which may be a number.
         if ufunc in (np.arctan2, np.hypot):
             inputs = tuple(self._with("product", 0.0)._with("sum", x) if np.isscalar(x) else x for x in inputs)
@@ -288,15 +325,29 @@ class Expression:
             return made
         if name.startswith("_"):
             raise AttributeError(name)
-        raise InvalidInput("L", f"function {name} is not known to the compiled core; known: {_KNOWN}")
+        raise self._refused(f"function {name} is not known to the compiled core; known: {_KNOWN}")
 
 
-def called(argument: str, function: Callable[..., Any], numbers: Iterable[Any], values: dict[str, Any]) -> Any:
-    """Call a function with expressions: what NumPy cannot do with them is refused by name."""
+def called(
+    nodes: Nodes, argument: str, function: Callable[..., Any], numbers: tuple[Any, ...], values: dict[str, Any]
+) -> Any:
+    """Call a function with expressions: what cannot be done with them is refused by name.
+
+    Errors of one's own stay what they are, with a note of where they come from.
+    """
+    nodes.argument = argument
     try:
         return function(*numbers, **values)
-    except TypeError as error:
-        if isinstance(error, InvalidInput) or not any(word in str(error) for word in ("ufunc", "Expression")):
+    except InvalidInput:
+        raise
+    except Exception as error:
+        size = getattr(numbers[0], "size", None) if isinstance(error, IndexError) else None
+        if size is not None and f"out of bounds for axis 0 with size {size}" in str(error):
+            last = f"{size} numbers, the last at [{size - 1}]" if size > 1 else "1 number, at [0]"
+            raise InvalidInput(argument, f"{error}: positions and velocities have {last}") from error
+        if not isinstance(error, TypeError) or not any(word in str(error) for word in ("ufunc", "Expression")):
+            name = getattr(function, "__qualname__", type(function).__qualname__)
+            error.add_note(f"{argument}: raised in {name}, which is called with expressions in the place of numbers")
             raise
         name = str(error).partition("ufunc '")[2].partition("'")[0]
         cure = f"; {_LEAPS[name]}" if name in _LEAPS else ""
@@ -326,16 +377,6 @@ def row(expressions: Iterable[Expression]) -> NDArray[np.object_]:
 
 def _is_array(other: object) -> bool:
     return isinstance(other, np.ndarray) and other.ndim > 0
-
-
-def _number(other: object) -> float:
-    """Give what is no expression as a number."""
-    if isinstance(other, (SupportsFloat, SupportsIndex)):
-        try:
-            return _finite("L", float(other))
-        except TypeError:  # an array of several
-            pass
-    raise InvalidInput("L", f"expected arithmetic of numbers and coordinates, got {type(other).__name__} in it")
 
 
 def _finite(argument: str, number: float) -> float:

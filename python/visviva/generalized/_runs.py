@@ -11,7 +11,7 @@ import numpy as np
 from visviva._arrays import float_array, number, whole_number
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
-from visviva.generalized._methods import check_atol, method_name
+from visviva.generalized._methods import check_atol, check_rtol, method_name
 from visviva.generalized._resolved import judge
 from visviva.generalized._states import States, whole
 from visviva.status import Status
@@ -28,6 +28,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Runs"]
 
+#: Of a run that is not told another.
+RTOL = 1e-12
 #: Of a run that is not told how many.
 MOST_STEPS = 100_000_000
 
@@ -57,6 +59,7 @@ class Runs(States):
             if value is not None and number(name, value) <= 0.0:
                 raise InvalidInput(name, f"expected a positive number, got {value!r}; the direction is that of t")
         name = method_name(method, self, dt, max_step)
+        check_rtol(rtol, RTOL, dt)
         asked = {
             "method": name,
             "span": (self.t0, float(outputs[-1])),
@@ -116,7 +119,7 @@ class Runs(States):
         t: ArrayLike,
         *,
         method: GeneralizedMethodName | Method = "auto",
-        rtol: float = 1e-12,
+        rtol: float = RTOL,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,
@@ -146,7 +149,7 @@ class Runs(States):
             holonomic constraints ``rattle`` does the same, and ``rattle4``, ``6`` and ``8`` are its compositions of
             those orders.
         rtol : float
-            Relative tolerance of a step.
+            Relative tolerance of a step; refused beside `dt`.
         atol : float, array_like of shape (n,), or dict, optional
             Absolute tolerance of methods that estimate their error in a step, as ``dop853``: the root mean square of
             the errors, each divided by ``atol + rtol·|number|``, is at most 1. ``{"position": ..., "velocity": ...}``
@@ -235,7 +238,7 @@ class Runs(States):
         t: ArrayLike,
         *,
         method: GeneralizedMethodName | Method = "auto",
-        rtol: float = 1e-12,
+        rtol: float = RTOL,
         atol: float | ArrayLike | Mapping[str, ArrayLike] | None = None,
         dt: float | None = None,
         max_step: float | None = None,

@@ -72,7 +72,7 @@ def described(
         symbols = None
         walk = calls(nodes, names, keys, _SECOND[kind])
     else:
-        sp = sympy()
+        sp = sympy(argument)
         first = tuple(_coordinate(sp, each) for each in listed)
         others = _second(sp, kind, first, second)
         names = tuple(_label(each) for each in first)
@@ -91,7 +91,7 @@ def described(
         if symbol in (*all_first, *all_second[:place], *all_parameters, time._sympy_()):
             raise InvalidInput(_SECOND_ARGUMENT[kind], f"{symbol} is something else, too; use another symbol")
     root = walk(argument, function)
-    forces = further.get("forces") or {}
+    forces = {} if further.get("forces") is None else further["forces"]
     if not isinstance(forces, Mapping):
         raise InvalidInput("forces", f"expected forces by coordinate, as {{theta: Q}}, got {type(forces).__name__}")
     by_name = {_label(key): value for key, value in forces.items()}
@@ -193,6 +193,6 @@ def calls(
         second = row(expression("variable", float(n + i)) for i in range(n))
         values = {name: expression("parameter", float(i)) for i, name in enumerate(parameters)}
         check_call(argument, function, ("position", second_name, "t"), parameters)
-        return recorded(nodes, called(argument, function, (first, second, expression("time")), values), argument)
+        return recorded(nodes, called(nodes, argument, function, (first, second, expression("time")), values), argument)
 
     return walk

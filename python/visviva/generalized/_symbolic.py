@@ -2,27 +2,38 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any, cast
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.generalized._nodes import FUNCTIONS, Node, Nodes
+from visviva.generalized._nodes import FUNCTIONS, SWITCH, Node, Nodes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
     from sympy import Symbol
 
-__all__ = ["Symbols", "coordinate", "sympy", "time", "trees"]
+__all__ = ["Symbols", "coordinate", "named_symbols", "symbols_of_names", "sympy", "time", "trees"]
+
+#: Symbols of coordinates, of velocities or momenta, and of parameters.
+_Groups: TypeAlias = tuple[tuple[Any, ...], tuple[Any, ...], tuple[Any, ...]]
+
+#: What may stand in the place of what switches, by its name.
+_INSTEAD = {
+    "Max": "write (x + y + Abs(x - y))/2, or ",
+    "Min": "write (x + y - Abs(x - y))/2, or ",
+    "sign": "write x/Abs(x), which has no value at 0, or tanh(x/width), or ",
+    "Heaviside": "write (1 + tanh(x/width))/2, or ",
+}
 
 
-def sympy() -> Any:
-    """Give the module, or say how to get it."""
+def sympy(argument: str = "L") -> Any:
+    """Give the module, or say how to get it, naming the argument that needs it."""
     try:
         import sympy
     except ImportError:
         raise InvalidInput(
-            "L",
+            argument,
             "expressions need SymPy: pip install 'visviva[symbolic]', or pass a function of (position, velocity, t)",
         ) from None
     return sympy
@@ -208,9 +219,10 @@ class Symbols:
             return nodes.add("sqrt", (nodes.add("product", (inner, inner)),))
         if isinstance(tree, (sp.cot, sp.sec, sp.csc, sp.coth, sp.sech, sp.csch)):
             return self._walk(argument, self._inverse(tree))
-        if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign)):
+        if isinstance(tree, (sp.Piecewise, sp.Heaviside, sp.Max, sp.Min, sp.sign, sp.floor, sp.ceiling)):
+            instead = _INSTEAD.get(name, "")
             raise InvalidInput(
-                argument, f"{name} switches inside a step, where no method keeps its order; leave it out"
+                argument, f"{name} switches inside a step, where no method keeps its order; {instead}{SWITCH}"
             )
         if isinstance(tree, sp.core.function.AppliedUndef):
             raise InvalidInput(
@@ -277,3 +289,36 @@ def _fraction(sp: Any, value: float) -> Any:
     """Give a small fraction where that is the very number."""
     fraction = sp.Rational(value).limit_denominator(10**4)
     return fraction if float(fraction) == value else sp.Float(value)
+
+
+def named_symbols(symbols: _Groups) -> list[list[dict[str, Any]]] | None:
+    """Give symbols as JSON has them, in their groups; None if names would not make the very same."""
+    kept = [[_named(each) for each in group] for group in symbols]
+    return kept if symbols_of_names(kept) == symbols else None
+
+
+def _named(symbol: Any) -> dict[str, Any]:
+    sp = sympy()
+    if isinstance(symbol, sp.Derivative):
+        return {"velocity": _named(symbol.args[0])}
+    if isinstance(symbol, sp.core.function.AppliedUndef):
+        return {"function": symbol.func.__name__}
+    return {"symbol": str(symbol), "assumptions": getattr(symbol, "assumptions0", {})}
+
+
+def symbols_of_names(kept: list[list[dict[str, Any]]]) -> _Groups | None:
+    """Give the symbols that `named_symbols` kept; None without SymPy, which nothing but expressions needs."""
+    try:
+        sp = sympy()
+    except InvalidInput:
+        return None
+
+    def made(each: dict[str, Any]) -> Any:
+        if "velocity" in each:
+            return made(each["velocity"]).diff(time._sympy_())
+        if "function" in each:
+            return sp.Function(str(each["function"]))(time._sympy_())
+        return sp.Symbol(str(each["symbol"]), **each["assumptions"])
+
+    first, second, parameters = (tuple(made(each) for each in group) for group in kept)
+    return first, second, parameters

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
 from visviva.generalized._flow import Flow
 from visviva.generalized._runs import Runs
 from visviva.generalized._symbolic import sympy, trees
@@ -54,6 +55,12 @@ class GeneralizedSystem(Runs, Flow):
     """
 
     __slots__ = ()
+
+    def __init__(self) -> None:
+        """Refuse: it is made of a Lagrangian or a Hamiltonian."""
+        raise InvalidInput(
+            "GeneralizedSystem", "expected visviva.Lagrangian(L, …) or visviva.Hamiltonian(H, …), got their base itself"
+        )
 
     @property
     def cyclic(self) -> list[str]:

@@ -7,10 +7,13 @@ from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
+from visviva._arrays import whole_number
 from visviva._exported import Columns, Exported, chosen_columns
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
+from visviva.generalized._saved import Saved
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
@@ -66,7 +69,7 @@ def exported(
 
 
 @known_keywords
-class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
+class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -131,7 +134,12 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
     def __init__(
         self, system: GeneralizedSystem, result: dict[str, Any], asked: dict[str, Any], member: int = 0
     ) -> None:
+        from visviva.generalized._system import GeneralizedSystem
+
+        how = "the run of a Lagrangian or a Hamiltonian"
+        made_by(self, how, system=(system, GeneralizedSystem), result=(result, dict), asked=(asked, dict))
         lengths = result["lengths"]
+        member = whole_number("member", member, 0, len(lengths) - 1)
         first = sum(lengths[:member])
         rows = slice(first, first + lengths[member])
         self.system = system
@@ -170,7 +178,7 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Shown):
         return len(self.t)
 
     def __getitem__(self, name: str) -> NDArray[np.float64]:
-        if name not in self.system.coordinates:
+        if not isinstance(name, str) or name not in self.system.coordinates:
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
         return self.position[:, self.system.coordinates.index(name)]
 

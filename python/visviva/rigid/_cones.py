@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 class ConeAngles(NamedTuple):
     """Half-angles of the cones of a free symmetric body, in radians; what `cone_angles` returns.
 

@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from visviva import _core
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
 from visviva.rigid._arguments import mapped
 
@@ -195,7 +195,4 @@ def _name(convention: object) -> str:
 
 
 def _in_body(frame: object) -> bool:
-    if frame not in ("body", "space"):
-        hint = did_you_mean(str(frame), ("body", "space"))
-        raise InvalidInput("frame", f"expected 'body' or 'space', got {frame!r}{hint}")
-    return frame == "body"
+    return one_of("frame", frame, ("body", "space")) == "body"

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
 
+@known_keywords
 class SteadyPrecession(NamedTuple):
     """The two rates at which a top precesses steadily; the fast one may be infinite.
 

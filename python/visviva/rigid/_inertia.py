@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _ROUNDING = 1e-12
 
 
+@known_keywords
 class PrincipalAxes(NamedTuple):
     """Principal moments and the axes that they belong to.
 

@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
+from visviva._keywords import known_keywords
+
 if TYPE_CHECKING:
     from numpy.typing import NDArray
 
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
 __all__ = ["TopMomenta", "effective_potential", "weight"]
 
 
+@known_keywords
 class TopMomenta(NamedTuple):
     """The two momenta of a top that stay what they are.
 

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _ORIGIN = (0.0, 0.0, 0.0)
 
 
+@known_keywords
 class ScrewAxis(NamedTuple):
     """The motion of a body at one time: a rotation about an axis and a velocity along it.
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import float_array, positive, whole_number
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._arrays import float_array, number, positive, whole_number
+from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
 from visviva.scattering._structure import angles_within, described, orbits
 
@@ -76,9 +77,7 @@ def cross_section(
     >>> vv.scattering.cross_section(vv.potentials.HardSphere(2.0), energy=1.0, angle=[0.5, 2.0, np.pi])
     array([1., 1., 1.])
     """
-    if frame not in _FRAMES:
-        hint = did_you_mean(str(frame), _FRAMES)
-        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}{hint}")
+    one_of("frame", frame, _FRAMES)
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
     limit, bound = (np.pi / 2.0, "[0, π/2]") if frame == "recoil" else (np.pi, "[0, π]")
@@ -136,7 +135,8 @@ def total_cross_section(
     if b_max is not None:
         return float(np.pi * positive("b_max", b_max) ** 2)
     if theta_min is not None:
-        return float(_core.beyond_angle(description, e, angles_within(theta_min, np.pi, "[0, π]").ravel())[0])
+        least = angles_within(number("theta_min", theta_min), np.pi, "[0, π]", "theta_min")
+        return float(_core.beyond_angle(description, e, least.ravel())[0])
     area = float(_core.beyond_angle(description, e, np.zeros(1))[0])
     radius = _core.scattering_range(description)
     if not np.isfinite(radius):
@@ -290,7 +290,8 @@ def collision_integral(
     temperatures = float_array("temperature", temperature, None)
     if (wrong := temperatures <= 0.0).any():
         raise InvalidInput("temperature", f"expected positive numbers, got {temperatures[wrong][0]}")
-    pair = tuple(whole_number("orders", order, 1, 20) for order in orders)
+    listed = orders if isinstance(orders, Iterable) else [orders]
+    pair = tuple(whole_number("orders", order, 1, 20) for order in listed)
     if len(pair) != 2:
         raise InvalidInput("orders", f"expected two numbers, l and s, got {orders!r}")
     found = _core.collision_integrals(

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import IntEnum
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, NoReturn
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
+from visviva._made_by import refuse_value
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.potentials import Potential
@@ -41,6 +42,10 @@ class DeflectionStatus(IntEnum):
     SCATTERED = 0
     CAPTURED = 1
     NEAR_ORBITING = 2
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        refuse_value(cls, value)
 
 
 @known_keywords

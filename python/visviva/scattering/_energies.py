@@ -10,7 +10,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import positive_array
 from visviva._html import Record
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
 from visviva.scattering._arguments import angles, encounter, flat, kinematic
 
@@ -172,9 +172,7 @@ def kinematic_factor(
     >>> vv.scattering.kinematic_factor(np.pi, mass_ratio=4.001506179 / 196.923232301).round(7)  # alphas on gold
     np.float64(0.9219247)
     """
-    if branch not in ("fast", "slow"):
-        hint = did_you_mean(str(branch), ("fast", "slow"))
-        raise InvalidInput("branch", f"expected one of fast, slow, got {branch!r}{hint}")
+    one_of("branch", branch, ("fast", "slow"))
     values = angles("lab_angle", lab_angle)
     return kinematic(branch, "lab_angle", values, mass_ratio, q_value, beam_energy, products)
 

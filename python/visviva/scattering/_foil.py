@@ -11,7 +11,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import number, positive, positive_array, whole_number
 from visviva._html import Record
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import did_you_mean, known_keywords, one_of
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
@@ -404,8 +404,6 @@ class Foil(Record):
     ) -> Bombardment:
         energy = number("beam_energy", beam_energy)
         lowest = energy * 1e-3 if lowest_energy is None else number("lowest_energy", lowest_energy)
-        if collisions not in ("multiple", "single"):
-            hint = did_you_mean(str(collisions), ("multiple", "single"))
-            raise InvalidInput("collisions", f"expected one of multiple, single, got {collisions!r}{hint}")
+        kind = one_of("collisions", collisions, ("multiple", "single"))
         forced = None if forced_angle is None else number("forced_angle", forced_angle)
-        return Bombardment(self, ion_of(ion), energy, lowest, number("incidence", incidence), str(collisions), forced)
+        return Bombardment(self, ion_of(ion), energy, lowest, number("incidence", incidence), kind, forced)

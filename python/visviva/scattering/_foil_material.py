@@ -197,7 +197,7 @@ def material_of(given: object) -> Material:
         hint = did_you_mean(given, _MATERIALS) if isinstance(given, str) else ""
         known = ", ".join(_MATERIALS)
         for name, (parts, *_) in _MATERIALS.items():
-            if [given] == list(parts):
+            if isinstance(given, str) and [given] == list(parts):
                 hint = f"; did you mean {name!r}?"
         raise InvalidInput("material", f"expected a Material or one of {known}, got {given!r}{hint}")
     parts, density, excitation = _MATERIALS[given]

@@ -9,10 +9,12 @@ from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
 import numpy as np
 
 from visviva._html import Record, Sheet, Shown
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, one_of
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_foil
 from visviva.scattering._of_events import is_zero, merged
+from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,6 +42,7 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
 _FATES = ("transmitted", "reflected", "stopped", "missed")
 
 
+@known_keywords
 class Fraction(NamedTuple, Generic[_T]):
     """A part of all ions, and its standard error.
 
@@ -149,8 +152,9 @@ class FoilTally(Record):  # noqa: PLW1641 â€” it holds arrays, which have no has
     n_events: int
 
     def __post_init__(self) -> None:
-        for array in (self.edges, self.sums):
-            array.setflags(write=False)
+        arrays = {"edges": self.edges, "sums": self.sums}
+        made_by(self, "a run of a Foil", **{name: (array, np.ndarray) for name, array in arrays.items()})
+        read_only(*arrays.values())
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -311,7 +315,8 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
     table_error: float
 
     def __post_init__(self) -> None:
-        self.sums.setflags(write=False)
+        made_by(self, "a run of a Foil", sums=(self.sums, np.ndarray))
+        read_only(self.sums)
 
     def __setstate__(self, state: dict[str, Any]) -> None:
         self.__dict__.update(state)
@@ -397,8 +402,7 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
         >>> out.fraction("transmitted")
         Fraction(value=1.0, error=0.0)
         """
-        if fate not in _FATES[:3]:
-            raise InvalidInput("fate", f"expected one of {', '.join(_FATES[:3])}, got {fate!r}")
+        one_of("fate", fate, _FATES[:3])
         weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
         return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
 

@@ -10,6 +10,7 @@ import numpy as np
 from visviva._exported import needed
 from visviva._html import Record
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._of_events import OfEvents
@@ -76,6 +77,9 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     by_stratum: NDArray[np.uint64] | None = None
 
     def __post_init__(self) -> None:
+        arrays = {"flow": self.flow} | ({} if self.by_stratum is None else {"by_stratum": self.by_stratum})
+        each = {name: (array, np.ndarray) for name, array in arrays.items()}
+        made_by(self, "visviva.scattering.monte_carlo", edges=(self.edges, tuple), **each)
         read_only(*self.edges, self.flow, self.by_stratum)
 
     @property

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, cast, overload
 
 import numpy as np
 
+from visviva._files import write
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
@@ -281,7 +282,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         Parameters
         ----------
         path : path-like
-            Written exactly as given.
+            Written exactly as given; the file appears whole or not at all.
 
         Raises
         ------
@@ -301,7 +302,6 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         >>> vv.scattering.MonteCarlo.load(path) == run
         True
         """
-        path = path_text("path", path)
         beam = self.beam
         energy = beam.beam_energy
         lines = energy if isinstance(energy, Spectrum) else None
@@ -335,9 +335,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
                 arrays |= {f"{index}/edges{axis}": edges for axis, edges in enumerate(tally.edges)}
             if tally.by_stratum is not None:
                 arrays[f"{index}/by_stratum"] = tally.by_stratum
-        text = json.dumps(header, default=lambda value: value.tolist()).encode()
-        with open(path, "wb") as file:
-            np.savez(file, header=np.frombuffer(text, dtype=np.uint8), **arrays)
+        write(path, header, arrays)
 
     @staticmethod
     @known_keywords

@@ -8,7 +8,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import positive
-from visviva._keywords import did_you_mean, known_keywords
+from visviva._keywords import known_keywords, one_of
 from visviva.errors import InvalidInput
 from visviva.potentials import Coulomb
 from visviva.scattering._arguments import evaluate
@@ -188,9 +188,7 @@ def rutherford_cross_section(
     ...                                        mass_ratio=1.0)
     array([2.02990831])
     """
-    if frame not in _FRAMES:
-        hint = did_you_mean(str(frame), _FRAMES)
-        raise InvalidInput("frame", f"expected one of {', '.join(_FRAMES)}, got {frame!r}{hint}")
+    one_of("frame", frame, _FRAMES)
     if frame == "lab" and mass_ratio is None:
         raise InvalidInput("mass_ratio", "expected m1/m2, which the laboratory frame needs, got None")
     half = _half_distance(potential, energy)

@@ -303,9 +303,9 @@ def described(potential: object) -> dict[str, object]:
     return potential._to_core()
 
 
-def angles_within(angle: object, limit: float, bound: str) -> NDArray[np.float64]:
+def angles_within(angle: object, limit: float, bound: str, name: str = "angle") -> NDArray[np.float64]:
     """Check angles from 0 to a limit."""
-    angles = float_array("angle", angle, None)
+    angles = float_array(name, angle, None)
     if (wrong := (angles < 0.0) | (angles > limit)).any():
-        raise InvalidInput("angle", f"expected numbers in {bound}, got {angles[wrong][0]}")
+        raise InvalidInput(name, f"expected numbers in {bound}, got {angles[wrong][0]}")
     return angles

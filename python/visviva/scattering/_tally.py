@@ -11,6 +11,7 @@ from visviva import _core
 from visviva._exported import needed
 from visviva._html import Record
 from visviva._keywords import known_keywords
+from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
@@ -33,6 +34,7 @@ __all__ = ["CrossSection", "Tally"]
 _ANGLES = ("cm_angle", "lab_angle", "recoil_angle")
 
 
+@known_keywords
 class CrossSection(NamedTuple):
     """A cross section by bin and its standard error; NaN in a bin that the beam does not reach.
 
@@ -121,7 +123,10 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
     by_stratum: NDArray[np.uint64] | None = None
 
     def __post_init__(self) -> None:
-        read_only(self.edges, self.counts, self.reachable, self.by_stratum)
+        arrays = {"edges": self.edges, "counts": self.counts, "reachable": self.reachable}
+        arrays |= {} if self.by_stratum is None else {"by_stratum": self.by_stratum}
+        made_by(self, "visviva.scattering.monte_carlo", **{name: (array, np.ndarray) for name, array in arrays.items()})
+        read_only(*arrays.values())
 
     def values(self) -> NDArray[np.float64]:
         """Counts as float64, exact up to 2⁵³; with `importance` Σ w n over the strata, w their weights.
