@@ -81,7 +81,7 @@ def test_one_that_cannot_be_followed_does_not_end_well() -> None:
 
 
 def test_events_want_a_step() -> None:
-    with pytest.raises(vv.InvalidInput, match=r"moved in equal steps.*with dt"):
+    with pytest.raises(vv.InvalidInput, match=r"dt: .*moved in equal steps.*such as dt="):
         top().run(t=1.0, events=[vv.events.plane([0.0, 0.0, 0.0], [0.0, 0.0, 1.0])])
 
 

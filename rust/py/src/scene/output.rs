@@ -260,8 +260,8 @@ fn failure(outcome: &Outcome, chosen: bool) -> Option<Error> {
             time,
         }),
         Ending::NotFinite => Some(Error::Convergence {
-            message: "the state became infinite or undefined; a smaller step, a softening or an adaptive \
-                      method may pass"
+            message: "after the last output the state became infinite or undefined; a smaller step, a softening or an \
+                      adaptive method may pass"
                 .to_owned(),
             time,
         }),

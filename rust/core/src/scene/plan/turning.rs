@@ -108,7 +108,16 @@ pub(super) fn check(
 ) -> Result<()> {
     let Some(bodies) = &scene.rigid else { return Ok(()) };
     let looking = looking(bodies, forces);
-    if automatic || !serves(method, looking.is_some()) {
+    if automatic {
+        let best = best(looking.is_some());
+        let message = format!(
+            "bodies that torques turn are moved in equal steps, whose length is found by trial only without events, max_step \
+             and time_transformation: expected a step, such as dt={} (of {best}, which is then taken), got None",
+            suggested_step(bodies)
+        );
+        return Err(Error::invalid("dt", message));
+    }
+    if !serves(method, looking.is_some()) {
         let names = registry::methods_for(true)
             .filter(|method| serves(method, looking.is_some()))
             .map(|method| method.name);
