@@ -19,8 +19,6 @@ __all__ = ["TIME", "Progress", "Report", "Span", "callback"]
 
 _SHARE = "{percentage:3.0f} %|{bar}| {elapsed}, {remaining} left"
 _TIME = "{percentage:3.0f} %|{bar}| {desc}{elapsed}, {remaining} left"
-# Of a run of which nothing is known before its end.
-_ALONE = "runs for {elapsed}"
 
 Report: TypeAlias = Callable[[int, int], object]
 Progress: TypeAlias = bool | Report
@@ -105,7 +103,7 @@ def _bar(unit: str, of: Span | None) -> Iterator[Report]:
         nonlocal bar
         done, whole = _measured(of, count, total)
         if bar is None:
-            how = {"unit": f" {unit}", "unit_scale": True} if unit else {"bar_format": _ALONE if total == 1 else _SHARE}
+            how = {"unit": f" {unit}", "unit_scale": True} if unit else {"bar_format": _SHARE}
             bar = tqdm(total=whole, **({"bar_format": _TIME} if unit == TIME else how))
         bar.total = whole
         if unit == TIME and of is not None:
@@ -130,10 +128,7 @@ def _line(unit: str, of: Span | None) -> Iterator[Report]:
         passed = max(time.perf_counter() - start, 1e-9)
         done, whole = _measured(of, count, total)
         rate = done / passed
-        if not unit and total == 1 and not count:
-            share = f"runs for {passed:.0f} s"
-        else:
-            share = f"{100 * count // total} %" if total else f"{count}"
+        share = f"{100 * count // total} %" if total else f"{count}"
         speed = f", {_scaled(rate)} {unit}/s" if unit else ""
         if of is not None:
             shown = f"{_at(of, done)}, {rate:.3g} a second" if unit == TIME else f"{done:.3g} of {whole:g}{speed}"

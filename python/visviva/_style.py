@@ -53,7 +53,7 @@ _WIDE = 0.5
 
 
 @known_keywords
-def plot_style() -> dict[str, Any]:
+def plot_style() -> dict[str, object]:
     """Give the settings of matplotlib by which a figure of one's own looks like those of the package.
 
     Its colors are Okabe and Ito's, which color-blind readers tell apart; after them lines differ by their dashes.
@@ -81,15 +81,15 @@ def plot_style() -> dict[str, Any]:
     '#0072B2'
     >>> plt.close(figure)
     """
+    return {"axes.prop_cycle": _cycle(), "axes.spines.top": False, "axes.spines.right": False}
+
+
+def _cycle() -> Any:
     try:
         from cycler import cycler
     except ImportError as error:
         raise without_matplotlib() from error
-    return {
-        "axes.prop_cycle": cycler(linestyle=LINES) * cycler(color=COLORS),
-        "axes.spines.top": False,
-        "axes.spines.right": False,
-    }
+    return cycler(linestyle=LINES) * cycler(color=COLORS)
 
 
 def without_matplotlib() -> InvalidInput:
@@ -99,7 +99,7 @@ def without_matplotlib() -> InvalidInput:
 
 def dress(axes: Axes) -> None:
     """Give new axes the colors and the frame of all pictures."""
-    axes.set_prop_cycle(plot_style()["axes.prop_cycle"])
+    axes.set_prop_cycle(_cycle())
     if not hasattr(axes, "get_zlim"):
         axes.spines[["top", "right"]].set_visible(False)
 

@@ -85,8 +85,8 @@ class NumbaFunction(Protocol):
     Examples
     --------
     >>> import visviva as vv
-    >>> sorted(vv.typing.NumbaFunction.__annotations__)
-    ['native_name']
+    >>> def address_of(function: vv.typing.NumbaFunction) -> int:
+    ...     return function.address
     """
 
     native_name: str
@@ -109,6 +109,7 @@ class Executor(Protocol):
     >>> import visviva as vv
     >>> copies = vv.problems.figure_eight().scene.ensemble(mass=[[1.0, 1.0, 1.0], [1.0, 1.0, 1.1]])
     >>> def run_by(executor: vv.typing.Executor) -> vv.EnsembleTrajectory:
+    ...     first = executor.submit(len, copies)
     ...     return copies.run(t=1.0, executor=executor)
     >>> with ThreadPoolExecutor() as pool:
     ...     print(run_by(pool))
@@ -280,7 +281,7 @@ class RunSettings(TypedDict, total=False):
     ----------
     method : str
     dt, rtol : float
-        The step, or the relative tolerance.
+        The step, in the units of the scene, or the relative tolerance, without dimension.
 
     Examples
     --------

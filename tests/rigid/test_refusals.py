@@ -314,8 +314,9 @@ FORCES: dict[str, tuple[Callable[..., Any], dict[str, Argument]]] = {
     ),
 }
 
-# What results are made of; nobody makes them by hand.
+# What results are made of, and what the forces on bodies have in common; nobody makes them by hand.
 RESULTS = {
+    "BodyForce",
     "ConeAngles",
     "FreeRotation",
     "Nutation",
@@ -340,7 +341,7 @@ def cases() -> Iterator[Any]:
 def test_the_table_is_whole() -> None:
     for name in vv.rigid.__all__:
         part = getattr(vv.rigid, name)
-        if isinstance(part, type):
+        if isinstance(part, type) and part is not vv.rigid.BodyForce:  # its methods are asked of the forces
             methods = {f"{name}.{m}" for m, f in vars(part).items() if not m.startswith("_") and callable(f)}
             assert methods <= CALLS.keys(), methods - CALLS.keys()
         if name not in RESULTS:

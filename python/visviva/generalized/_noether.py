@@ -124,7 +124,7 @@ class NoetherSymmetry(Record):
         Returns
         -------
         float or ndarray, shape (T,)
-            p ξ − (p q̇ − L) τ − F, with F = 0 at the start of the system where it was not given.
+            p ξ − (p q̇ − L) τ − F, in the units of the system, with F = 0 at its start where it was not given.
 
         Raises
         ------

@@ -226,10 +226,10 @@ class Runs(States):
         threads = None if threads is None else whole_number("threads", threads)
         if progress is False:
             return self._model.run(asked, states, parameters, threads, None)
-        from visviva._progress import callback
+        from visviva._progress import TIME, callback
 
-        # A single run is counted when it is over.
-        of = ("copies", (0.0, float(len(states)))) if len(states) > 1 else ("", None)
+        alone = (TIME, asked["span"])
+        of = alone if len(states) == 1 else ("copies", (0.0, float(len(states))))
         with callback(progress, *of) as report:
             return self._model.run(asked, states, parameters, threads, report)
 

@@ -105,8 +105,8 @@ class Saved:
         >>> import pathlib, tempfile, visviva as vv
         >>> path = pathlib.Path(tempfile.mkdtemp()) / "run.npz"
         >>> vv.systems.pendulum(position=[0.5]).run(t=1.0).save(path)
-        >>> vv.load(path).final.run(t=2.0).t
-        array([1., 2.])
+        >>> vv.load(path).final.run(t=2.0).t.tolist()
+        [1.0, 2.0]
         """
         run: Any = self
         ensemble = hasattr(run, "ensemble")

@@ -219,7 +219,7 @@ class FoilTally(Record):  # noqa: PLW1641 â€” it holds arrays, which have no has
         return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
 
     def fraction(self) -> Fraction[NDArray[np.float64]]:
-        """As a part of all ions that came, bin by bin, with its standard error.
+        """As a part of all ions that came, without dimension, with its standard error: both of shape (bins,).
 
         Examples
         --------
@@ -384,7 +384,7 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
         return int(self.sums[3, 0])
 
     def fraction(self, fate: Literal["transmitted", "reflected", "stopped"]) -> Fraction[float]:
-        """What part of the ions was transmitted, reflected or stopped, with its standard error.
+        """What part of the ions was transmitted, reflected or stopped, without dimension, with its standard error.
 
         Parameters
         ----------

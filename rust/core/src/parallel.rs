@@ -56,6 +56,11 @@ impl Control {
     pub fn count(&self, done: u64) {
         let _: u64 = self.done.fetch_add(done, Ordering::Relaxed);
     }
+    /// Says how much of a whole that is one piece of work is done.
+    fn reach(&self, share: f64) {
+        let total = self.total.load(Ordering::Relaxed);
+        self.done.store((share * total as f64) as u64, Ordering::Relaxed);
+    }
     /// Says how much more there is to do, where work is begun part by part.
     pub fn add_total(&self, total: u64) {
         if self.whole.load(Ordering::Relaxed) {
@@ -132,6 +137,14 @@ impl<'a> Ticker<'a> {
     pub fn advance(&mut self, done: u64) {
         if !self.control.whole.load(Ordering::Relaxed) {
             self.control.count(done);
+        }
+    }
+
+    /// Says which share of one piece of work is done, where that is the whole that is counted.
+    #[inline]
+    pub fn reach(&mut self, share: f64) {
+        if self.control.whole.load(Ordering::Relaxed) {
+            self.control.reach(share);
         }
     }
 

@@ -221,6 +221,7 @@ fn steps<T: Trial<f64>>(
         if stopped.is_some() {
             return Ok(Ending::Stopped);
         }
+        ticker.reach((to - t0) / (end - t0));
         if outcome.finished {
             return Ok(Ending::Finished);
         }

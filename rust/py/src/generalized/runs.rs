@@ -138,6 +138,9 @@ pub(super) fn run<'py>(
     let (numbers, count) = (model.numbers(), model.source.parameters);
     let several = if together(model, &request) { abreast(members, threads) } else { 1 };
     let worked = compute(py, members as u64, progress, |ticker| {
+        if members == 1 {
+            ticker.control().count_whole(SHARES);
+        }
         for_chunks(threads, members.div_ceil(several), ticker, |chunk, ticker| {
             let last = (chunk * several + several).min(members);
             let own_of = |all: &[f64], width: usize| {
@@ -150,6 +153,9 @@ pub(super) fn run<'py>(
             }
             let outcome = solve(model, &request, (&states, &own), ticker);
             ticker.advance(1);
+            if outcome.as_ref().is_ok_and(|solution| solution.ending == Ending::Finished) {
+                ticker.reach(1.0);
+            }
             Ok(vec![outcome?])
         })
     })?;
@@ -165,6 +171,9 @@ pub(super) fn run<'py>(
     result.set_item("interrupted", interrupted)?;
     Ok(result)
 }
+
+/// Into how many parts of its time the progress of a single run is counted.
+const SHARES: u64 = 10_000;
 
 /// The most copies that are run side by side: lanes are taken up by those that wait.
 const ABREAST: usize = 64;
