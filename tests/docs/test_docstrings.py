@@ -82,7 +82,7 @@ UNITS = re.compile(
 )
 #: Modules of formulas and methods, by how their names begin: what they have is published somewhere.
 FORMULAS = (
-    "_audit", "_custom_potential", "_event_table", "_field_problems", "_frames", "_from_elements",
+    "_audit", "_custom_potential", "_drag_throw", "_event_table", "_field_problems", "_frames", "_from_elements",
     "advice", "audit", "body_turning", "collision_table", "collisions", "comparison", "conservation", "datasets",
     "drag", "expression_force", "forces", "generalized", "initial_value", "invariants", "orbits",
     "potentials", "problems", "rigid", "scattering", "systems", "units",
