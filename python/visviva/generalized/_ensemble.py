@@ -15,11 +15,12 @@ from visviva._made_by import made_by
 from visviva._text import count
 from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import Interrupted, InvalidInput
+from visviva.generalized._columns import StateColumns, exported
 from visviva.generalized._resolved import judge
 from visviva.generalized._runs import RTOL
 from visviva.generalized._saved import Saved
 from visviva.generalized._source import _label
-from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
+from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
 
@@ -189,7 +190,7 @@ class GeneralizedEnsemble(Shown):
 
 
 @known_keywords
-class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
+class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved, Shown):
     """The motions of an ensemble.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -266,6 +267,10 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Show
         member = _which(member, len(self))
         return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
 
+    @property
+    def _whose(self) -> GeneralizedSystem:
+        return self.ensemble.system
+
     def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
         if self._columns is None:
             members, times, numbers = self._states.shape
@@ -282,57 +287,6 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Show
         made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
         status = (("copy",), self.status.astype(np.int8))
         return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
-
-    @property
-    def _n(self) -> int:
-        return len(self.ensemble.system.coordinates)
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Coordinates, shape (B, T, n), in the units of the system."""
-        return self._states[..., : self._n]
-
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (B, T, n), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.velocity.shape
-        (2, 2, 1)
-        """
-        lagrangian = self.ensemble.system._source.kind == "lagrangian"
-        return self._states[..., self._n :] if lagrangian else self._column(0, self._n)
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Momenta, shape (B, T, n), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.momentum.shape
-        (2, 2, 1)
-        """
-        hamiltonian = self.ensemble.system._source.kind == "hamiltonian"
-        return self._states[..., self._n :] if hamiltonian else self._column(0, self._n)
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Jacobi's integral, or H, shape (B, T), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.energy.round(6)
-        array([[-9.760991, -9.760991],
-               [-9.614453, -9.614453]])
-        """
-        return self._column(self._n, self._n + 1)[..., 0]
 
     @property
     def events(self) -> GeneralizedEventTable:
@@ -354,20 +308,6 @@ class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Show
 
         system, looked_for = self.ensemble.system, self._asked["looked_for"]
         return found_events(system, self._result, looked_for, self.ensemble._parameters)
-
-    @property
-    def reactions(self) -> NDArray[np.float64]:
-        """Multipliers of the constraints, shape (B, T, c), in units of energy over those of the constraint.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.atwood().ensemble(parameters={"m1": [2.0, 3.0]}).run(t=0.2)
-        >>> out.reactions[:, 0].round(6)
-        array([[-13.08 ],
-               [-14.715]])
-        """
-        return self._column(self._n + 1, None)
 
     def plot(
         self,
