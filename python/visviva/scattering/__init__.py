@@ -22,13 +22,11 @@ from visviva.scattering._cross_sections import (
 )
 from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
 from visviva.scattering._energies import (
-    Moderation,
     energy_kept,
     energy_transfer,
     greatest_lab_angle,
     greatest_recoil_angle,
     kinematic_factor,
-    moderation,
     threshold_energy,
     two_branch_energy,
 )
@@ -47,6 +45,7 @@ from visviva.scattering._kinematics import (
     recoil_angle,
     recoil_jacobian,
 )
+from visviva.scattering._moderation import Moderation, moderation
 from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (
