@@ -33,7 +33,8 @@ from visviva.scattering._energies import (
 from visviva.scattering._events import scattering_events
 from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
-from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
+from visviva.scattering._foil_result import Bombardment, FoilResult
+from visviva.scattering._foil_tally import FoilTally, Fraction
 from visviva.scattering._importance import LargeAngles, Strata
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._kinematics import (

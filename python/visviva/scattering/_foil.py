@@ -17,7 +17,8 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.potentials import Potential
 from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
-from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult, FoilTally
+from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult
+from visviva.scattering._foil_tally import FoilTally
 from visviva.scattering._monte_carlo import _which
 
 if TYPE_CHECKING:
