@@ -69,7 +69,7 @@ _HOME = {
     "SampledDrag": "forces",
     "Scene": "scene",
     "Spring": "forces",
-    "Stats": "recorded",
+    "Stats": "stats",
     "Status": "status",
     "Trajectory": "trajectory",
     "UniformElectricField": "forces",
@@ -263,13 +263,13 @@ if TYPE_CHECKING:
     from visviva.io import load
     from visviva.particles import Particles
     from visviva.plan import Cost, Plan
-    from visviva.recorded import Stats
     from visviva.rigid_bodies import RigidBodies
     from visviva.rigid_body import RigidBody
     from visviva.rigid_forces import AppliedTorque, CompiledTorque, RotationalDrag
     from visviva.rigid_springs import AttachedSpring
     from visviva.saved_runs import resume
     from visviva.scene import Scene
+    from visviva.stats import Stats
     from visviva.status import Status
     from visviva.trajectory import Trajectory
 

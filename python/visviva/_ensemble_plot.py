@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva.ensemble_trajectory import EnsembleTrajectory
-    from visviva.generalized._ensemble import GeneralizedEnsembleTrajectory
+    from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
 
 __all__ = ["plot_ensemble", "plot_generalized"]
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from visviva._event import Event, made
 from visviva._names import body_index
 from visviva.errors import InvalidInput
-from visviva.events import Event, _check_two, _made, apsis, distance, energy, function, plane
+from visviva.events import _check_two, apsis, distance, energy, function, plane
 
 __all__ = ["described", "from_description", "resolved", "to_core"]
 
@@ -77,6 +78,6 @@ def from_description(kept: dict[str, Any]) -> Event:
         case "energy":
             return energy(kept["value"], **how)
         case "function":
-            return _made("function", name=str(kept["name"]), **how)
+            return made("function", name=str(kept["name"]), **how)
         case kind:
             raise InvalidInput("events", f"expected an event that visviva knows, got the kind {kind!r}")

@@ -12,14 +12,13 @@ step and turns, it is followed down, so that two zeros in one step are found.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._event import Event, made
 from visviva._event_table import EventTable
-from visviva._html import Record
 from visviva._keywords import check_call, known_keywords
 from visviva.errors import InvalidInput
 
@@ -32,63 +31,6 @@ if TYPE_CHECKING:
     from visviva.typing import SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
-
-#: Of runs in generalized coordinates alone.
-GENERALIZED = ("coordinate", "expression")
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, repr=False)
-class Event(Record):
-    """Something to look for. Made by the functions of `visviva.events`.
-
-    Attributes
-    ----------
-    kind : str
-    parameters : tuple of (str, object)
-    direction : int
-        1 for zeros passed upwards in time (also in a run backwards), -1 downwards, 0 both.
-    terminal : int
-        The run ends with the zero of this number; 0 if it does not.
-
-    References
-    ----------
-    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> vv.events.apsis(1, 0, direction=1).kind
-    'apsis'
-    """
-
-    kind: str
-    parameters: tuple[tuple[str, object], ...]
-    direction: int
-    terminal: int
-
-    def _to_core(self) -> dict[str, Any]:
-        told = dict(self.parameters)
-        if self.kind in GENERALIZED:
-            raise InvalidInput(
-                "events",
-                f"{self.kind} is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
-                "plane, and functions f(t, position, velocity)",
-            )
-        if "name" in told:
-            raise InvalidInput("events", f"of the function {told['name']!r} a run keeps its name alone; give it again")
-        return {
-            "kind": self.kind,
-            **told,
-            "direction": float(self.direction),
-            "last": self.terminal or None,
-        }
-
-
-def _made(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
-    way = number("direction", direction)
-    last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
-    return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)
 
 
 def _body(name: str, value: object) -> int | str:
@@ -145,7 +87,7 @@ def distance(
     length = positive("below", below)
     i, j = _body("first", first), _body("second", second)
     _check_two("second", i, j)
-    return _made("distance", direction, terminal, first=i, second=j, distance=length)
+    return made("distance", direction, terminal, first=i, second=j, distance=length)
 
 
 @known_keywords
@@ -188,7 +130,7 @@ def plane(
     through, perpendicular = _point("point", point), _point("normal", normal)
     if not any(perpendicular):
         raise InvalidInput("normal", "expected a vector other than 0, got 0.0 in every component")
-    return _made("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
+    return made("plane", direction, terminal, point=through, normal=perpendicular, body=_body("body", body))
 
 
 @known_keywords
@@ -231,7 +173,7 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
         _check_two("about", whose, focus)
     else:
         focus = _point("about", about)
-    return _made("apsis", direction, terminal, body=whose, about=focus)
+    return made("apsis", direction, terminal, body=whose, about=focus)
 
 
 @known_keywords
@@ -273,7 +215,7 @@ def coordinate(
         raise InvalidInput("name", f"expected the name of a coordinate, got {type(name).__name__}")
     from visviva.generalized._source import _label
 
-    return _made("coordinate", direction, terminal, coordinate=_label(name), value=number("value", value))
+    return made("coordinate", direction, terminal, coordinate=_label(name), value=number("value", value))
 
 
 @known_keywords
@@ -313,7 +255,7 @@ def expression(
     if not callable(expression) and not hasattr(expression, "free_symbols"):
         kind = type(expression).__name__
         raise InvalidInput("expression", f"expected an expression of SymPy or a function f(q, v, t), got {kind}")
-    return _made("expression", direction, terminal, expression=expression)
+    return made("expression", direction, terminal, expression=expression)
 
 
 @known_keywords
@@ -349,7 +291,7 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
     >>> vv.events.energy(-0.5).parameters
     (('value', -0.5),)
     """
-    return _made("energy", direction, terminal, value=number("value", value))
+    return made("energy", direction, terminal, value=number("value", value))
 
 
 @known_keywords
@@ -397,7 +339,7 @@ def function(
     if not callable(call):
         raise InvalidInput("call", f"expected a function f(t, position, velocity), got {type(call).__name__}")
     check_call("call", call, ("t", "position", "velocity"))
-    return _made("function", direction, terminal, function=call)
+    return made("function", direction, terminal, function=call)
 
 
 def __dir__() -> list[str]:

@@ -1,4 +1,4 @@
-"""What a run recorded and what it cost, alike for a trajectory and for an ensemble of them.
+"""What a run recorded and found, alike for a trajectory and for an ensemble of them.
 
 Results are read-only, arrays and attributes alike: what is derived from them on first use stays true. A copy of an
 array (``out.position.copy()``) may be changed.
@@ -7,19 +7,20 @@ array (``out.position.copy()``) may be changed.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from visviva import _core
 from visviva._exported import Columns, Exported, chosen_columns, labels
-from visviva._html import Record, Sheet, Shown
+from visviva._html import Sheet, Shown
 from visviva._keywords import frozen, known_keywords
 from visviva._names import body_index
 from visviva._text import count
+from visviva._totals import Totals
 from visviva.errors import InvalidInput
 from visviva.plan import Plan, told
+from visviva.stats import Stats
 from visviva.typing import ColumnName
 
 if TYPE_CHECKING:
@@ -35,46 +36,7 @@ if TYPE_CHECKING:
     from visviva.runnable import Runnable
     from visviva.scene import Scene
 
-
-__all__ = ["Recorded", "Stats"]
-
-
-@known_keywords
-@dataclass(frozen=True, slots=True, repr=False)
-class Stats(Record):
-    """What a run cost, and what ran.
-
-    Attributes
-    ----------
-    steps, rejected, evaluations : int
-        Steps taken and rejected, and force evaluations.
-    seconds : float
-        Of the core alone, in seconds.
-    threads : int
-    simd : str
-        The tier: ``"portable"``, ``"avx2"`` or ``"avx512"``.
-    method : str
-        What ran: where ``"auto"`` was asked for, what it chose.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> stats = vv.problems.figure_eight().scene.run(t=1.0, method="leapfrog", dt=0.01).stats
-    >>> stats.method, stats.steps, stats.rejected
-    ('leapfrog', 100, 0)
-    """
-
-    steps: int
-    rejected: int
-    evaluations: int
-    seconds: float
-    threads: int
-    simd: str
-    method: str
-
-    @classmethod
-    def _from_core(cls, stats: dict[str, Any]) -> Stats:
-        return cls(**{name: stats[name] for name in cls.__slots__})
+__all__ = ["Recorded"]
 
 
 # The axes of a column after time: what it is over, and the numbers of each.
@@ -103,7 +65,7 @@ _ELSEWHERE = {
 
 @known_keywords
 @frozen
-class Recorded(Exported[ColumnName], Shown, ABC):
+class Recorded(Exported[ColumnName], Totals, Shown, ABC):
     """Base of `Trajectory` and `EnsembleTrajectory`: a view of the core's answer, column by column."""
 
     __slots__ = ("_columns", "_result", "t")
@@ -197,100 +159,6 @@ class Recorded(Exported[ColumnName], Shown, ABC):
         (6, 1, 3)
         """
         return self._column("angular_velocity")
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Total energy, shape (T,), or (B, T), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.energy.round(12)
-        array([-0.125, -0.125])
-        """
-        return self._column("energy")
-
-    @property
-    def kinetic_energy(self) -> NDArray[np.float64]:
-        """Kinetic energy, shape (T,), or (B, T), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.kinetic_energy.round(12)
-        array([0.375     , 0.13434051])
-        """
-        return self._column("kinetic_energy")
-
-    @property
-    def potential_energy(self) -> NDArray[np.float64]:
-        """Potential energy of all forces, shape (T,), or (B, T), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.potential_energy.round(12)
-        array([-0.5       , -0.25934051])
-        """
-        return self._column("potential_energy")
-
-    @property
-    def virial(self) -> NDArray[np.float64]:
-        """The virial Σ r·F, shape (T,), or (B, T), an energy in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.virial.round(12)  # of gravity the potential energy
-        array([-0.5       , -0.25934051])
-        """
-        return self._column("virial")
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Total momentum, shape (T, 3), or (B, T, 3), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.momentum.round(12) + 0.0
-        array([[0., 0., 0.],
-               [0., 0., 0.]])
-        """
-        return self._column("momentum")
-
-    @property
-    def angular_momentum(self) -> NDArray[np.float64]:
-        """Total angular momentum about the origin, shape (T, 3), or (B, T, 3), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.angular_momentum.round(12) + 0.0
-        array([[0.        , 0.        , 0.21650635],
-               [0.        , 0.        , 0.21650635]])
-        """
-        return self._column("angular_momentum")
-
-    @property
-    def center_of_mass(self) -> NDArray[np.float64]:
-        """Centre of mass, shape (T, 3), or (B, T, 3), in the units of the scene.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.problems.kepler(e=0.5).scene.run(t=[0.0, 1.0])
-        >>> out.center_of_mass.round(12) + 0.0
-        array([[0., 0., 0.],
-               [0., 0., 0.]])
-        """
-        return self._column("center_of_mass")
 
     def body(self, body: str | int) -> BodyMotion:
         """The motion of one body: views of its rows of the columns; ``out["Jupiter"]`` is ``out.body("Jupiter")``.

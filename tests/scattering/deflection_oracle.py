@@ -19,6 +19,26 @@ EXPONENTIALS = {
     "kr_c": [("0.190945", "0.278544"), ("0.473674", "0.637174"), ("0.335381", "1.919249")],
 }
 
+#: Potentials that are compared: the name of the class and its parameters.
+CASES: list[tuple[object, ...]] = [
+    ("ScreenedCoulomb", 1.0, 1.0, "zbl"),
+    ("ScreenedCoulomb", 1.0, 1.0, "moliere"),
+    ("ScreenedCoulomb", 1.0, 1.0, "kr_c"),
+    ("ScreenedCoulomb", 1.0, 1.0, "lenz_jensen"),
+    ("LennardJones", 1.0, 1.0),
+    ("Mie", 1.0, 1.0, 9.0, 6.0),
+    ("Morse", 1.0, 1.3, 1.5),
+    ("Yukawa", 1.0, 1.0),
+    ("Yukawa", -1.0, 1.0),
+    ("PowerLaw", 1.0, 3.0),
+    ("PowerLaw", -1.0, 1.5),
+    ("PowerLaw", -1.0, 6.0),
+    ("Plummer", 1.0, 1.0),
+    ("Plummer", -1.0, 1.0),
+    ("Buckingham", 1000.0, 3.0, 5.0),
+    ("SoftSphere", 3.0, 1.0, 2.5),
+]
+
 
 def number(x: object) -> mp.mpf:
     """A float is itself."""

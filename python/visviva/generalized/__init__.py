@@ -12,7 +12,8 @@ from visviva.generalized._action import PathIntegral
 from visviva.generalized._analysis import Linearization, PoincareSection
 from visviva.generalized._canonical import CanonicalTest
 from visviva.generalized._discrete import DiscreteAction
-from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
+from visviva.generalized._ensemble import GeneralizedEnsemble
+from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
 from visviva.generalized._equilibria import Equilibrium
 from visviva.generalized._events import GeneralizedEventTable
 from visviva.generalized._hamiltonian import Hamiltonian

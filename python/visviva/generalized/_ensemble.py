@@ -3,48 +3,32 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from visviva._arrays import float_array
-from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva._text import count
-from visviva.ensemble_trajectory import one_or_some
 from visviva.errors import Interrupted, InvalidInput
+from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory, which
 from visviva.generalized._resolved import judge
 from visviva.generalized._runs import RTOL
-from visviva.generalized._saved import Saved
 from visviva.generalized._source import _label
-from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory, exported
-from visviva.status import Status
-from visviva.typing import GeneralizedColumnName
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
     import sympy
-    from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
     from visviva.integrators import Method
     from visviva.typing import GeneralizedEvent, GeneralizedMethodName, Progress
 
-__all__ = ["GeneralizedEnsemble", "GeneralizedEnsembleTrajectory"]
-
-
-def _which(member: object, count: int) -> int:
-    """Give the place of one copy, from 0."""
-    chosen = one_or_some(member, count)
-    if isinstance(chosen, slice):
-        raise InvalidInput("index", "expected the number of a copy, got a slice; take several one by one")
-    return chosen
+__all__ = ["GeneralizedEnsemble"]
 
 
 @known_keywords
@@ -123,7 +107,7 @@ class GeneralizedEnsemble(Shown):
         return len(self._states)
 
     def __getitem__(self, member: int) -> GeneralizedSystem:
-        n, member = len(self.system.coordinates), _which(member, len(self))
+        n, member = len(self.system.coordinates), which(member, len(self))
         state = self._states[member]
         values = dict(zip(self.system.parameters, self._parameters[member], strict=True))
         return self.system._at(state[:n], state[n:], values)
@@ -186,232 +170,3 @@ class GeneralizedEnsemble(Shown):
             raise Interrupted("the ensemble was interrupted", out)
         judge(self.system, asked, self._states, (out._states[:, -1], float(out.t[-1])), self._parameters)
         return out
-
-
-@known_keywords
-class GeneralizedEnsembleTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
-    """The motions of an ensemble.
-
-    Units: those of the system, which are those of its parameters; angles in radians.
-
-    Attributes
-    ----------
-    ensemble : GeneralizedEnsemble
-    t : ndarray, shape (T,)
-    position, velocity, momentum : ndarray, shape (B, T, n)
-        NaN from where a copy failed, or an event ended it.
-    energy : ndarray, shape (B, T)
-    status : ndarray of Status, shape (B,)
-    steps, evaluations : ndarray of int, shape (B,)
-
-    ``out[i]`` is the trajectory of one copy.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-    >>> out.position.shape, out[1].position.shape
-    ((2, 2, 1), (2, 1))
-    """
-
-    __slots__ = ("_asked", "_columns", "_result", "_states", "ensemble", "evaluations", "status", "steps", "t")
-
-    def __init__(self, ensemble: GeneralizedEnsemble, result: dict[str, Any], asked: dict[str, Any]) -> None:
-        made_by(
-            self,
-            "the run of an ensemble of a Lagrangian or a Hamiltonian",
-            ensemble=(ensemble, GeneralizedEnsemble),
-            result=(result, dict),
-            asked=(asked, dict),
-        )
-        self.ensemble = ensemble
-        self.t: NDArray[np.float64] = asked["outputs"]
-        self._result = result
-        self._asked = asked
-        self.status = np.array([STATUS[ending] for ending in result["endings"]])
-        self.steps = np.array(result["steps"])
-        self.evaluations = np.array(result["evaluations"])
-        shape = (len(self.status), len(self.t), ensemble._states.shape[1])
-        if all(length == len(self.t) for length in result["lengths"]):
-            self._states: NDArray[np.float64] = result["y"].reshape(shape)
-        else:
-            self._states = np.full(shape, np.nan)
-            ends = np.cumsum([0, *result["lengths"]])
-            for member, length in enumerate(result["lengths"]):
-                self._states[member, :length] = result["y"][ends[member] : ends[member + 1]]
-        for array in (self._states, self.t, self.status, self.steps, self.evaluations):
-            array.flags.writeable = False
-        self._columns: NDArray[np.float64] | None = None
-
-    def __repr__(self) -> str:
-        failed = int(np.count_nonzero((self.status != Status.OK) & (self.status != Status.STOPPED)))
-        copies = count(len(self), "copy", "copies")
-        return f"GeneralizedEnsembleTrajectory({copies}, {count(len(self.t), 'time')}, {failed} failed)"
-
-    def _sheet(self) -> Sheet:
-        span = f", {self.t[0]:g} to {self.t[-1]:g}" if len(self.t) else ""
-        ended, numbers = np.unique([Status(each).name for each in self.status], return_counts=True)
-        rows = [
-            ("of", repr(self.ensemble.system)),
-            ("times", f"{len(self.t)}{span}"),
-            ("steps", f"{self.steps.sum()}; {self.evaluations.sum()} evaluations"),
-            ("ended", ", ".join(f"{number} {name}" for name, number in zip(ended, numbers, strict=True))),
-        ]
-        return Sheet(f"Motions of {count(len(self), 'copy', 'copies')} in generalized coordinates", rows)
-
-    def __len__(self) -> int:
-        return len(self.status)
-
-    def __getitem__(self, member: int) -> GeneralizedTrajectory:
-        member = _which(member, len(self))
-        return GeneralizedTrajectory(self.ensemble[member], self._result, self._asked, member)
-
-    def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
-        if self._columns is None:
-            members, times, numbers = self._states.shape
-            parameters = np.repeat(self.ensemble._parameters, times, axis=0)
-            model = self.ensemble.system._model
-            flat = model.columns(np.tile(self.t, members), self._states.reshape(-1, numbers), parameters)
-            self._columns = flat.reshape(members, times, -1)
-            self._columns.flags.writeable = False
-        return self._columns[..., first:last]
-
-    _row_axes = ("copy", "time")
-
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
-        made = exported(self, columns, self._row_axes, self.ensemble.system.coordinates)
-        status = (("copy",), self.status.astype(np.int8))
-        return Columns({**made.axes, "copy": np.arange(len(self))}, {**made.of, "status": status})
-
-    @property
-    def _n(self) -> int:
-        return len(self.ensemble.system.coordinates)
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Coordinates, shape (B, T, n), in the units of the system."""
-        return self._states[..., : self._n]
-
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (B, T, n), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.velocity.shape
-        (2, 2, 1)
-        """
-        lagrangian = self.ensemble.system._source.kind == "lagrangian"
-        return self._states[..., self._n :] if lagrangian else self._column(0, self._n)
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Momenta, shape (B, T, n), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.momentum.shape
-        (2, 2, 1)
-        """
-        hamiltonian = self.ensemble.system._source.kind == "hamiltonian"
-        return self._states[..., self._n :] if hamiltonian else self._column(0, self._n)
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Jacobi's integral, or H, shape (B, T), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0)
-        >>> out.energy.round(6)
-        array([[-9.760991, -9.760991],
-               [-9.614453, -9.614453]])
-        """
-        return self._column(self._n, self._n + 1)[..., 0]
-
-    @property
-    def events(self) -> GeneralizedEventTable:
-        """The events that were found, copy after copy, each column of shape (K, …); ``out[i].events`` are those of one.
-
-        Raises
-        ------
-        InvalidInput
-            If none were looked for.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> many = vv.systems.pendulum().ensemble(position=[[0.1], [3.0]])
-        >>> many.run(t=4.0, events=["theta"]).events.member
-        array([0, 0, 0, 0, 1, 1])
-        """
-        from visviva.generalized._events import found_events
-
-        system, looked_for = self.ensemble.system, self._asked["looked_for"]
-        return found_events(system, self._result, looked_for, self.ensemble._parameters)
-
-    @property
-    def reactions(self) -> NDArray[np.float64]:
-        """Multipliers of the constraints, shape (B, T, c), in units of energy over those of the constraint.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.atwood().ensemble(parameters={"m1": [2.0, 3.0]}).run(t=0.2)
-        >>> out.reactions[:, 0].round(6)
-        array([[-13.08 ],
-               [-14.715]])
-        """
-        return self._column(self._n + 1, None)
-
-    def plot(
-        self,
-        column: Literal["position", "velocity", "momentum", "energy"] = "position",
-        *,
-        coordinate: str | None = None,
-        kind: Literal["lines", "bands"] | None = None,
-        ax: Axes | None = None,
-    ) -> Figure:
-        """Draw a column of all copies against time, a panel for each coordinate.
-
-        The energy is drawn as its relative change in each copy; the picture says where that is no more than rounding.
-
-        Parameters
-        ----------
-        column : {"position", "velocity", "momentum", "energy"}
-            Which one.
-        coordinate : str, optional
-            One panel; all if not given.
-        kind : {"lines", "bands"}, optional
-            Every copy as a thin line, or bands that hold half and nine tenths of the copies about the median; by
-            default lines of up to 60 copies and of energies that are noise, which are points, and else bands.
-        ax : matplotlib.axes.Axes, optional
-            Where, if there is one panel; a new figure if not given.
-
-        Returns
-        -------
-        matplotlib.figure.Figure
-            A new one, or that of `ax`. Copies that ended before are counted in the title, and not in bands after it.
-
-        Raises
-        ------
-        InvalidInput
-            For a column or a coordinate that is not there, axes for several panels, a run without times, or if
-            matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> many = vv.systems.pendulum().ensemble(position=np.linspace(0.1, 3.0, 100)[:, None])
-        >>> figure = many.run(t=np.linspace(0.0, 10.0, 201)).plot()
-        >>> figure.axes[0].get_title("left"), figure.axes[0].get_ylabel()
-        ('100 copies', 'theta')
-        """
-        from visviva._ensemble_plot import plot_generalized
-
-        return plot_generalized(self, column, coordinate, kind, ax)

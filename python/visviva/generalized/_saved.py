@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from visviva.generalized._ensemble import GeneralizedEnsembleTrajectory
+    from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
     from visviva.generalized._system import GeneralizedSystem
     from visviva.generalized._trajectory import GeneralizedTrajectory
 
@@ -160,7 +160,8 @@ def restored(
     visviva.InvalidInput
         For a system that could not be made.
     """
-    from visviva.generalized._ensemble import GeneralizedEnsemble, GeneralizedEnsembleTrajectory
+    from visviva.generalized._ensemble import GeneralizedEnsemble
+    from visviva.generalized._ensemble_trajectory import GeneralizedEnsembleTrajectory
     from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
 
     _check(header, arrays)

@@ -8,11 +8,12 @@ from typing import TYPE_CHECKING, Any, Literal
 import numpy as np
 
 from visviva._arrays import whole_number
-from visviva._exported import Columns, Exported, chosen_columns
+from visviva._exported import Columns, Exported
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
+from visviva.generalized._columns import StateColumns, exported
 from visviva.generalized._saved import Saved
 from visviva.status import Status
 from visviva.typing import GeneralizedColumnName
@@ -29,7 +30,7 @@ if TYPE_CHECKING:
     from visviva.generalized._events import GeneralizedEventTable
     from visviva.generalized._system import GeneralizedSystem
 
-__all__ = ["GeneralizedTrajectory", "check_run", "exported"]
+__all__ = ["GeneralizedTrajectory", "check_run"]
 
 STATUS = {
     "finished": Status.OK,
@@ -52,24 +53,8 @@ def check_run(trajectory: object) -> None:
         raise InvalidInput("trajectory", f"expected what `run` gives, got {type(trajectory).__name__}")
 
 
-def exported(
-    run: Any, columns: str | Sequence[str] | None, rows: tuple[str, ...], coordinates: Sequence[str]
-) -> Columns:
-    """The columns of a run, or of an ensemble of them, over time, coordinates and constraints."""
-    known = ["position", "velocity", "momentum", "energy", "reactions"]
-    # Without constraints there are no reactions to show, unless somebody asks.
-    usual = known if run.reactions.shape[-1] else known[:-1]
-    over = {"energy": (), "reactions": ("constraint",)}
-    of = {
-        name: ((*rows, *over.get(name, ("coordinate",))), getattr(run, name))
-        for name in chosen_columns(columns, usual, known)
-    }
-    axes = {"time": run.t, "coordinate": np.array(coordinates), "constraint": np.arange(run.reactions.shape[-1])}
-    return Columns(axes, of)
-
-
 @known_keywords
-class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
+class GeneralizedTrajectory(Exported[GeneralizedColumnName], StateColumns, Saved, Shown):
     """The motion of a system in generalized coordinates at the output times. Made by ``run``.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -182,6 +167,10 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
             raise InvalidInput("name", f"there is no coordinate {name!r}; there are {list(self.system.coordinates)}")
         return self.position[:, self.system.coordinates.index(name)]
 
+    @property
+    def _whose(self) -> GeneralizedSystem:
+        return self.system
+
     def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
         if self._columns is None:
             columns = self.system._model.columns(self.t, self._states, self.system._values[None, :])
@@ -192,65 +181,6 @@ class GeneralizedTrajectory(Exported[GeneralizedColumnName], Saved, Shown):
     def _exported(self, columns: str | Sequence[str] | None) -> Columns:
         found = exported(self, columns, self._row_axes, self.system.coordinates)
         return replace(found, attributes={"method": self.method, "status": self.status.name})
-
-    @property
-    def position(self) -> NDArray[np.float64]:
-        """Coordinates, shape (T, n), in the units of the system."""
-        return self._states[:, : len(self.system.coordinates)]
-
-    @property
-    def velocity(self) -> NDArray[np.float64]:
-        """Velocities, shape (T, n), in the units of the system; of a Hamiltonian ∂H/∂p.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
-        >>> out.velocity.shape
-        (2, 1)
-        """
-        n = len(self.system.coordinates)
-        return self._states[:, n:] if self.system._source.kind == "lagrangian" else self._column(0, n)
-
-    @property
-    def momentum(self) -> NDArray[np.float64]:
-        """Momenta, shape (T, n), in the units of the system; of a Lagrangian ∂L/∂q̇.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
-        >>> out.momentum.shape
-        (2, 1)
-        """
-        n = len(self.system.coordinates)
-        return self._states[:, n:] if self.system._source.kind == "hamiltonian" else self._column(0, n)
-
-    @property
-    def energy(self) -> NDArray[np.float64]:
-        """Jacobi's integral, or H, shape (T,), in the units of the system.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
-        >>> out.energy.round(9)
-        array([-8.60908493, -8.60908493])
-        """
-        n = len(self.system.coordinates)
-        return self._column(n, n + 1)[:, 0]
-
-    @property
-    def reactions(self) -> NDArray[np.float64]:
-        """Multipliers of the constraints, shape (T, c), in units of energy over those of the constraint.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.systems.atwood(m1=3.0, m2=2.0, g=10.0).run(t=0.5).reactions[-1].round(12)
-        array([-24.])
-        """
-        return self._column(len(self.system.coordinates) + 1, None)
 
     @property
     def events(self) -> GeneralizedEventTable:

@@ -23,7 +23,7 @@ from visviva.orbits._central import (
 )
 from visviva.orbits._central_orbit import CentralOrbit, central_orbit
 from visviva.orbits._conics import Conic, conic, conic_from_constants, free_fall_time, period, semi_major_axis
-from visviva.orbits._elements import Elements, elements, propagate, state
+from visviva.orbits._elements import Elements, elements
 from visviva.orbits._ellipse import eccentric_from_mean, eccentric_from_true, mean_from_eccentric, true_from_eccentric
 from visviva.orbits._hyperbola import (
     hyperbolic_from_mean,
@@ -42,6 +42,7 @@ from visviva.orbits._radial import (
     swept_angle,
     time_of_flight,
 )
+from visviva.orbits._states import propagate, state
 
 __all__ = [
     "CentralOrbit",

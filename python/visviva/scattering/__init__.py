@@ -22,20 +22,19 @@ from visviva.scattering._cross_sections import (
 )
 from visviva.scattering._deflection import Deflection, DeflectionStatus, deflect, deflection_angle
 from visviva.scattering._energies import (
-    Moderation,
     energy_kept,
     energy_transfer,
     greatest_lab_angle,
     greatest_recoil_angle,
     kinematic_factor,
-    moderation,
     threshold_energy,
     two_branch_energy,
 )
 from visviva.scattering._events import scattering_events
 from visviva.scattering._foil import Foil
 from visviva.scattering._foil_material import Ion, Material
-from visviva.scattering._foil_result import Bombardment, FoilResult, FoilTally, Fraction
+from visviva.scattering._foil_result import Bombardment, FoilResult
+from visviva.scattering._foil_tally import FoilTally, Fraction
 from visviva.scattering._importance import LargeAngles, Strata
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._kinematics import (
@@ -47,6 +46,7 @@ from visviva.scattering._kinematics import (
     recoil_angle,
     recoil_jacobian,
 )
+from visviva.scattering._moderation import Moderation, moderation
 from visviva.scattering._monte_carlo import monte_carlo
 from visviva.scattering._result import MonteCarlo
 from visviva.scattering._rutherford import (

@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
 
-    from visviva.scattering._foil_result import FoilTally
+    from visviva.scattering._foil_tally import FoilTally
     from visviva.scattering._joint_tally import JointTally
     from visviva.scattering._tally import Tally
 

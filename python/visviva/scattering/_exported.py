@@ -1,20 +1,105 @@
-"""Tallies for xarray and pandas: bins as intervals, counts as they are."""
+"""Tallies for hist, xarray and pandas: bins as intervals, counts as they are.
+
+The one idea: a tally says its axes, its counts and what is told beside them once; the forms follow from that.
+"""
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
 from visviva._exported import needed
+from visviva._keywords import known_keywords
+from visviva.scattering._weights import to_hist
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     import numpy as np
+    from boost_histogram.storage import Storage
+    from hist import Hist
     from numpy.typing import NDArray
     from pandas import IntervalIndex
     from xarray import Dataset
 
-__all__ = ["dataset", "intervals"]
+__all__ = ["ExportedTally", "dataset", "intervals"]
+
+
+@known_keywords
+class ExportedTally:
+    """Base of tallies, whatever their number of axes."""
+
+    @abstractmethod
+    def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
+        """Each quantity and the edges of its bins."""
+
+    @abstractmethod
+    def _whole(self) -> NDArray[np.uint64]:
+        """The events along each axis below the first edge, in the bins, and above the last edge."""
+
+    @abstractmethod
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        """What is told of each bin."""
+
+    @abstractmethod
+    def _about(self) -> dict[str, int]:
+        """What is told beside the bins."""
+
+    def to_hist(self) -> Hist[Storage]:
+        """As a ``hist.Hist`` with an axis for each quantity, what is below and above too.
+
+        With `importance` it is of ``Weight`` storage, of variance Σ w² n.
+
+        Raises
+        ------
+        ImportError
+            Without the package hist.
+
+        Examples
+        --------
+        >>> from importlib.util import find_spec
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally="cm_angle",
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> hist = run["cm_angle"].to_hist() if find_spec("hist") else None
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally=[("lab_angle", "energy")],
+        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> hist = run["lab_angle", "energy"].to_hist() if find_spec("hist") else None
+        """
+        names, edges = zip(*self._axes(), strict=True)
+        tally: Any = self
+        return to_hist(tally, names, edges, self._whole())
+
+    def to_xarray(self) -> Dataset:
+        """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins, with an axis for each quantity.
+
+        Of one quantity there is ``reachable``, too, and with `importance` there are ``values`` and ``variances``.
+
+        Returns
+        -------
+        xarray.Dataset
+            The ends of the bins are the coordinates ``<name>_low`` and ``<name>_high``; what is outside of them and
+            what was captured are attributes. Angles are in radians. Each column has shape (B,), or (B₁, B₂).
+
+        Raises
+        ------
+        ImportError
+            Without the package xarray: ``pip install 'visviva[xarray]'``.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> run = vv.scattering.monte_carlo(
+        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> data = run["cm_angle"].to_xarray()
+        >>> int(data["counts"].sum()), data["cm_angle"].units
+        (1000, 'rad')
+        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
+        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
+        >>> dict(run["lab_angle", "energy"].to_xarray().sizes)
+        {'lab_angle': 10, 'energy': 10}
+        """
+        return dataset(dict(self._axes()), self._columns(), self._about())
 
 
 def intervals(name: str, edges: NDArray[np.float64]) -> IntervalIndex:

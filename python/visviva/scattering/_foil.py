@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
 
@@ -11,28 +10,28 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import number, positive, positive_array, whole_number
 from visviva._html import Record
-from visviva._keywords import did_you_mean, known_keywords, one_of
+from visviva._keywords import known_keywords, one_of
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Potential
 from visviva.scattering._bins import asked_for
-from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, screened
-from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult, FoilTally
+from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, potential_of, screened
+from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult
+from visviva.scattering._foil_tally import FoilTally
 from visviva.scattering._monte_carlo import _which
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from numpy.typing import ArrayLike, NDArray
 
     from visviva._progress import Progress
+    from visviva.potentials import Potential
     from visviva.scattering._bins import Bins
     from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, ScreeningName
 
 __all__ = ["Foil"]
 
 Stopping: TypeAlias = Literal["joined", "bethe", "lindhard_scharff", "none"]
-_SCREENINGS: tuple[ScreeningName, ...] = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi")
 
 
 @known_keywords
@@ -104,23 +103,10 @@ class Foil(Record):
         minimum_angle: float = 1e-4,
     ) -> None:
         made = material_of(material)
-        several = len(made.atomic_number)
-        if isinstance(potential, str):
-            if potential not in (*_SCREENINGS, "coulomb"):
-                known = ", ".join((*_SCREENINGS, "coulomb"))
-                hint = did_you_mean(potential, (*_SCREENINGS, "coulomb"))
-                raise InvalidInput("potential", f"expected one of {known}, or a Potential, got {potential!r}{hint}")
-        else:
-            each = (potential,) if isinstance(potential, Potential) else potential
-            if not isinstance(each, Sequence) or not all(isinstance(one, Potential) for one in each):
-                raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {potential!r}")
-            if len(each) != several:
-                raise InvalidInput("potential", f"expected one for each of {several} elements, got {len(each)}")
-            potential = tuple(each)
         given = {
             "material": made,
             "thickness": positive("thickness", thickness),
-            "potential": potential,
+            "potential": potential_of(potential, len(made.atomic_number)),
             "stopping": stopping if isinstance(stopping, str) else losses_of(stopping),
             "minimum_angle": number("minimum_angle", minimum_angle),
         }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -16,9 +17,10 @@ from visviva.potentials import Coulomb, Potential, ScreenedCoulomb
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
-__all__ = ["Ion", "Material", "ion_of", "losses_of", "material_of", "screened"]
+__all__ = ["Ion", "Material", "ion_of", "losses_of", "material_of", "potential_of", "screened"]
 
 _E2 = 14.399645478  # e²/4πε₀ in eV Å
+_SCREENINGS = ("zbl", "moliere", "kr_c", "lenz_jensen", "thomas_fermi", "coulomb")
 
 # Standard atomic weights: IUPAC 2021 (T. Prohaska et al., Pure Appl. Chem. 94 (2022) 573).
 _WEIGHTS = {
@@ -223,6 +225,23 @@ def losses_of(stopping: Any) -> tuple[tuple[float, ...], tuple[float, ...]]:
     if len(energy) != len(loss):
         raise InvalidInput("stopping", f"expected a loss at each of {len(energy)} energies, got {len(loss)}")
     return tuple(energy.tolist()), tuple(loss.tolist())
+
+
+def potential_of(given: Any, several: int) -> Any:
+    """Give the name of a screening, or a tuple of one potential for each of several elements."""
+    if isinstance(given, str):
+        if given not in _SCREENINGS:
+            hint = did_you_mean(given, _SCREENINGS)
+            raise InvalidInput(
+                "potential", f"expected one of {', '.join(_SCREENINGS)}, or a Potential, got {given!r}{hint}"
+            )
+        return given
+    each = (given,) if isinstance(given, Potential) else given
+    if not isinstance(each, Sequence) or not all(isinstance(one, Potential) for one in each):
+        raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {given!r}")
+    if len(each) != several:
+        raise InvalidInput("potential", f"expected one for each of {several} elements, got {len(each)}")
+    return tuple(each)
 
 
 def screened(name: Any, first: float, second: float) -> Potential:

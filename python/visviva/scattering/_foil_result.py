@@ -1,10 +1,10 @@
-"""What a foil gives: histograms of ions that came through, came back or stopped, which add up bit for bit."""
+"""What a foil gives: how many ions came through, came back or stopped, and the histograms of them, which add up."""
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, Generic, Literal, NamedTuple, TypeVar
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
 
@@ -12,14 +12,13 @@ from visviva._html import Record, Sheet, Shown
 from visviva._keywords import known_keywords, one_of
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
-from visviva.scattering._counts import plot_foil
+from visviva.scattering._foil_tally import FoilTally, Fraction, summed
 from visviva.scattering._of_events import is_zero, merged
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
@@ -27,9 +26,7 @@ if TYPE_CHECKING:
     from visviva.scattering._foil_material import Ion
     from visviva.typing import FoilTallyName
 
-_T = TypeVar("_T", float, "NDArray[np.float64]")
-
-__all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult", "FoilTally", "Fraction"]
+__all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult"]
 
 #: What is counted if nobody asks for anything else.
 USUAL_TALLIES: tuple[FoilTallyName, ...] = (
@@ -40,25 +37,6 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
     "stopped_depth",
 )
 _FATES = ("transmitted", "reflected", "stopped", "missed")
-
-
-@known_keywords
-class Fraction(NamedTuple, Generic[_T]):
-    """A part of all ions, and its standard error.
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-    >>> part = out.fraction("transmitted")
-    >>> round(part.value * 1000) == out.transmitted, bool(part.error < 0.02)
-    (True, True)
-    """
-
-    value: _T
-    """As a part of the events."""
-    error: _T
-    """One standard deviation."""
 
 
 @known_keywords
@@ -106,169 +84,6 @@ class Bombardment(Record):
             "single": self.collisions == "single",
             "forced_angle": self.forced_angle,
         }
-
-
-def _fraction(sums: NDArray[np.uint64], units: tuple[float, float], n_events: int) -> tuple[Any, Any]:
-    """The mean weight of an event and the variance of the sum of all."""
-    weight, square = sums[..., 1] * units[0], sums[..., 2] * units[1]
-    return weight, np.maximum(square - weight**2 / n_events, 0.0)
-
-
-@known_keywords
-@dataclass(frozen=True, eq=False, repr=False)
-class FoilTally(Record):  # noqa: PLW1641 — it holds arrays, which have no hash
-    """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
-
-    Attributes
-    ----------
-    name : str
-        The quantity.
-    edges : ndarray, shape (B + 1,)
-        Strictly increasing; radians, eV or µm.
-    sums : ndarray of uint64, shape (B + 2, 3)
-        Below the edges, of each bin, and above: events, weights and their squares, the last two in `units`.
-    units : tuple of float
-        Of weights and of squares; 1 where nothing is forced.
-    n_events : int
-        Of the run.
-
-    References
-    ----------
-    F. James, *Statistical Methods in Experimental Physics*, 2nd ed. (2006), ch. 4 (binomial and multinomial counts).
-
-    Examples
-    --------
-    >>> import visviva as vv
-    >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-    >>> tally = out["transmitted_angle"]
-    >>> int(tally.counts.sum()) <= out.transmitted
-    True
-    """
-
-    name: FoilTallyName
-    edges: NDArray[np.float64]
-    sums: NDArray[np.uint64]
-    units: tuple[float, float]
-    n_events: int
-
-    def __post_init__(self) -> None:
-        arrays = {"edges": self.edges, "sums": self.sums}
-        made_by(self, "a run of a Foil", **{name: (array, np.ndarray) for name, array in arrays.items()})
-        read_only(*arrays.values())
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # a pickle does not keep that arrays are read-only
-
-    @property
-    def counts(self) -> NDArray[np.uint64]:
-        """Events per bin, shape (B,), numbers without dimension."""
-        return self.sums[1:-1, 0]
-
-    @property
-    def underflow(self) -> int:
-        """Events below the first edge.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out["transmitted_angle"].underflow
-        0
-        """
-        return int(self.sums[0, 0])
-
-    @property
-    def overflow(self) -> int:
-        """Events above the last edge.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out["transmitted_angle"].overflow
-        0
-        """
-        return int(self.sums[-1, 0])
-
-    def values(self) -> NDArray[np.float64]:
-        """How many ions each bin stands for: counts, or with a forced collision the sums of their weights.
-
-        Arrays of shape (B,), without dimension.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> tally = out["transmitted_angle"]
-        >>> bool((tally.values() == tally.counts).all())
-        True
-        """
-        return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[0])
-
-    def variances(self) -> NDArray[np.float64]:
-        """Variances of these, shape (B,), without dimension: the number of events is fixed.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out["transmitted_angle"].variances().shape == out["transmitted_angle"].counts.shape
-        True
-        """
-        return np.asarray(_fraction(self.sums[1:-1], self.units, self.n_events)[1])
-
-    def fraction(self) -> Fraction[NDArray[np.float64]]:
-        """As a part of all ions that came, without dimension, with its standard error: both of shape (bins,).
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> part = out["transmitted_angle"].fraction()
-        >>> bool((part.value == out["transmitted_angle"].counts / 1000).all())
-        True
-        """
-        return Fraction(self.values() / self.n_events, np.sqrt(self.variances()) / self.n_events)
-
-    def plot(self, *, ax: Axes | None = None) -> Axes:
-        """Draw the histogram, with a band of one standard error.
-
-        Parameters
-        ----------
-        ax : matplotlib.axes.Axes, optional
-            Where to draw; by default in a new figure, ``.figure`` of what is returned.
-
-        Returns
-        -------
-        matplotlib.axes.Axes
-            On a logarithmic scale for angles; it ends with the bins that have counted something.
-
-        Raises
-        ------
-        InvalidInput
-            If matplotlib is not installed.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out["transmitted_energy"].plot().get_xlabel()
-        'energy of transmitted ions [eV]'
-        """
-        return plot_foil(self, ax)
-
-    def __eq__(self, other: object) -> bool:
-        if not isinstance(other, FoilTally):
-            return NotImplemented
-        same = (self.name, self.units, self.n_events) == (other.name, other.units, other.n_events)
-        return same and np.array_equal(self.edges, other.edges) and np.array_equal(self.sums, other.sums)
-
-    def _joined(self, other: FoilTally) -> FoilTally:
-        """Of both; that no event is in both is the result's to see."""
-        if self.units != other.units or not np.array_equal(self.edges, other.edges):
-            raise InvalidInput("other", f"expected {self.name} with the same edges")
-        return replace(self, sums=self.sums + other.sums, n_events=self.n_events + other.n_events)
 
 
 @known_keywords
@@ -403,7 +218,7 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 �
         Fraction(value=1.0, error=0.0)
         """
         one_of("fate", fate, _FATES[:3])
-        weight, variance = _fraction(self.sums[_FATES.index(fate)], self.units, self.n_events)
+        weight, variance = summed(self.sums[_FATES.index(fate)], self.units, self.n_events)
         return Fraction(float(weight) / self.n_events, float(np.sqrt(variance)) / self.n_events)
 
     def __getitem__(self, name: FoilTallyName) -> FoilTally:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -13,16 +13,14 @@ from visviva._keywords import known_keywords
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
+from visviva.scattering._exported import ExportedTally, intervals
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
+from visviva.scattering._weights import added, read_only, same, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
-    from boost_histogram.storage import Storage
-    from hist import Hist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
-    from xarray import Dataset
 
     from visviva.scattering._beam import Beam
     from visviva.typing import TallyName
@@ -32,7 +30,7 @@ __all__ = ["JointTally"]
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
+class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
     """A histogram of two quantities together.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -120,24 +118,6 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
     def _weighted(self, power: int) -> NDArray[np.float64]:
         return weighted(self, power, self.flow)[1:-1, 1:-1]
 
-    def to_hist(self) -> Hist[Storage]:
-        """As a ``hist.Hist`` with both axes, what is below and above too.
-
-        Raises
-        ------
-        ImportError
-            Without the package hist.
-
-        Examples
-        --------
-        >>> from importlib.util import find_spec
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally=[("lab_angle", "energy")],
-        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> hist = run["lab_angle", "energy"].to_hist() if find_spec("hist") else None
-        """
-        return to_hist(self, self.name, self.edges, self.flow)
-
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame`` of `values`: rows are bins of the first quantity, columns of the second.
 
@@ -159,41 +139,23 @@ class JointTally(OfEvents, Record):  # noqa: PLW1641 — as Tally
         >>> run["lab_angle", "energy"].to_pandas().shape
         (10, 10)
         """
-        from visviva.scattering._exported import intervals
-
         rows, columns = map(intervals, self.name, self.edges)
         values = self.counts if self.by_stratum is None else self.values()
         frame: DataFrame = needed("pandas", "to_pandas").DataFrame(values, index=rows, columns=columns)
-        frame.attrs.update(captured=self.captured, n_events=self.n_events)
+        frame.attrs.update(self._about())
         return frame
 
-    def to_xarray(self) -> Dataset:
-        """As an ``xarray.Dataset`` of ``counts`` over the middles of the bins of both quantities.
+    def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
+        return tuple(zip(self.name, self.edges, strict=True))
 
-        Returns
-        -------
-        xarray.Dataset
-            As that of `Tally.to_xarray`, with two axes; with `importance` ``values`` and ``variances``, too. Columns
-            have shape (B₁, B₂).
+    def _whole(self) -> NDArray[np.uint64]:
+        return self.flow
 
-        Raises
-        ------
-        ImportError
-            Without the package xarray: ``pip install 'visviva[xarray]'``.
+    def _columns(self) -> dict[str, NDArray[Any]]:
+        return {"counts": self.counts, **weighted_columns(self)}
 
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10,
-        ...     tally=[("lab_angle", "energy")], beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> dict(run["lab_angle", "energy"].to_xarray().sizes)
-        {'lab_angle': 10, 'energy': 10}
-        """
-        from visviva.scattering._exported import dataset
-
-        told = {"captured": self.captured, "n_events": self.n_events}
-        columns = {"counts": self.counts, **weighted_columns(self)}
-        return dataset(dict(zip(self.name, self.edges, strict=True)), columns, told)
+    def _about(self) -> dict[str, int]:
+        return {"captured": self.captured, "n_events": self.n_events}
 
     def plot(self, *, ax: Axes | None = None) -> Axes:
         """Draw the events of each bin as its color, on a logarithmic scale where they differ much.

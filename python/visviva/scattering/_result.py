@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import add
-from typing import TYPE_CHECKING, Any, cast, overload
+from typing import TYPE_CHECKING, overload
 
 import numpy as np
 
@@ -15,13 +14,11 @@ from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
 from visviva.errors import InvalidInput
-from visviva.potentials import potential_from_core
-from visviva.scattering._beam import Beam, Spectrum, Spread
-from visviva.scattering._channels import Channel
+from visviva.scattering._beam import Beam, Spectrum
 from visviva.scattering._counts import theory_is_known
-from visviva.scattering._importance import Strata
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
+from visviva.scattering._saved import kept, restored
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -35,10 +32,6 @@ if TYPE_CHECKING:
     from visviva.typing import Executor, TallyName
 
 __all__ = ["MonteCarlo"]
-
-# Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels, version 5
-# their excitation functions.
-_FORMAT, _VERSION = "visviva scattering", 5
 
 
 @known_keywords
@@ -302,40 +295,7 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         >>> vv.scattering.MonteCarlo.load(path) == run
         True
         """
-        beam = self.beam
-        energy = beam.beam_energy
-        lines = energy if isinstance(energy, Spectrum) else None
-        header = {
-            "format": _FORMAT,
-            "version": _VERSION,
-            "potential": beam.potential._to_core(),
-            "beam_energy": None if lines else energy,
-            "spectrum": [lines.energy, lines.weight] if lines else None,
-            "masses": beam.masses,
-            "b_max": beam.b_max,
-            "energy_spread": beam.energy_spread and [beam.energy_spread.shape, beam.energy_spread.width],
-            "divergence": beam.divergence and [beam.divergence.shape, beam.divergence.width],
-            "spot": beam.spot,
-            "importance": beam.importance and [beam.importance.edges, beam.importance.fractions],
-            "channels": [
-                [channel.q_value, channel.probability, channel.products, channel.excitation_function]
-                for channel in beam.channels
-            ],
-            "smallest_angle": beam.smallest_angle,
-            "tables": beam.tables,
-            "events": self.events,
-            "tallies": [_told(tally) for tally in self.tallies],
-        }
-        arrays: dict[str, Any] = {}
-        for index, tally in enumerate(self.tallies):
-            if isinstance(tally, Tally):
-                arrays |= {f"{index}/{name}": getattr(tally, name) for name in ("edges", "counts", "reachable")}
-            else:
-                arrays[f"{index}/flow"] = tally.flow
-                arrays |= {f"{index}/edges{axis}": edges for axis, edges in enumerate(tally.edges)}
-            if tally.by_stratum is not None:
-                arrays[f"{index}/by_stratum"] = tally.by_stratum
-        write(path, header, arrays)
+        write(path, *kept(self.beam, self.events, self.tallies))
 
     @staticmethod
     @known_keywords
@@ -364,80 +324,10 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         with open(path_text("path", path), "rb") as stream:
             try:
                 with np.load(stream, allow_pickle=False) as file:
-                    return _restored({name: file[name] for name in file.files})
+                    return MonteCarlo(*restored({name: file[name] for name in file.files}))
             except MemoryError:
                 raise
             except Exception as error:  # NumPy, zipfile and json raise what they please
                 raise InvalidInput(
                     "path", f"expected counts that visviva saved, but {str(path)!r} has none: {error}"
                 ) from error
-
-
-def _told(tally: Tally | JointTally) -> dict[str, Any]:
-    if isinstance(tally, JointTally):
-        return {"name": tally.name, "captured": tally.captured}
-    return {name: getattr(tally, name) for name in ("name", "underflow", "overflow", "covered", "captured")}
-
-
-def _spread(told: list[Any] | None) -> Spread | None:
-    if told is None:
-        return None
-    return {"gaussian": Spread.gaussian, "uniform": Spread.uniform}[told[0]](told[1])
-
-
-def _restored(arrays: dict[str, Any]) -> MonteCarlo:
-    header = json.loads(arrays["header"].tobytes())
-    if header["format"] != _FORMAT or header["version"] > _VERSION:
-        raise ValueError(f"it holds a {header['format']!r} of version {header['version']}")
-    lines, strata = header["spectrum"], header.get("importance")
-    beam = Beam(
-        potential_from_core(header["potential"]),
-        header["beam_energy"] if lines is None else Spectrum(*lines),
-        (header["masses"][0], header["masses"][1]),
-        header["b_max"],
-        header["smallest_angle"],
-        tuple(header["tables"]),
-        _spread(header.get("energy_spread")),
-        _spread(header.get("divergence")),
-        header.get("spot"),
-        None if strata is None else Strata(*strata),
-        tuple(Channel(*told) for told in header.get("channels", [])),
-    )
-    events = tuple((seed, first, end) for seed, first, end in header["events"])
-    tallies: list[Tally | JointTally] = []
-    tally: Tally | JointTally
-    for index, told in enumerate(header["tallies"]):
-        by_stratum = None if strata is None else arrays[f"{index}/by_stratum"]
-        if isinstance(told["name"], str):
-            edges, counts, reachable = (arrays[f"{index}/{name}"] for name in ("edges", "counts", "reachable"))
-            covered = (told["covered"][0], told["covered"][1])
-            flows = (told["underflow"], told["overflow"])
-            captured = told["captured"]
-            tally = Tally(
-                cast("TallyName", told["name"]),
-                edges,
-                counts,
-                *flows,
-                reachable,
-                covered,
-                beam,
-                events,
-                captured,
-                by_stratum,
-            )
-            slots = np.concatenate([[flows[0]], counts, [flows[1], captured]])
-            if len(edges) != len(counts) + 1 or len(reachable) != len(counts):
-                raise ValueError("its edges and counts do not fit")
-        else:
-            several = tuple(arrays[f"{index}/edges{axis}"] for axis in range(len(told["name"])))
-            flow = arrays[f"{index}/flow"]
-            tally = JointTally(tuple(told["name"]), several, flow, told["captured"], beam, events, by_stratum)
-            slots = np.append(flow, told["captured"])
-            if flow.shape != tuple(len(edges) + 1 for edges in several):
-                raise ValueError("its edges and counts do not fit")
-        if by_stratum is not None and (by_stratum.sum(0) != slots).any():
-            raise ValueError("its counts and those of its strata do not fit")
-        if (total := sum(slots.tolist())) != tally.n_events:
-            raise ValueError(f"its counts are those of {total} events, not of {tally.n_events}")
-        tallies.append(tally)
-    return MonteCarlo(beam, events, tuple(tallies))

@@ -15,16 +15,14 @@ from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
+from visviva.scattering._exported import ExportedTally, intervals
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._weights import added, read_only, same, to_hist, variances, weighted, weighted_columns
+from visviva.scattering._weights import added, read_only, same, variances, weighted, weighted_columns
 
 if TYPE_CHECKING:
-    from boost_histogram.storage import Storage
-    from hist import Hist
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
     from pandas import DataFrame
-    from xarray import Dataset
 
     from visviva.scattering._beam import Beam
     from visviva.typing import TallyName
@@ -59,7 +57,7 @@ class CrossSection(NamedTuple):
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
+class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arrays, which have no hash
     """A histogram of one quantity. Bin i holds ``edges[i] ≤ x < edges[i+1]``; the last one also its end.
 
     Tallies of the same quantity, beam and edges add up if no event is in both, and are equal if all of it is.
@@ -308,25 +306,6 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         scale[known] = np.pi * self.b_max**2 / (self.n_events * (width * self.reachable)[known])
         return CrossSection(self.values() * scale, np.sqrt(self.variances()) * scale)
 
-    def to_hist(self) -> Hist[Storage]:
-        """As a ``hist.Hist``, what is below and above too; with `importance` of ``Weight`` storage, of variance Σ w² n.
-
-        Raises
-        ------
-        ImportError
-            Without the package hist.
-
-        Examples
-        --------
-        >>> from importlib.util import find_spec
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(vv.potentials.HardSphere(1.0), bins=10, tally="cm_angle",
-        ...     beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> hist = run["cm_angle"].to_hist() if find_spec("hist") else None
-        """
-        flow = np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
-        return to_hist(self, (self.name,), (self.edges,), flow)
-
     def to_pandas(self) -> DataFrame:
         """As a ``pandas.DataFrame``: a row for each bin, ``counts`` and ``reachable``.
 
@@ -352,40 +331,17 @@ class Tally(OfEvents, Record):  # noqa: PLW1641 — it holds arrays, which have 
         >>> frame.shape, int(frame["counts"].sum())
         ((180, 2), 1000)
         """
-        from visviva.scattering._exported import intervals
-
         frame: DataFrame = needed("pandas", "to_pandas").DataFrame(
             self._columns(), index=intervals(self.name, self.edges)
         )
         frame.attrs.update(self._about())
         return frame
 
-    def to_xarray(self) -> Dataset:
-        """As an ``xarray.Dataset`` of the columns of `to_pandas` over the middles of the bins.
+    def _axes(self) -> tuple[tuple[str, NDArray[np.float64]], ...]:
+        return ((self.name, self.edges),)
 
-        Returns
-        -------
-        xarray.Dataset
-            The ends of the bins are the coordinates ``<name>_low`` and ``<name>_high``; what is outside of them and
-            what was captured are attributes. Angles are in radians. Each column has shape (B,).
-
-        Raises
-        ------
-        ImportError
-            Without the package xarray: ``pip install 'visviva[xarray]'``.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> data = run["cm_angle"].to_xarray()
-        >>> int(data["counts"].sum()), data["cm_angle"].units
-        (1000, 'rad')
-        """
-        from visviva.scattering._exported import dataset
-
-        return dataset({self.name: self.edges}, self._columns(), self._about())
+    def _whole(self) -> NDArray[np.uint64]:
+        return np.concatenate([[self.underflow], self.counts, [self.overflow]]).astype(np.uint64)
 
     def _columns(self) -> dict[str, NDArray[Any]]:
         return {"counts": self.counts, "reachable": self.reachable, **weighted_columns(self)}

@@ -1,0 +1,83 @@
+"""One event that is looked for; see `visviva.events`.
+
+The one idea: it is plain data, a kind and its numbers, so it is compared, pickled and written to files as it is. What
+the core is told follows from it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from visviva._arrays import number, whole_number
+from visviva._html import Record
+from visviva._keywords import known_keywords
+from visviva.errors import InvalidInput
+
+__all__ = ["Event", "made"]
+
+#: Of runs in generalized coordinates alone.
+_GENERALIZED = ("coordinate", "expression")
+
+
+@known_keywords
+@dataclass(frozen=True, slots=True, repr=False)
+class Event(Record):
+    """Something to look for. Made by the functions of `visviva.events`.
+
+    Attributes
+    ----------
+    kind : str
+    parameters : tuple of (str, object)
+    direction : int
+        1 for zeros passed upwards in time (also in a run backwards), -1 downwards, 0 both.
+    terminal : int
+        The run ends with the zero of this number; 0 if it does not.
+
+    References
+    ----------
+    Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.6 (event location).
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> vv.events.apsis(1, 0, direction=1).kind
+    'apsis'
+    """
+
+    kind: str
+    parameters: tuple[tuple[str, object], ...]
+    direction: int
+    terminal: int
+
+    def _to_core(self) -> dict[str, Any]:
+        told = dict(self.parameters)
+        if self.kind in _GENERALIZED:
+            raise InvalidInput(
+                "events",
+                f"{self.kind} is of runs in generalized coordinates; of bodies there are apsis, distance, energy, "
+                "plane, and functions f(t, position, velocity)",
+            )
+        if "name" in told:
+            raise InvalidInput("events", f"of the function {told['name']!r} a run keeps its name alone; give it again")
+        return {
+            "kind": self.kind,
+            **told,
+            "direction": float(self.direction),
+            "last": self.terminal or None,
+        }
+
+
+def made(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
+    """The event, of which direction and end have been looked at.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a direction that is no number, or an end that is none.
+    """
+    way = number("direction", direction)
+    last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
+    return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)

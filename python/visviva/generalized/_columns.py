@@ -1,0 +1,128 @@
+"""The columns of runs in generalized coordinates, alike for one and for an ensemble.
+
+The one idea: a run keeps states, which are coordinates and one of velocities and momenta. The other, the energy and the
+reactions are computed from them when they are first asked for, all in one call of the core.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from visviva._exported import Columns, chosen_columns
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from numpy.typing import NDArray
+
+    from visviva.generalized._system import GeneralizedSystem
+
+__all__ = ["StateColumns", "exported"]
+
+
+class StateColumns:
+    """Base of what has states, as the last axis of an array."""
+
+    __slots__ = ()
+
+    _states: NDArray[np.float64]
+
+    @property
+    @abstractmethod
+    def _whose(self) -> GeneralizedSystem:
+        """The system that was run."""
+
+    @abstractmethod
+    def _column(self, first: int, last: int | None) -> NDArray[np.float64]:
+        """Of what is computed from states these numbers, as the last axis."""
+
+    @property
+    def _n(self) -> int:
+        return len(self._whose.coordinates)
+
+    @property
+    def position(self) -> NDArray[np.float64]:
+        """Coordinates, shape (T, n), or (B, T, n) of an ensemble, in the units of the system."""
+        return self._states[..., : self._n]
+
+    @property
+    def velocity(self) -> NDArray[np.float64]:
+        """Velocities, shape (T, n), or (B, T, n), in the units of the system; of a Hamiltonian ∂H/∂p.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.velocity.shape
+        (2, 1)
+        >>> vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0).velocity.shape
+        (2, 2, 1)
+        """
+        lagrangian = self._whose._source.kind == "lagrangian"
+        return self._states[..., self._n :] if lagrangian else self._column(0, self._n)
+
+    @property
+    def momentum(self) -> NDArray[np.float64]:
+        """Momenta, shape (T, n), or (B, T, n), in the units of the system; of a Lagrangian ∂L/∂q̇.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.momentum.shape
+        (2, 1)
+        >>> vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0).momentum.shape
+        (2, 2, 1)
+        """
+        hamiltonian = self._whose._source.kind == "hamiltonian"
+        return self._states[..., self._n :] if hamiltonian else self._column(0, self._n)
+
+    @property
+    def energy(self) -> NDArray[np.float64]:
+        """Jacobi's integral, or H, shape (T,), or (B, T), in the units of the system.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> out = vv.systems.pendulum(position=[0.5]).run(t=[0.0, 1.0])
+        >>> out.energy.round(9)
+        array([-8.60908493, -8.60908493])
+        >>> vv.systems.pendulum().ensemble(position=[[0.1], [0.2]]).run(t=1.0).energy.round(6)
+        array([[-9.760991, -9.760991],
+               [-9.614453, -9.614453]])
+        """
+        return self._column(self._n, self._n + 1)[..., 0]
+
+    @property
+    def reactions(self) -> NDArray[np.float64]:
+        """Multipliers of the constraints, shape (T, c), or (B, T, c), in units of energy over those of the constraint.
+
+        Examples
+        --------
+        >>> import visviva as vv
+        >>> vv.systems.atwood(m1=3.0, m2=2.0, g=10.0).run(t=0.5).reactions[-1].round(12)
+        array([-24.])
+        >>> vv.systems.atwood().ensemble(parameters={"m1": [2.0, 3.0]}).run(t=0.2).reactions[:, 0].round(6)
+        array([[-13.08 ],
+               [-14.715]])
+        """
+        return self._column(self._n + 1, None)
+
+
+def exported(
+    run: Any, columns: str | Sequence[str] | None, rows: tuple[str, ...], coordinates: Sequence[str]
+) -> Columns:
+    """The columns of a run, or of an ensemble of them, over time, coordinates and constraints."""
+    known = ["position", "velocity", "momentum", "energy", "reactions"]
+    # Without constraints there are no reactions to show, unless somebody asks.
+    usual = known if run.reactions.shape[-1] else known[:-1]
+    over = {"energy": (), "reactions": ("constraint",)}
+    of = {
+        name: ((*rows, *over.get(name, ("coordinate",))), getattr(run, name))
+        for name in chosen_columns(columns, usual, known)
+    }
+    axes = {"time": run.t, "coordinate": np.array(coordinates), "constraint": np.arange(run.reactions.shape[-1])}
+    return Columns(axes, of)
