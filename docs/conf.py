@@ -30,13 +30,21 @@ suppress_warnings = ["myst.xref_missing", "ref.python"]
 REFERENCE = Path(__file__).parent / "_reference"
 
 
+def is_shown(base: type) -> bool:
+    """Whether a base has a place of its own: on these pages, or elsewhere."""
+    rooms = (visviva, *(getattr(visviva, name) for name in visviva._ROOMS))
+    return not base.__module__.startswith("visviva") or any(base.__name__ in room.__all__ for room in rooms)
+
+
 def entries(module: object, where: str, names: list[str]) -> list[str]:
     """The directives of a room's public names."""
     lines: list[str] = []
     for name in names:
         documented = getattr(module, name)
         if inspect.isclass(documented):
-            lines += [f".. autoclass:: {where}.{name}", "   :members:", ""]
+            # What a class has of a base that nobody is shown is told with it.
+            others = ", ".join(base.__name__ for base in documented.__mro__[1:] if is_shown(base))
+            lines += [f".. autoclass:: {where}.{name}", "   :members:", f"   :inherited-members: {others}", ""]
         elif inspect.isroutine(documented):
             lines += [f".. autofunction:: {where}.{name}", ""]
         else:

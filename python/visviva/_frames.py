@@ -216,21 +216,6 @@ class Framed(ABC):
         Parameters
         ----------
         position, velocity : array_like, shape (N, 3), optional
-            Of the particles.
-        t0 : float, optional
-            The time of the scene.
-        orientation : array_like, shape (K, 4), optional
-        angular_velocity : array_like, shape (K, 3), optional
-            Of the rigid bodies.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            For other shapes.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (N, 3)
             Of the particles, then of the centers of mass of rigid bodies, in the units of the scene.
         t0 : float, optional
             The time; that of the scene if not given.

@@ -11,17 +11,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import float_array, in_range, mass_array, positive
+from visviva._arrays import float_array, mass_array
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
-from visviva._moves import displacement, orthogonal
 from visviva._names import body_index, body_indices, body_label, checked_names
 from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
+from visviva._rigid_frames import FramedBodies
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.particles import read_only
 from visviva.rigid._arguments import rows
-from visviva.rigid._orientation import quaternion_from_matrix, quaternion_product, rotate, rotate_back
+from visviva.rigid._orientation import rotate, rotate_back
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -40,7 +40,7 @@ IS_ROUNDED = 16 * np.finfo(np.float64).eps
 
 @known_keywords
 @dataclass(frozen=True, slots=True, init=False, eq=False, repr=False)
-class RigidBodies(Shown):
+class RigidBodies(FramedBodies, Shown):
     """Rigid bodies, free or turning about a fixed point.
 
     Parameters
@@ -338,136 +338,6 @@ class RigidBodies(Shown):
         """
         names = ("mass", "position", "velocity", "axes", "center", "pivoted", "orientation", "angular_velocity")
         return {name: getattr(self, name) for name in names} | {"moments": self.principal_moments}
-
-    def shifted(self, position: ArrayLike, velocity: ArrayLike) -> RigidBodies:
-        """The bodies displaced by ``position`` (3,) and boosted by ``velocity`` (3,).
-
-        Units: those of the scene.
-
-        Parameters
-        ----------
-        position, velocity : array_like, shape (3,)
-            By what is displaced, and boosted.
-
-        Returns
-        -------
-        RigidBodies
-
-        Raises
-        ------
-        visviva.InvalidInput
-            For what are not three numbers each; for a boost of a body with a fixed point, which would move.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], name="wheel")
-        >>> vv.Scene(wheel).rigid_bodies.shifted(np.array([1.0, 0.0, 0.0]), np.zeros(3)).position
-        array([[1., 0., 0.]])
-        """
-        moved_by, boost = displacement(position, velocity)
-        if boost.any() and self.pivoted.any():
-            which = body_label(int(np.flatnonzero(self.pivoted)[0]), self.names)
-            raise InvalidInput(
-                "velocity", f"the fixed point of {which} would move in the boosted frame; shift the position only"
-            )
-        return self._changed(position=self.position + moved_by, velocity=self.velocity + boost)
-
-    def rotated(self, rotation: ArrayLike) -> RigidBodies:
-        """The bodies turned (or reflected) about the origin by an orthogonal matrix (3, 3).
-
-        A reflected body is the mirrored one, of which all places in the body change sign.
-
-        Units: the matrix is without dimension.
-
-        Parameters
-        ----------
-        rotation : array_like, shape (3, 3)
-            An orthogonal matrix; of determinant −1 a reflection.
-
-        Returns
-        -------
-        RigidBodies
-
-        Raises
-        ------
-        visviva.InvalidInput
-            For a matrix that is not orthogonal.
-
-        Examples
-        --------
-        >>> import numpy as np, visviva as vv
-        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], position=[1.0, 0.0, 0.0])
-        >>> quarter = np.array([[0.0, -1, 0], [1, 0, 0], [0, 0, 1]])
-        >>> vv.Scene(wheel).rigid_bodies.rotated(quarter).position
-        array([[0., 1., 0.]])
-        """
-        matrix = orthogonal(rotation)
-        sign = np.sign(np.linalg.det(matrix))
-        turn = quaternion_from_matrix(sign * matrix)
-        return self._changed(
-            position=self.position @ matrix.T,
-            velocity=np.where(self.pivoted[:, None], 0.0, self.velocity @ matrix.T),
-            orientation=quaternion_product(turn, self.orientation),
-            pivot=None if self.pivot is None else sign * self.pivot,
-        )
-
-    def reversed(self) -> RigidBodies:
-        """The bodies with their velocities and spins, shape (K, 3), turned round.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> wheel = vv.RigidBody(1.0, [1.0, 1.0, 2.0], angular_velocity=[0.0, 0.0, 3.0])
-        >>> vv.Scene(wheel).rigid_bodies.reversed().angular_velocity + 0.0
-        array([[ 0.,  0., -3.]])
-        """
-        return self._changed(velocity=-self.velocity, angular_velocity=-self.angular_velocity)
-
-    def rescaled(self, *, length: float = 1.0, mass: float = 1.0, time: float = 1.0) -> RigidBodies:
-        """The same bodies in other units.
-
-        Parameters
-        ----------
-        length, mass, time : float
-            How many new units make one old unit. Powers of two change no bit of any mantissa.
-
-        Returns
-        -------
-        RigidBodies
-            With arrays of the same shapes.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            If a scale is not positive, or a number would leave the range of float64.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> vv.RigidBody(1.0, [1.0, 2.0, 2.5]).rescaled(length=10.0).principal_moments
-        array([[100., 200., 250.]])
-        """
-        for name, scale in (("length", length), ("mass", mass), ("time", time)):
-            positive(name, scale, "number of new units per old one")
-        scales = {
-            "mass": mass,
-            "moments": mass * length * length,
-            "inertia": mass * length * length,
-            "position": length,
-            "velocity": length / time,
-            "angular_velocity": 1.0 / time,
-            "pivot": length,
-        }
-        new = {}
-        with np.errstate(over="ignore", under="ignore", invalid="ignore"):  # in_range tells it better
-            for name, scale in scales.items():
-                if (old := getattr(self, name)) is not None:
-                    known = ~np.isnan(old)  # but of pivots, that is all
-                    new[name] = np.where(
-                        known, in_range(name, np.where(known, old, 0.0), np.where(known, old * scale, 0.0)), old
-                    )
-        return self._changed(**new)
 
 
 def __dir__() -> list[str]:

@@ -83,9 +83,9 @@ UNITS = re.compile(
 #: Modules of formulas and methods, by how their names begin: what they have is published somewhere.
 FORMULAS = (
     "_audit", "_custom_potential", "_drag_throw", "_event_table", "_field_problems", "_frames", "_from_elements",
-    "_relative_equilibria", "advice", "audit", "body_turning", "collision_table", "collisions", "comparison",
-    "conservation", "datasets", "drag", "expression_force", "forces", "generalized", "initial_value", "invariants",
-    "orbits", "potentials", "problems", "rigid", "scattering", "systems", "units",
+    "_relative_equilibria", "_rigid_frames", "advice", "audit", "body_turning", "collision_table", "collisions",
+    "comparison", "conservation", "datasets", "drag", "expression_force", "forces", "generalized", "initial_value",
+    "invariants", "orbits", "potentials", "problems", "rigid", "scattering", "systems", "units",
 )  # fmt: skip
 #: They hold, name, read or convert; or each has its own source, as methods and problems have.
 NO_SOURCE = {

@@ -12,11 +12,12 @@ from visviva._body_force import BodyForce
 from visviva.rigid._cones import ConeAngles, cone_angles
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
-from visviva.rigid._heavy_top import HeavyTop, Nutation, SteadyPrecession
+from visviva.rigid._heavy_top import HeavyTop
 from visviva.rigid._inertia import PrincipalAxes, inertia_tensor, parallel_axis, principal_axes, rotate_tensor
 from visviva.rigid._mass import MassProperties, composite, particles
 from visviva.rigid._mesh import load_mesh, mesh
 from visviva.rigid._methods import methods
+from visviva.rigid._nutation import Nutation, SteadyPrecession
 from visviva.rigid._orientation import (
     from_scipy,
     matrix,
