@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any, cast
 import numpy as np
 
 from visviva import _core
+from visviva.errors import Interrupted
 from visviva.integrators import methods
 from visviva.plan import Cost
 
@@ -23,6 +24,8 @@ __all__ = ["cost", "stretch"]
 
 # A trial is long enough to tell how fast it goes after this time and so many steps, or after the longest time.
 _SECONDS, _STEPS, _LONGEST = 4e-3, 50, 5e-2
+# Of fewer steps along a path nothing follows for more of it.
+_FEWEST = 4
 # The most steps of a first stretch, beyond which nothing is told, and how many times those of the last the next takes.
 _MOST_STEPS, _FASTER = 10_000, 64
 # Copies of an ensemble that are tried, and pairs in a step beyond which none is tried: it would take too long.
@@ -70,11 +73,13 @@ def cost(asked: _core._Request, plan: Plan) -> Cost | None:
         tried["max_steps"] = _MOST_STEPS + _FASTER * stats["steps"]
         if result["error"] or result["status"].any():
             return None
-        few_steps = stats["steps"] < _STEPS * len(few[0])
+        # Massless bodies may have steps of their own, of which a stretch has at least one.
+        paths = len(few[0]) * max(1, plan.passive + min(plan.active, 1))
+        few_steps = stats["steps"] < _STEPS * paths
         if fraction == 1.0 or seconds > (_LONGEST if few_steps else _SECONDS):
             break
         fraction = min(1.0, 4.0 * fraction)
-    if stats["steps"] == 0 and fraction < 1.0:
+    if fraction < 1.0 and (stats["steps"] == 0 or (step is None and stats["steps"] < _FEWEST * paths)):
         return None
     seconds = min(seconds, stretch(tried, fraction)[1])  # the first may have been held up
     ratio, exact = scale / fraction, scale / fraction == 1.0
@@ -106,4 +111,7 @@ def stretch(asked: _core._Request, fraction: float, times: int = 1) -> tuple[dic
         progress=None,
         ensemble=len(asked["mass"]) > 1,
     )
+    error = result["error"]
+    if error is not None and error["kind"] == "interrupted":
+        raise Interrupted("a trial of the run was interrupted")
     return result, min(perf_counter() - begun, process_time() - used)

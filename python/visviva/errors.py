@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, TypeAlias
 
 if TYPE_CHECKING:
     from visviva.ensemble_trajectory import EnsembleTrajectory
-    from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
+    from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory, PoincareSection
     from visviva.initial_value import OdeResult
     from visviva.scattering import FoilResult, MonteCarlo
     from visviva.trajectory import Trajectory
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     SoFar: TypeAlias = (
         Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory | OdeResult | None
     )
+    Counted: TypeAlias = MonteCarlo | FoilResult | PoincareSection | None
 
 __all__ = [
     "AccuracyWarning",
@@ -222,8 +223,8 @@ class Interrupted(KeyboardInterrupt):
         What was stopped.
     trajectory : Trajectory, optional
         What was computed until then.
-    result : MonteCarlo, optional
-        The events that a Monte Carlo counted until then.
+    result : MonteCarlo, FoilResult or PoincareSection, optional
+        The events that a Monte Carlo counted until then, or the points of a section.
 
     Examples
     --------
@@ -232,9 +233,7 @@ class Interrupted(KeyboardInterrupt):
     (True, False)
     """
 
-    def __init__(
-        self, message: str = "interrupted", trajectory: SoFar = None, result: MonteCarlo | FoilResult | None = None
-    ) -> None:
+    def __init__(self, message: str = "interrupted", trajectory: SoFar = None, result: Counted = None) -> None:
         super().__init__(message, trajectory, result)
         self.message = message
         self.trajectory = trajectory
@@ -242,7 +241,7 @@ class Interrupted(KeyboardInterrupt):
 
     def __str__(self) -> str:
         if self.result is not None:
-            return f"{self.message}; .result holds what was counted"
+            return f"{self.message}; .result holds what was found"
         return self.message if self.trajectory is None else f"{self.message}; .trajectory holds what was computed"
 
 

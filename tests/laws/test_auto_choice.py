@@ -49,6 +49,15 @@ def test_many_bodies_and_forces_without_series_are_stepped_by_verner98() -> None
     assert method(vv.Scene(bodies(3), vv.Gravity(1.0), vv.QuadraticDrag(0.1))) == "verner98"
 
 
+def test_what_is_written_as_an_expression_is_met_by_shorter_steps() -> None:
+    """A wall higher than the body's energy along it, five lengths ahead: longer steps went through."""
+    wall = vv.ExpressionForce(potential=lambda r, v, t: np.tanh(50.0 * r[0]))
+    body = vv.Particles([1.0], [[-5.0, 0.0, 0.0]], [[1.0, 0.0, 0.0]])
+    out = vv.Scene(body, wall, vv.UniformField([0.0, 0.0, -9.81])).run(t=40.0)
+    assert out.plan.method == "dop853"
+    assert out.position[-1, 0, 0] == pytest.approx(-34.98791, abs=1e-5)
+
+
 def test_massless_bodies_do_not_enter_the_choice() -> None:
     """Massive bodies have the bits that they have without them."""
     random = np.random.default_rng(1)

@@ -1,6 +1,7 @@
 """A run that resolved nothing does not end without a word, and a run that is fine is not spoken to."""
 
 import warnings
+from typing import Any
 
 import numpy as np
 import pytest
@@ -91,6 +92,23 @@ def test_energy_that_comes_back_is_not_blamed(forces: tuple[vv.forces.Force, ...
     out = scene.run(t=1.0, rtol=1e-12)
     back = vv.Scene(out.final.particles, *forces, t0=1.0)
     np.testing.assert_allclose(back.run(t=0.0, rtol=1e-12).velocity[-1], BALLS.velocity, atol=1e-4)
+
+
+FROM_REST = {
+    "bungee": ((vv.Harmonic(4.0), vv.UniformField((0.0, 0.0, -9.8))), np.pi),
+    "cycloid": ((vv.UniformElectricField((0.0, 1.0, 0.0)), vv.UniformMagneticField((0.0, 0.0, 1.0))), 2.0 * np.pi),
+    "quartic": ((vv.ExpressionForce(potential=lambda r, v, t: r[2] ** 4 / 4.0 + r[2]), vv.LinearDrag(1e14)), 4.3273635),
+}
+
+
+@pytest.mark.parametrize("how", [{"method": "rk4", "dt": 0.01}, {"method": "verner98"}, {"method": "dop853"}])
+@pytest.mark.parametrize("motion", FROM_REST)
+def test_a_motion_that_comes_back_to_rest_is_not_blamed(motion: str, how: dict[str, Any]) -> None:
+    """At both ends all energies are zero but for rounding, of which every part was off by one."""
+    forces, period = FROM_REST[motion]
+    start = vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[0.0, 0.0, 0.0]])
+    out = vv.Scene(start, *forces).run(t=period, **how)
+    assert np.abs(out.velocity[-1]).max() < 1e-4
 
 
 def test_a_named_step_is_never_longer_than_the_run() -> None:

@@ -96,3 +96,17 @@ def test_a_stretch_that_takes_far_more_steps_than_the_last_is_not_told_of() -> N
     assert scene.plan(1.0, method="dop853").cost() is None
     # The whole run takes 10⁸ steps: minutes.
     assert perf_counter() - begun < 10.0
+
+
+@pytest.mark.parametrize("massless", [0, 30, 800])
+def test_bodies_with_steps_of_their_own_are_counted_by_more_than_one_each(massless: int) -> None:
+    """A stretch has a step of each at least, which was taken for a rate: of 800 three times too many were told."""
+    radius = np.linspace(2.0, 4.0, massless)
+    place = np.zeros((massless + 3, 3))
+    velocity = np.zeros((massless + 3, 3))
+    place[1:, 0] = [0.5, 1.0, *radius]
+    velocity[1:, 1] = place[1:, 0] ** -0.5
+    scene = vv.Scene(vv.Particles([1.0, 1e-6, 1e-6, *[0.0] * massless], place, velocity), vv.Gravity(1.0))
+    cost = scene.plan(t=100.0).cost()
+    assert cost is not None
+    assert cost.steps == pytest.approx(scene.run(t=100.0).stats.steps, rel=0.25)

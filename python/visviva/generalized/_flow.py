@@ -8,7 +8,7 @@ import numpy as np
 
 from visviva._arrays import number, whole_number
 from visviva._keywords import known_keywords
-from visviva.errors import ConvergenceError, InvalidInput
+from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -102,7 +102,10 @@ class Flow:
         momentum = states[:, n:]
         if self._source.kind == "lagrangian" and len(times):
             momentum = self._model.columns(times, states, self._values[None, :])[:, :n]
-        return PoincareSection(times, states[:, :n], momentum, self.coordinates)
+        found = PoincareSection(times, states[:, :n], momentum, self.coordinates)
+        if result["interrupted"]:
+            raise Interrupted("the section was interrupted", result=found)
+        return found
 
     def phase_portrait(
         self: Any,

@@ -273,6 +273,11 @@ pub trait ForceTerm: Any + Debug + Send + Sync {
     fn in_every_lane(&self) -> Option<Vec<u64>> {
         None
     }
+    /// Whether nothing tells over how short a way, or a time, it may change: a step knows what its stages meet, and the
+    /// longer it is, the more is between them.
+    fn may_change_anywhere(&self) -> bool {
+        false
+    }
     /// What its kernel leaves out, and why.
     fn skipped(&self) -> Option<(&'static str, &'static str)> {
         None

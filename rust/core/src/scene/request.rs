@@ -343,7 +343,7 @@ impl Request {
                 "dt",
                 format!(
                     "{} chooses its own steps: leave dt out, or give max_step{}",
-                    method.name,
+                    if automatic { "auto" } else { method.name },
                     if automatic { ", or name a fixed-step method" } else { "" }
                 ),
             )),

@@ -223,6 +223,9 @@ impl ForceTerm for ExpressionForce {
         let place = axes.as_flattened().iter().chain(origin).chain(scales).map(|x| x.to_bits());
         Some(place.chain(self.expressions.made_from.iter().copied()).collect())
     }
+    fn may_change_anywhere(&self) -> bool {
+        true
+    }
     fn strongest(
         &self,
         bodies: &[(usize, f64, [f64; 3])],

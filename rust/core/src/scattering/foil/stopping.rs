@@ -178,7 +178,7 @@ fn loss(model: Model, ion: Projectile, atoms: &[Atoms], energy: f64) -> f64 {
             Model::Bethe => bethe(ion, atoms, beta2, impulse),
             Model::Joined => {
                 let (slow, fast) =
-                    (lindhard_scharff(ion, atoms, beta2), continued(ion, atoms, beta2, impulse));
+                    (lindhard_scharff(ion, atoms, beta2), continued(ion, atoms, beta2, 1.0 + part));
                 // What is fast alone may overflow where nothing else does.
                 slow / (1.0 + slow / fast)
             }
@@ -213,11 +213,11 @@ fn bethe(ion: Projectile, atoms: &Atoms, beta2: f64, impulse: f64) -> f64 {
 }
 
 /// With ln(ε + 1 + C/ε) + ln γ² − β², ε = 2mv²/I, C = 100 Z₁/Z₂ for Z₁ < 3, else 5.
-fn continued(ion: Projectile, atoms: &Atoms, beta2: f64, impulse: f64) -> f64 {
+fn continued(ion: Projectile, atoms: &Atoms, beta2: f64, gamma: f64) -> f64 {
     let constant =
         if ion.atomic_number < 3.0 { 100.0 * ion.atomic_number / atoms.atomic_number } else { 5.0 };
     let ratio = 2.0 * ELECTRON * beta2 / atoms.excitation;
-    let logarithm = ln(ratio + 1.0 + constant / ratio) + ln(impulse / beta2) - beta2;
+    let logarithm = ln(ratio + 1.0 + constant / ratio) + 2.0 * ln(gamma) - beta2;
     before_logarithm(ion, atoms, beta2) * logarithm
 }
 
@@ -266,6 +266,7 @@ mod tests {
         assert!((slow[0] / slow[1] - 1.0).abs() < 1e-3, "{slow:?}");
         let slowest = both(1e-300);
         assert_eq!(slowest[0].to_bits(), slowest[1].to_bits(), "{slowest:?}");
+        assert!(both(5e-324).iter().all(|loss| *loss >= 0.0));
         let fast = both(1e9);
         assert!((fast[0] / fast[2] - 1.0).abs() < 0.01, "{fast:?}");
     }

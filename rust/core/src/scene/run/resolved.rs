@@ -4,7 +4,9 @@
 //! Looked at where it costs next to nothing beside the run, so that a result that is wrong by orders of magnitude does
 //! not go out without a word.
 
+use super::super::Scene;
 use super::super::integrate::Ending;
+use super::super::plan::Plan;
 use super::super::request::Request;
 use super::{Outcome, Part, Reached};
 use crate::conservation::kinetic_energy;
@@ -13,6 +15,7 @@ use crate::forces::bodies::PreciseBodies;
 use crate::forces::term::{conserved_by, never_give_energy, potential_and_virial};
 use crate::numerics::scaled::Scaled;
 use crate::parallel::Ticker;
+use crate::units::Units;
 
 /// A sum over so few pairs is nothing beside a run.
 const FEW_PAIRS: u64 = 100;
@@ -21,6 +24,8 @@ const MANY_EVALUATIONS: u64 = 2_000;
 /// More massive bodies are not looked at.
 const MOST: usize = 2_000;
 
+/// Larger errors are looked at again.
+const SUSPECT: f64 = 1e-3;
 /// Smaller energies may be products with masses that are not normal numbers, and have no digits to be off by.
 const LEAST: f64 = 1e-290;
 
@@ -75,12 +80,43 @@ pub(super) fn look(
         let size = larger(absolute(potential), absolute(potential_end));
         let whole = kinetic.plus(size);
         if whole.to_f64() >= LEAST {
-            let change = change.over(whole).to_f64();
-            // Backward in time what is taken comes back.
-            outcome.energy_error = if conserved { change.abs() } else { (plan.direction * change).max(0.0) };
+            let error = |whole| {
+                let change = change.over(whole).to_f64();
+                // Backward in time what is taken comes back.
+                if conserved { change.abs() } else { (plan.direction * change).max(0.0) }
+            };
+            outcome.energy_error = error(whole);
+            if outcome.energy_error > SUSPECT && outcome.counts.steps > 0 {
+                let step = plan.dt.map_or(plan.span / outcome.counts.steps as f64, f64::abs);
+                let gained = gained_from_rest(scene, copy, (plan, step), ticker)?;
+                outcome.energy_error = error(whole.plus(gained));
+            }
         }
     }
     Ok(())
+}
+
+/// What forces give to bodies at rest in a step. Where both ends are at rest, and potential energies vanish there, nothing
+/// else tells how large the energies of the motion are.
+fn gained_from_rest(
+    scene: &Scene,
+    copy: usize,
+    (plan, step): (&Plan, f64),
+    ticker: &mut Ticker<'_>,
+) -> Result<Scaled> {
+    let bodies = scene.masses(copy).iter().zip(scene.positions(copy)).enumerate();
+    let bodies =
+        bodies.filter(|&(_, (&mass, _))| mass > 0.0).map(|(body, (&mass, &place))| (body, mass, place));
+    let bodies: Vec<_> = bodies.collect();
+    let times = [0.0, 0.5, 1.0].map(|share| plan.t0 + share * plan.direction * plan.span);
+    let mut strongest = 0.0_f64;
+    for force in scene.forces_of(copy) {
+        strongest = strongest.max(force.strongest(&bodies, Units::default(), times, ticker)?);
+    }
+    let speed = strongest * step;
+    let mass: f64 = bodies.iter().map(|&(_, mass, _)| mass).sum();
+    let gained = Scaled::from(speed).times(speed).times(0.5 * mass);
+    Ok(if speed.is_finite() && mass.is_finite() { gained } else { Scaled::ZERO })
 }
 
 fn absolute(energy: Scaled) -> Scaled {
