@@ -25,9 +25,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._progress import Progress
     from visviva.scattering._bins import Bins
-    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, ScreeningName
+    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, Progress, ScreeningName
 
 __all__ = ["Foil"]
 
@@ -372,6 +371,10 @@ class Foil(Record):
         ------
         InvalidInput
             As `stopping_power`; for an energy below the lowest, or a foil that stops nothing.
+
+        References
+        ----------
+        ICRU Report 49 (1993): the range of continuous slowing down. Of S: `stopping_power`.
 
         Examples
         --------
