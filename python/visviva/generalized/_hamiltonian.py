@@ -165,6 +165,10 @@ class Hamiltonian(GeneralizedSystem):
         InvalidInput
             Where equations depend on the time, and for states of another shape.
 
+        References
+        ----------
+        V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., § 22.
+
         Examples
         --------
         >>> import sympy, visviva as vv

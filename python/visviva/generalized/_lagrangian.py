@@ -238,10 +238,19 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         momenta : dict, optional
             Which ones, and their momenta (None: those of the start); all cyclic ones of the start if not given.
 
+        Returns
+        -------
+        Lagrangian
+            Of the coordinates that are left; Routh's function takes the place of L.
+
         Raises
         ------
         InvalidInput
             For coordinates that are not cyclic.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 8.3.
 
         Examples
         --------

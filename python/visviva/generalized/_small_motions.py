@@ -34,10 +34,19 @@ class SmallMotions:
         at : array_like, shape (n,), optional
             The equilibrium; the start if not given.
 
+        Returns
+        -------
+        Linearization
+            Its frequencies, modes and matrices, at this place.
+
         Raises
         ------
         InvalidInput
             For a place that is none; where equations depend on the time.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
@@ -60,11 +69,20 @@ class SmallMotions:
         near : array_like, shape (S, n), optional
             Where Newton's method starts; a grid over −π … π if not given, of at most 2000 places, which may miss some.
 
+        Returns
+        -------
+        list of Equilibrium
+            In the order of their places; empty where none is found.
+
         Raises
         ------
         InvalidInput
             For constraints: eliminate them; where equations depend on the time; if the only ones are places where the
             mass matrix is singular.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
@@ -84,10 +102,19 @@ class SmallMotions:
         near : array_like, shape (n,), optional
             Where Newton's method starts; the start if not given, or rest at zero.
 
+        Returns
+        -------
+        Linearization
+            About the equilibrium that Newton's method comes to.
+
         Raises
         ------
         InvalidInput
             If it finds no equilibrium; where equations depend on the time.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
