@@ -8,6 +8,14 @@ Sources: IAU 2012 resolution B2 (astronomical unit), IAU 2015 resolutions B2 (pa
 and the planets), IAU 1976 (Gauss's constant); CODATA 2022 (Mohr, Newell, Taylor & Tiesinga, Rev. Mod. Phys. 97 (2025)
 025002), of which the digits in brackets are the standard uncertainty of the last ones; the SI of 2019 (exact e, h, k,
 c).
+
+Examples
+--------
+>>> import visviva as vv
+>>> round((2.0 * vv.units.GM_EARTH / vv.units.EARTH_EQUATORIAL_RADIUS) ** 0.5)  # to escape from the Earth, in m/s
+11180
+>>> round(vv.units.GM_EARTH / vv.units.GM_SUN, 12)  # the mass of the Earth in those of the Sun
+3.003489e-06
 """
 
 from __future__ import annotations
