@@ -140,6 +140,11 @@ class SmallMotions:
         turn : float, optional
             Of a motion that does not turn back: how far the coordinate goes in a period, as 2π.
 
+        Returns
+        -------
+        float
+            Positive, in the unit of time of the system.
+
         Raises
         ------
         InvalidInput
@@ -172,10 +177,19 @@ class SmallMotions:
         turn : float, optional
             As in `period`.
 
+        Returns
+        -------
+        float
+            Of a motion that turns back the area within its curve in phase space, over 2π.
+
         Raises
         ------
         InvalidInput
             As `period`.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 10.6.
 
         Examples
         --------
