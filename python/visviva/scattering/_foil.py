@@ -374,7 +374,7 @@ class Foil(Record):
 
         References
         ----------
-        ICRU Report 49 (1993): the range of continuous slowing down. Of S: `stopping_power`.
+        ICRU Report 49 (1993), which calls it the range of continuous slowing down; for S see `Foil`.
 
         Examples
         --------
