@@ -87,7 +87,7 @@ def write_reference() -> None:
         module = getattr(visviva, room)
         # What the package itself names is on its own page.
         own = [name for name in module.__all__ if name not in visviva.__all__]
-        pages[room] = [(module.__doc__ or "").splitlines()[0], "", *entries(module, f"visviva.{room}", own)]
+        pages[room] = [f".. automodule:: visviva.{room}", "", *entries(module, f"visviva.{room}", own)]
     pages["methods"] = methods()
     for room, lines in pages.items():
         title = {"visviva": "visviva", "methods": "Methods"}.get(room, f"visviva.{room}")

@@ -32,16 +32,16 @@ def solvers() -> list[str]:
     raise AssertionError("the core took '?' for a method")
 
 
-def literal(name: str, words: list[str]) -> str:
-    """A type alias as ruff would lay it out."""
+def literal(name: str, words: list[str], told: str) -> str:
+    """A type alias as ruff would lay it out, and what it is."""
     quoted = [f'"{word}"' for word in words]
     line = f"{name}: TypeAlias = Literal[{', '.join(quoted)}]\n"
     if len(line) <= 121:
-        return line
+        return f'{line}"""{told}"""\n'
     inner = f"    {', '.join(quoted)}\n"
     if len(inner) > 121:
         inner = "".join(f"    {word},\n" for word in quoted)
-    return f"{name}: TypeAlias = Literal[\n{inner}]\n"
+    return f'{name}: TypeAlias = Literal[\n{inner}]\n"""{told}"""\n'
 
 
 def main() -> int:
@@ -49,9 +49,10 @@ def main() -> int:
     text = FILE.read_text(encoding="utf-8")
     before, rest = text.split(BEGIN)
     _, after = rest.split(END)
-    names = literal("MethodName", ["auto", *sorted({method.name for method in (*vv.methods(), *vv.rigid.methods())})])
-    names += literal("SolverName", sorted(solvers()))
-    names += literal("ColumnName", sorted(columns()))
+    steppers = {method.name for method in (*vv.methods(), *vv.rigid.methods())}
+    names = literal("MethodName", ["auto", *sorted(steppers)], "Methods of scenes; which takes a scene, its plan says.")
+    names += literal("SolverName", sorted(solvers()), "Methods of `visviva.solve_ivp`: SciPy's names and those here.")
+    names += literal("ColumnName", sorted(columns()), "What the run of a scene can record at its times.")
     wanted = before + BEGIN + names + END + after
     if "--check" in sys.argv:
         return int(text != wanted)

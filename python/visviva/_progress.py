@@ -6,22 +6,26 @@ means something to people (events, steps, output times) is shown as it comes. El
 and is shown as that of what people know the whole of: copies, or the time that the run covers.
 """
 
+from __future__ import annotations
+
 import sys
 import time
-from collections.abc import Callable, Iterator
 from contextlib import contextmanager
-from typing import TypeAlias
+from typing import TYPE_CHECKING, TypeAlias
 
 from visviva._keywords import check_call
 from visviva.errors import InvalidInput
 
-__all__ = ["TIME", "Progress", "Report", "Span", "callback"]
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from visviva.typing import Progress, Report
+
+__all__ = ["TIME", "Span", "callback"]
 
 _SHARE = "{percentage:3.0f} %|{bar}| {elapsed}, {remaining} left"
 _TIME = "{percentage:3.0f} %|{bar}| {desc}{elapsed}, {remaining} left"
 
-Report: TypeAlias = Callable[[int, int], object]
-Progress: TypeAlias = bool | Report
 Span: TypeAlias = tuple[float, float]
 TIME = "time"
 """The unit of what is covered from one time to another."""

@@ -23,9 +23,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from visviva._progress import Report
     from visviva.ensemble import EnsembleScene
     from visviva.request import StreamRequest
+    from visviva.typing import Report
 
 __all__ = ["run_streamed"]
 

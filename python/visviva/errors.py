@@ -144,7 +144,7 @@ class FrozenAttribute(InvalidInput, FrozenInstanceError):
 
 
 class ConvergenceError(Error, RuntimeError):
-    """An iteration or the step-size control gave up.
+    """An iteration or the step-size control gave up, or `max_steps` were taken before the end.
 
     Parameters
     ----------

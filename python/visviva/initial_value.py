@@ -90,7 +90,7 @@ def solve_ivp(
         ``data``.
     rtol, atol : float or array_like, shape (n,), optional
         The estimated error of each number in a step is kept to ``atol + rtol*abs(y)``, in the root mean square.
-        By default 1e-3 and 1e-6.
+        By default 1e-3 and 1e-6, as SciPy's.
     first_step, max_step : float, optional
         The first step, and the longest.
     dt : float, optional

@@ -116,8 +116,8 @@ def figure_eight(periods: int = 1) -> Problem:
     visviva.InvalidInput
         For a number of periods that is not whole and positive.
 
-    Notes
-    -----
+    References
+    ----------
     Chenciner & Montgomery, Ann. Math. 152 (2000) 881; initial positions as found by Simó, velocities
     and period refined to 28 digits with them held fixed.
 
@@ -158,8 +158,8 @@ def pythagorean() -> Problem:
     Problem
         With its scene, its end, and where bodies must be there. Its scene has three bodies, positions of shape (3, 3).
 
-    Notes
-    -----
+    References
+    ----------
     Burrau, Astron. Nachr. 195 (1913) 113; Szebehely & Peters, Astron. J. 72 (1967) 876.
 
     Examples
@@ -190,8 +190,8 @@ def pleiades() -> Problem:
     Problem
         With its scene, its end, and where bodies must be there.
 
-    Notes
-    -----
+    References
+    ----------
     Hairer, Nørsett & Wanner, *Solving Ordinary Differential Equations I*, 2nd ed. (1993), II.10.
 
     Examples

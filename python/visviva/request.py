@@ -29,10 +29,17 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from visviva._progress import Progress
     from visviva.events import Event
     from visviva.integrators import Method
-    from visviva.typing import CollisionRule, ColumnName, EventFunction, Executor, MethodName, TransformationName
+    from visviva.typing import (
+        CollisionRule,
+        ColumnName,
+        EventFunction,
+        Executor,
+        MethodName,
+        Progress,
+        TransformationName,
+    )
 
 __all__ = ["PlanRequest", "RunRequest", "StreamRequest", "asked_by", "execute", "finished"]
 

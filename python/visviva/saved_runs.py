@@ -36,8 +36,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from visviva._progress import Progress, Report
     from visviva.scene import Scene
+    from visviva.typing import Progress, Report
 
 __all__ = ["resume", "run_saved"]
 

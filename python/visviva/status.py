@@ -9,10 +9,31 @@ __all__ = ["Status"]
 
 
 class Status(IntEnum):
-    """How a trajectory ended: `STOPPED` is by a terminal event, which is no failure.
+    """How a trajectory ended, and what to do about it; `OK` and `STOPPED` are no failures.
 
-    `OUTSIDE_DOMAIN`: bodies came to a distance or a speed at which a force is not known, as beyond a table.
-    `RESTING`: spheres that bounce came to rest on each other, in ever smaller bounces or pressed together.
+    A single run that fails raises; of an ensemble each copy has its status in ``out.status``, as a number.
+
+    Attributes
+    ----------
+    OK : 0
+        The end was reached.
+    CLOSE_ENCOUNTER : 1
+        Bodies came too close for the steps: a softening, a radius and ``collisions=``, or another method.
+    STEP_FAILURE : 2
+        The step size fell to zero, the state was no longer finite, or the stages of an implicit method were not found:
+        a smaller step, a larger `rtol`, or a look at the singularity. In generalized coordinates also `max_steps`.
+    INTERRUPTED : 3
+        Ctrl-C came, or, of a copy, before it began: run on from what there is, or again.
+    TOO_MANY_STEPS : 4
+        `max_steps` were taken before the end: a larger one, a larger `rtol` or `dt`, or a shorter run.
+    STOPPED : 5
+        A terminal event, or a collision where these stop the run, ended it: what was asked for.
+    OUTSIDE_DOMAIN : 6
+        Bodies came to a distance or a speed at which a force is not known, as beyond a table: give it more points, or
+        end the run before it.
+    RESTING : 7
+        Spheres that bounce came to rest on each other, in ever smaller bounces or pressed together: end the run before
+        it, or let a soft repulsion hold them apart.
 
     Examples
     --------

@@ -18,8 +18,6 @@ from typing import TYPE_CHECKING, Literal, Protocol, SupportsFloat, TypeAlias, T
 import numpy as np
 from numpy.typing import NDArray
 
-from visviva._progress import Progress, Report
-
 if TYPE_CHECKING:
     from ctypes import _CFunctionType
 
@@ -124,7 +122,14 @@ class Executor(Protocol):
 CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
 """What spheres do that touch."""
 
+Report: TypeAlias = Callable[[int, int], object]
+"""A function ``f(done, total)`` that is told how far a piece of work has come."""
+
+Progress: TypeAlias = bool | Report
+"""Whether a run shows how far it has come: True for a bar, False for nothing, or a function that is told."""
+
 TransformationName: TypeAlias = Literal["potential_energy", "distance"]
+"""What a time transformation watches: the steps are shorter where it is large."""
 
 GeneralizedColumnName: TypeAlias = Literal["position", "velocity", "momentum", "energy", "reactions"]
 """What a run in generalized coordinates knows at its times."""
@@ -212,6 +217,7 @@ MethodName: TypeAlias = Literal[
     "yoshida6",
     "yoshida8",
 ]
+"""Methods of scenes; which takes a scene, its plan says."""
 SolverName: TypeAlias = Literal[
     "DOP853",
     "RK23",
@@ -226,6 +232,7 @@ SolverName: TypeAlias = Literal[
     "tsitouras54",
     "verner98",
 ]
+"""Methods of `visviva.solve_ivp`: SciPy's names and those here."""
 ColumnName: TypeAlias = Literal[
     "angular_momentum",
     "angular_velocity",
@@ -239,6 +246,7 @@ ColumnName: TypeAlias = Literal[
     "velocity",
     "virial",
 ]
+"""What the run of a scene can record at its times."""
 # written by tools/write_names.py: end
 
 GeneralizedMethodName: TypeAlias = (

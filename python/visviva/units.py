@@ -8,6 +8,14 @@ Sources: IAU 2012 resolution B2 (astronomical unit), IAU 2015 resolutions B2 (pa
 and the planets), IAU 1976 (Gauss's constant); CODATA 2022 (Mohr, Newell, Taylor & Tiesinga, Rev. Mod. Phys. 97 (2025)
 025002), of which the digits in brackets are the standard uncertainty of the last ones; the SI of 2019 (exact e, h, k,
 c).
+
+Examples
+--------
+>>> import visviva as vv
+>>> round((2.0 * vv.units.GM_EARTH / vv.units.EARTH_EQUATORIAL_RADIUS) ** 0.5)  # to escape from the Earth, in m/s
+11180
+>>> round(vv.units.GM_EARTH / vv.units.GM_SUN, 12)  # the mass of the Earth in those of the Sun
+3.003489e-06
 """
 
 from __future__ import annotations
@@ -55,32 +63,53 @@ __all__ = [
     "Units",
 ]
 
-# In SI units.
-SPEED_OF_LIGHT = 299792458.0  # exact
+# Each with its unit and its source, which the reference shows; a test looks for them.
+SPEED_OF_LIGHT = 299792458.0
+"""In m/s, exact. Source: SI of 2019."""
 DAY = 86400.0
+"""In s, exact. Source: IAU 1976, which defines it so."""
 JULIAN_YEAR = 365.25 * DAY
-ASTRONOMICAL_UNIT = 149597870700.0  # exact, IAU 2012 B2
-PARSEC = 3.0856775814913673e16  # 648000/π au, IAU 2015 B2
-GM_SUN = 1.3271244e20  # nominal, exact, IAU 2015 B3
-GM_EARTH = 3.986004e14  # likewise
-GM_JUPITER = 1.2668653e17  # likewise
-SOLAR_RADIUS = 6.957e8  # likewise
-EARTH_EQUATORIAL_RADIUS = 6.3781e6  # likewise
-JUPITER_EQUATORIAL_RADIUS = 7.1492e7  # likewise
-GRAVITATIONAL_CONSTANT = 6.67430e-11  # (15), CODATA 2022 and 2018
-ELEMENTARY_CHARGE = 1.602176634e-19  # exact
-PLANCK_CONSTANT = 6.62607015e-34  # exact
-BOLTZMANN_CONSTANT = 1.380649e-23  # exact
-VACUUM_PERMITTIVITY = 8.8541878188e-12  # (14), CODATA 2022
-ATOMIC_MASS_CONSTANT = 1.66053906892e-27  # (52), CODATA 2022
-ELECTRON_MASS = 9.1093837139e-31  # (28), CODATA 2022
-PROTON_MASS = 1.67262192595e-27  # (52), CODATA 2022
-BOHR_RADIUS = 5.29177210544e-11  # (82), CODATA 2022
-HARTREE = 4.3597447222060e-18  # (48), CODATA 2022
-SOLAR_MASS = GM_SUN / GRAVITATIONAL_CONSTANT  # as good as G: five digits
-
-# In au^1.5 / (day √(solar mass)): the k whose square was the G of the IAU's system of 1976 and of JPL's DE405.
+"""In s, exact: 365.25 days. Source: IAU 1976."""
+ASTRONOMICAL_UNIT = 149597870700.0
+"""In m, exact. Source: IAU 2012 B2."""
+PARSEC = 3.0856775814913673e16
+"""In m: 648000/π astronomical units. Source: IAU 2015 B2."""
+GM_SUN = 1.3271244e20
+"""In m³/s², nominal and so exact. Source: IAU 2015 B3."""
+GM_EARTH = 3.986004e14
+"""In m³/s², nominal and so exact. Source: IAU 2015 B3."""
+GM_JUPITER = 1.2668653e17
+"""In m³/s², nominal and so exact. Source: IAU 2015 B3."""
+SOLAR_RADIUS = 6.957e8
+"""In m, nominal and so exact. Source: IAU 2015 B3."""
+EARTH_EQUATORIAL_RADIUS = 6.3781e6
+"""In m, nominal and so exact. Source: IAU 2015 B3."""
+JUPITER_EQUATORIAL_RADIUS = 7.1492e7
+"""In m, nominal and so exact. Source: IAU 2015 B3."""
+GRAVITATIONAL_CONSTANT = 6.67430e-11
+"""In m³/(kg s²), 6.67430(15)e-11. Source: CODATA 2022, the same as of 2018."""
+ELEMENTARY_CHARGE = 1.602176634e-19
+"""In C, exact; an electronvolt is as many J. Source: SI of 2019."""
+PLANCK_CONSTANT = 6.62607015e-34
+"""In J s, exact. Source: SI of 2019."""
+BOLTZMANN_CONSTANT = 1.380649e-23
+"""In J/K, exact. Source: SI of 2019."""
+VACUUM_PERMITTIVITY = 8.8541878188e-12
+"""In F/m, 8.8541878188(14)e-12. Source: CODATA 2022."""
+ATOMIC_MASS_CONSTANT = 1.66053906892e-27
+"""In kg, 1.66053906892(52)e-27: a dalton. Source: CODATA 2022."""
+ELECTRON_MASS = 9.1093837139e-31
+"""In kg, 9.1093837139(28)e-31. Source: CODATA 2022."""
+PROTON_MASS = 1.67262192595e-27
+"""In kg, 1.67262192595(52)e-27. Source: CODATA 2022."""
+BOHR_RADIUS = 5.29177210544e-11
+"""In m, 5.29177210544(82)e-11. Source: CODATA 2022."""
+HARTREE = 4.3597447222060e-18
+"""In J, 4.3597447222060(48)e-18. Source: CODATA 2022."""
+SOLAR_MASS = GM_SUN / GRAVITATIONAL_CONSTANT
+"""In kg, as good as G: five digits. Source: IAU 2015 B3 and CODATA 2022, `GM_SUN` / `GRAVITATIONAL_CONSTANT`."""
 GAUSSIAN_GRAVITATIONAL_CONSTANT = 0.01720209895
+"""In au^1.5/(day √(solar mass)): the k whose square was the G of JPL's DE405. Source: IAU 1976."""
 
 # e²/4πε₀ in J m.
 _COULOMB = ELEMENTARY_CHARGE**2 / (4.0 * 3.141592653589793 * VACUUM_PERMITTIVITY)
@@ -153,8 +182,11 @@ def _system(name: str, length: float, mass: float, time: float, source: str, gm:
 
 _CODATA = "CODATA 2022"
 SI = _system("metre, kilogram, second", 1.0, 1.0, 1.0, _CODATA)
+"""Metre, kilogram, second. Source: CODATA 2022."""
 CGS = _system("centimetre, gram, second", 1e-2, 1e-3, 1.0, _CODATA)
+"""Centimetre, gram, second. Source: CODATA 2022."""
 KILOMETER_KILOGRAM_SECOND = _system("kilometre, kilogram, second", 1e3, 1.0, 1.0, _CODATA)
+"""Kilometre, kilogram, second. Source: CODATA 2022."""
 # The mass is the Sun's nominal one, so G has all its digits: a mass is given as its GM over GM_SUN.
 AU_DAY_SOLAR_MASS = _system(
     "astronomical unit, day, solar mass",
@@ -164,6 +196,7 @@ AU_DAY_SOLAR_MASS = _system(
     "IAU 2012 B2, IAU 2015 B3",
     GM_SUN,
 )
+"""Astronomical unit, day, mass of the Sun. Source: IAU 2012 B2, IAU 2015 B3."""
 AU_YEAR_SOLAR_MASS = _system(
     "astronomical unit, Julian year, solar mass",
     ASTRONOMICAL_UNIT,
@@ -172,9 +205,11 @@ AU_YEAR_SOLAR_MASS = _system(
     "IAU 2012 B2, IAU 2015 B3",
     GM_SUN,
 )
+"""Astronomical unit, Julian year, mass of the Sun. Source: IAU 2012 B2, IAU 2015 B3."""
 PARSEC_MEGAYEAR_SOLAR_MASS = _system(
     "parsec, million Julian years, solar mass", PARSEC, SOLAR_MASS, 1e6 * JULIAN_YEAR, "IAU 2015 B2 and B3", GM_SUN
 )
+"""Parsec, million Julian years, mass of the Sun. Source: IAU 2015 B2 and B3."""
 # ħ/E_h, in which k = 1 but for the uncertainty of its parts.
 ATOMIC = _system(
     "Bohr radius, electron mass, ħ/hartree",
@@ -183,6 +218,7 @@ ATOMIC = _system(
     PLANCK_CONSTANT / (2.0 * 3.141592653589793 * HARTREE),
     _CODATA,
 )
+"""Hartree's units: Bohr radius, electron mass, ħ/hartree. Source: CODATA 2022."""
 ANGSTROM_ELECTRONVOLT_DALTON = _system(
     "ångström, dalton, and the time in which the energy is an electronvolt, 10.18 fs",
     1e-10,
@@ -190,6 +226,7 @@ ANGSTROM_ELECTRONVOLT_DALTON = _system(
     1e-10 * (ATOMIC_MASS_CONSTANT / ELEMENTARY_CHARGE) ** 0.5,
     _CODATA,
 )
+"""Ångström, dalton, and the time in which the energy is an electronvolt. Source: CODATA 2022."""
 # No light and no charge: what they are depends on the cluster.
 N_BODY = Units(
     name="N-body units: G = 1, total mass 1, total energy −1/4",
@@ -201,6 +238,7 @@ N_BODY = Units(
     coulomb=0.0,
     source="Heggie & Mathieu, in The Use of Supercomputers in Stellar Dynamics (1986) 233",
 )
+"""Units in which G = 1, the total mass is 1 and the energy −1/4. Source: Heggie & Mathieu (1986)."""
 
 
 def __dir__() -> list[str]:

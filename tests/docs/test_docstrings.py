@@ -1,10 +1,14 @@
 """Every example in a docstring runs and gives what it says."""
 
+import ast
 import doctest
 import importlib
 import inspect
+import itertools
 import pkgutil
 import re
+from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import pytest
@@ -117,7 +121,9 @@ def test_every_public_name_is_documented(name: str) -> None:
         assert re.search(rf"(?m)^(\*{{0,2}}\w+, )*\*{{0,2}}{argument}\b", told), argument
     assert "Parameters\n---" in told
     assert "Raises\n---" in told or name in REFUSE_NOTHING
-    if not inspect.isclass(DOCUMENTED.get(name.rpartition(".")[0])):
+    of_a_class = inspect.isclass(DOCUMENTED.get(name.rpartition(".")[0]))
+    gives = inspect.signature(thing).return_annotation != "None"
+    if not of_a_class or (gives and thing.__module__.startswith("visviva.generalized")):
         assert re.search(r"(Returns|Yields)\n---", told)
 
 
@@ -179,6 +185,37 @@ def test_formulas_have_sources(name: str) -> None:
         return
     told = (inspect.getdoc(thing) or "") + (inspect.getdoc(owner) or "" if inspect.isclass(owner) else "")
     assert re.search(r"(?m)^References\n---|\(\d{4}\)|\d(rd|nd) ed\.|§", told)
+
+
+def sentences(module: ModuleType) -> dict[str, str]:
+    """What a module says of its data: the string after each assignment, which is what the reference shows."""
+    body = ast.parse(Path(str(module.__file__)).read_text(encoding="utf-8")).body
+    found = {}
+    for line, after in itertools.pairwise(body):
+        if isinstance(line, ast.Assign | ast.AnnAssign) and isinstance(after, ast.Expr):
+            name = line.targets[0] if isinstance(line, ast.Assign) else line.target
+            found[ast.unparse(name)] = str(ast.literal_eval(after.value))
+    return found
+
+
+DATA = [
+    (room, name)
+    for room in (visviva.typing, visviva.units)
+    for name in room.__all__
+    if not inspect.isclass(getattr(room, name))
+]
+
+
+@pytest.mark.parametrize(("room", "name"), DATA, ids=[name for _, name in DATA])
+def test_data_have_sentences(room: ModuleType, name: str) -> None:
+    """Each of its own; constants their unit and source, systems of units their source."""
+    told = sentences(room)[name]
+    if room is visviva.typing:
+        assert list(sentences(room).values()).count(told) == 1
+    else:
+        assert re.search(r" Source: .*\d.*\.$", told)
+    if isinstance(getattr(room, name), float):
+        assert re.match(r"In (m|s|kg|C|J|F|m³|au\^1\.5|J s)[/, :(]", told)
 
 
 def test_as_many_names_as_there_are() -> None:

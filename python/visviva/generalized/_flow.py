@@ -241,12 +241,22 @@ class Flow:
         rtol : float
             As in `run`.
 
+        Returns
+        -------
+        Lagrangian or Hamiltonian
+            What `self` is, with another velocity or momentum at the start.
+
         Raises
         ------
         InvalidInput
             For constraints, absolute values, or more than 16 coordinates.
         ConvergenceError
             If Newton's method finds no such motion from the present velocity.
+
+        References
+        ----------
+        Shooting: W. H. Press, S. A. Teukolsky, W. T. Vetterling & B. P. Flannery, *Numerical Recipes*, 3rd ed. (2007),
+        § 18.1.
 
         Examples
         --------

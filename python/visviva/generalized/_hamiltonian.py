@@ -126,10 +126,19 @@ class Hamiltonian(GeneralizedSystem):
     def lagrangian(self) -> Lagrangian:
         """The Lagrangian of the system, at the same state.
 
+        Returns
+        -------
+        Lagrangian
+            With velocities that belong to the momenta.
+
         Raises
         ------
         InvalidInput
             For a Hamiltonian that is not quadratic in the momenta.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 8.1.
 
         Examples
         --------
@@ -165,6 +174,10 @@ class Hamiltonian(GeneralizedSystem):
         InvalidInput
             Where equations depend on the time, and for states of another shape.
 
+        References
+        ----------
+        V. I. Arnold, *Mathematical Methods of Classical Mechanics*, 2nd ed., § 22.
+
         Examples
         --------
         >>> import sympy, visviva as vv
@@ -183,10 +196,19 @@ class Hamiltonian(GeneralizedSystem):
         f, g : sympy.Expr
             Functions of coordinates, momenta, time and parameters.
 
+        Returns
+        -------
+        sympy.Expr
+            In the symbols of the Hamiltonian.
+
         Raises
         ------
         InvalidInput
             For an expression that the core does not know; of a system that is a function of Python.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 9.5.
 
         Examples
         --------

@@ -210,10 +210,19 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
     def hamiltonian(self) -> Hamiltonian:
         """The Hamiltonian of the system, at the same state; momenta are called ``p_<name>``.
 
+        Returns
+        -------
+        Hamiltonian
+            With momenta that belong to the velocities.
+
         Raises
         ------
         InvalidInput
             For a Lagrangian that is not quadratic in the velocities, dissipation or constraints.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 8.1.
 
         Examples
         --------
@@ -238,10 +247,19 @@ class Lagrangian(GeneralizedSystem, SmallMotions, Variations, Laws):
         momenta : dict, optional
             Which ones, and their momenta (None: those of the start); all cyclic ones of the start if not given.
 
+        Returns
+        -------
+        Lagrangian
+            Of the coordinates that are left; Routh's function takes the place of L.
+
         Raises
         ------
         InvalidInput
             For coordinates that are not cyclic.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 8.3.
 
         Examples
         --------

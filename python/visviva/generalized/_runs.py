@@ -149,7 +149,7 @@ class Runs(States):
             holonomic constraints ``rattle`` does the same, and ``rattle4``, ``6`` and ``8`` are its compositions of
             those orders.
         rtol : float
-            Relative tolerance of a step; refused beside `dt`.
+            Relative tolerance of a step, from 1e-15 to 1e-2; if not given 1e-12. Refused beside `dt`.
         atol : float, array_like of shape (n,), or dict, optional
             Absolute tolerance of methods that estimate their error in a step, as ``dop853``: the root mean square of
             the errors, each divided by ``atol + rtol·|number|``, is at most 1. ``{"position": ..., "velocity": ...}``

@@ -34,10 +34,19 @@ class SmallMotions:
         at : array_like, shape (n,), optional
             The equilibrium; the start if not given.
 
+        Returns
+        -------
+        Linearization
+            Its frequencies, modes and matrices, at this place.
+
         Raises
         ------
         InvalidInput
             For a place that is none; where equations depend on the time.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
@@ -60,11 +69,20 @@ class SmallMotions:
         near : array_like, shape (S, n), optional
             Where Newton's method starts; a grid over −π … π if not given, of at most 2000 places, which may miss some.
 
+        Returns
+        -------
+        list of Equilibrium
+            In the order of their places; empty where none is found.
+
         Raises
         ------
         InvalidInput
             For constraints: eliminate them; where equations depend on the time; if the only ones are places where the
             mass matrix is singular.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
@@ -84,10 +102,19 @@ class SmallMotions:
         near : array_like, shape (n,), optional
             Where Newton's method starts; the start if not given, or rest at zero.
 
+        Returns
+        -------
+        Linearization
+            About the equilibrium that Newton's method comes to.
+
         Raises
         ------
         InvalidInput
             If it finds no equilibrium; where equations depend on the time.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 6.1–6.3.
 
         Examples
         --------
@@ -112,6 +139,11 @@ class SmallMotions:
         ----------
         turn : float, optional
             Of a motion that does not turn back: how far the coordinate goes in a period, as 2π.
+
+        Returns
+        -------
+        float
+            Positive, in the unit of time of the system.
 
         Raises
         ------
@@ -145,10 +177,19 @@ class SmallMotions:
         turn : float, optional
             As in `period`.
 
+        Returns
+        -------
+        float
+            Of a motion that turns back the area within its curve in phase space, over 2π.
+
         Raises
         ------
         InvalidInput
             As `period`.
+
+        References
+        ----------
+        H. Goldstein, C. Poole & J. Safko, *Classical Mechanics*, 3rd ed., § 10.6.
 
         Examples
         --------

@@ -121,6 +121,11 @@ class States(Shown):
         t0 : float, optional
             The time of the start.
 
+        Returns
+        -------
+        Lagrangian or Hamiltonian
+            Another one; `self` stays as it is.
+
         Raises
         ------
         InvalidInput
@@ -161,6 +166,11 @@ class States(Shown):
             The starts, with velocities or momenta as in `at`.
         parameters : dict, optional
             Values (B,) of some parameters.
+
+        Returns
+        -------
+        GeneralizedEnsemble
+            Of B copies.
 
         Raises
         ------

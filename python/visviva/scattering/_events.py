@@ -22,9 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-    from visviva._progress import Progress, Report
     from visviva.scattering._channels import Channel
     from visviva.scattering._importance import LargeAngles, Strata
+    from visviva.typing import Progress, Report
 
 __all__ = ["scattering_events"]
 

@@ -24,10 +24,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva._progress import Progress
     from visviva.potentials import Potential
     from visviva.scattering._bins import Bins
-    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, ScreeningName
+    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, Progress, ScreeningName
 
 __all__ = ["Foil"]
 
@@ -358,6 +357,10 @@ class Foil(Record):
         ------
         InvalidInput
             As `stopping_power`; for an energy below the lowest, or a foil that stops nothing.
+
+        References
+        ----------
+        ICRU Report 49 (1993), which calls it the range of continuous slowing down; for S see `Foil`.
 
         Examples
         --------

@@ -27,9 +27,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
-    from visviva._progress import Progress
     from visviva.scattering._bins import Axes, Bins
-    from visviva.typing import Executor, TallyName
+    from visviva.typing import Executor, Progress, TallyName
 
     Tallies: TypeAlias = (
         Mapping[TallyName, ArrayLike | Bins]

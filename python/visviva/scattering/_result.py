@@ -27,9 +27,8 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from visviva._progress import Progress
     from visviva.potentials import Potential
-    from visviva.typing import Executor, TallyName
+    from visviva.typing import Executor, Progress, TallyName
 
 __all__ = ["MonteCarlo"]
 

@@ -11,7 +11,7 @@ from visviva._executors import answers, checked_executor
 from visviva.errors import InternalError
 
 if TYPE_CHECKING:
-    from visviva._progress import Report
+    from visviva.typing import Report
 
 # Ranges in all, and events at least that are worth a journey.
 _MOST, _LEAST = 64, 1 << 20
