@@ -33,6 +33,7 @@ __all__ = [
     "mark_round_off",
     "new_figure",
     "plot_trajectory",
+    "set_ends",
     "sizes_of_terms",
 ]
 
@@ -166,11 +167,23 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
         look = {"marker": ".", "linestyle": "none"} if len(trajectory) < _A_PATH else {}
         (line,) = axes.plot(*position[:, body].T, linewidth=0.8, label=label, **look)
         axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
+    if len(shown) == 3:
+        # All that is drawn: by themselves, axes give what is flat a height of 0.1, however small the rest is.
+        drawn = np.array([axes.xy_dataLim.intervalx, axes.xy_dataLim.intervaly, axes.zz_dataLim.intervalx])
+        set_ends(axes, drawn.min(axis=1), drawn.max(axis=1))
     label_places(axes, shown)
     axes.set_title("orbits")
     if names and len(bodies) <= LEGEND:
         # Orbits may be anywhere within.
         legend_beside(axes)
+
+
+def set_ends(axes: Any, low: NDArray[np.float64], high: NDArray[np.float64]) -> None:
+    """Show what is between two corners, with room about what moves, and some where nothing does."""
+    size = max(float(np.abs(low).max()), float(np.abs(high).max()))
+    room = 0.05 * max(float((high - low).max()), 1e-12 * size, float(np.finfo(float).tiny))
+    for axis, least, greatest in zip("xyz", low, high, strict=False):
+        getattr(axes, f"set_{axis}lim")(least - room, greatest + room)
 
 
 def label_places(axes: Any, shown: Sequence[int]) -> None:
