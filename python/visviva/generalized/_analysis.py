@@ -69,7 +69,7 @@ class Linearization(Shown):
     >>> print(small)  # doctest: +ELLIPSIS
     Small motions about (0): stable
        angular frequency  period      shape (theta)
-    1  2.21472346         2.83700601  (0.5)
+    1  2.21472346         2.83700671  (0.5)
     angular frequencies in radians per unit of time, periods in units of time; ...
     """
 
