@@ -122,14 +122,14 @@ def set_box(axes: Any, sides: Sequence[float] | NDArray[np.float64]) -> None:
     most, least = _NUMBERS if inches > _SMALL else _FEWER
     for letter, side in zip("xyz", sides, strict=True):
         axes.locator_params(axis=letter, nbins=max(least, round(most * side / longest)))
-        # Those of the third axis are beside its line, not below.
-        pad = 4.0 if letter == "z" else 0.0
-        axes.tick_params(axis=letter, labelsize="small" if inches > _SMALL else "x-small", pad=pad)
         axis = getattr(axes, f"{letter}axis")
-        # A name is the further from its line the wider its numbers are: the third one is wholly beside them.
         numbers = axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
         wide = _DIGIT * max(0, max(map(len, numbers), default=0) - 2)
-        axis.labelpad = (9.0 + (wide if letter == "z" else 0.3 * wide)) / cube
+        # Those of the third axis are beside its line, not below, and placed by their middle.
+        pad, further = (4.0 + 0.5 * wide, wide) if letter == "z" else (0.0, 0.3 * wide)
+        axes.tick_params(axis=letter, labelsize="small" if inches > _SMALL else "x-small", pad=pad)
+        # A name is the further from its line the wider its numbers are.
+        axis.labelpad = (9.0 + further) / cube
 
 
 def legend_beside(axes: Any, *, columns: int = 1, fontsize: str = "small") -> None:

@@ -176,14 +176,21 @@ def test_numbers_along_three_axes_do_not_lie_on_each_other(name: str, own: bool)
         assert not any(box.padded(2).contains(*middle) for box in boxes), axis.axis_name
 
 
-def test_the_name_of_the_third_axis_is_on_no_number_of_it() -> None:
-    for run in (HELIX, ellipse(0.1)):
-        figure = run.plot(plane="xyz")
+def test_numbers_of_the_third_axis_lie_between_its_line_and_its_name() -> None:
+    wide = vv.rigid.free_rotation([1e-9, 2e-9, 2.5e-9], [0.3, 0.9, -0.5], T)
+    for figure in (HELIX.plot(plane="xyz"), ellipse(0.1).plot(plane="xyz"), wide.plot("polhode")):
         figure.savefig(BytesIO())
         axis = figure.axes[0].zaxis
-        name = axis.label.get_window_extent()
-        assert not any(name.overlaps(tick.label1.get_window_extent()) for tick in axis.get_major_ticks())
-        assert name.x1 <= figure.axes[0].get_window_extent().x1
+        name, line = axis.label.get_window_extent(), axis.line.get_window_extent()
+        low, high = sorted(axis.get_view_interval())
+        shown = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+        for box in [label.get_window_extent() for label in shown]:
+            # The first stroke of a minus sign may not be lost on the line.
+            assert line.x0 < box.x0
+            assert not name.overlaps(box)
+        # Within the figure, and not on what is beside it.
+        beside = figure.axes[1].get_tightbbox().x0 if len(figure.axes) > 1 else figure.bbox.x1
+        assert name.x1 < beside
 
 
 @pytest.mark.parametrize("size", [10.0**power for power in range(-12, 13, 3)] + [0.1, 0.3])
