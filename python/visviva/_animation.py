@@ -17,7 +17,7 @@ from visviva._arrays import number, whole_number
 from visviva._paths import path_text
 from visviva._style import COLORS, FRAME, legend_beside
 from visviva.errors import InvalidInput
-from visviva.plot import chosen_bodies, directions, label_places, new_figure
+from visviva.plot import chosen_bodies, directions, label_places, new_figure, set_ends
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -107,11 +107,7 @@ def _moving(
     names, t, position = places.names, places.t, places.position[..., shown]
     joined = position[:, :0] if places.lines is None else places.lines[..., shown]
     everywhere = np.concatenate([position, joined], axis=1)
-    low, high = np.nanmin(everywhere, axis=(0, 1)), np.nanmax(everywhere, axis=(0, 1))
-    # Room about what moves, and some where nothing does.
-    room = 0.05 * max(float((high - low).max()), 1e-12 * float(np.nanmax(np.abs(everywhere))), np.finfo(float).tiny)
-    for axis, least, greatest in zip("xyz", low, high, strict=False):
-        getattr(axes, f"set_{axis}lim")(least - room, greatest + room)
+    set_ends(axes, np.nanmin(everywhere, axis=(0, 1)), np.nanmax(everywhere, axis=(0, 1)))
     label_places(axes, shown)
     if len(shown) == 2:
         axes.set_aspect("equal", adjustable="box")

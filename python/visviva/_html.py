@@ -15,7 +15,7 @@ import numpy as np
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-__all__ = ["Record", "Sheet", "Shown", "as_html", "briefly", "first_rows"]
+__all__ = ["Record", "Sheet", "Shown", "as_html", "as_text", "briefly", "first_rows"]
 
 # Rows of a long table that are shown; the rest are counted.
 _ROWS = 12
@@ -82,7 +82,10 @@ class Record(Shown):
 
     def __repr__(self) -> str:
         name, text = type(self).__name__, ", ".join(f"{name}={text}" for name, text in self._told())
-        return f"{name}({text if len(text) <= _TEXT else text[:_TEXT] + '…'})"
+        if len(text) > _TEXT:
+            # Not within a number.
+            text = text[:_TEXT].rpartition(", ")[0] + ", …"
+        return f"{name}({text})"
 
     def _sheet(self) -> Sheet:
         return Sheet(type(self).__name__, self._told())
@@ -137,6 +140,24 @@ def as_html(sheet: Sheet | str) -> str:
         made += f"<thead><tr>{head}</tr></thead>"
     made += f"<tbody>{rows}</tbody></table>"
     return made + (f"<p>{escape(sheet.note)}</p>" if sheet.note else "")
+
+
+def as_text(sheet: Sheet) -> str:
+    """A sheet as lines of text, whose columns stand below each other.
+
+    Examples
+    --------
+    >>> from visviva._html import Sheet, as_text
+    >>> print(as_text(Sheet("two", [("a", "1"), ("long", "2")], ("", "value"))))
+    two
+          value
+    a     1
+    long  2
+    """
+    rows = [row for row in (sheet.header, *sheet.rows) if row]
+    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
+    lines = ["  ".join(f"{text:<{width}}" for text, width in zip(row, widths, strict=True)).rstrip() for row in rows]
+    return "\n".join([sheet.caption, *lines, *([sheet.note] if sheet.note else [])])
 
 
 def first_rows(length: int, row: Any) -> tuple[list[tuple[str, ...]], str]:

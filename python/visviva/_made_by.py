@@ -5,18 +5,18 @@ Results are public so that they can be named in types and asked for their kind; 
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NoReturn
+from enum import IntEnum
+from typing import NoReturn
 
 from visviva._text import article
 from visviva.errors import InvalidInput
 
-if TYPE_CHECKING:
-    from enum import IntEnum
-
-__all__ = ["made_by", "refuse_value"]
+__all__ = ["NamedCode", "made_by"]
 
 # What is always in what the core gives, and in what it was asked.
 _TIMES = {"result": "t", "asked": "outputs"}
+# The last letters of what formats a number.
+_NUMERIC = tuple("bcdoxXeEfFgGn%")
 _WORDS = {"dict": "what the core gives", "ndarray": "an array"}
 
 
@@ -53,22 +53,35 @@ visviva.load
             raise InvalidInput(argument, f"expected {wanted}, got {came}; {result} is made by {how}")
 
 
-def refuse_value(kind: type[IntEnum], value: object) -> NoReturn:
-    """Refuse what is no value of an enumeration.
+class NamedCode(IntEnum):
+    """Base of the codes of the core: numbers that print as their names.
 
     Raises
     ------
     InvalidInput
-        With those that there are.
+        For what is none of them, with those that there are.
 
     Examples
     --------
     >>> import visviva as vv
+    >>> print(vv.Status.OK), f"{vv.Status.OK} is {vv.Status.OK:d}"
+    OK
+    (None, 'OK is 0')
     >>> vv.Status(99)
     Traceback (most recent call last):
       ...
     visviva.errors.InvalidInput: Status: expected one of 0 (OK), 1 (CLOSE_ENCOUNTER), 2 (STEP_FAILURE), \
 3 (INTERRUPTED), 4 (TOO_MANY_STEPS), 5 (STOPPED), 6 (OUTSIDE_DOMAIN), 7 (RESTING), got 99
     """
-    known = ", ".join(f"{member.value} ({member.name})" for member in kind)
-    raise InvalidInput(kind.__name__, f"expected one of {known}, got {value!r}")
+
+    def __str__(self) -> str:
+        return self.name
+
+    def __format__(self, spec: str) -> str:
+        # Who asks for a number by the kind of it gets the number.
+        return format(int(self) if spec.endswith(_NUMERIC) else self.name, spec)
+
+    @classmethod
+    def _missing_(cls, value: object) -> NoReturn:
+        known = ", ".join(f"{member.value} ({member.name})" for member in cls)
+        raise InvalidInput(cls.__name__, f"expected one of {known}, got {value!r}")

@@ -46,6 +46,8 @@ LINES = ("-", "--", "-.", ":")
 _NUMBERS = (4, 2)
 # Inches of axes below which there are fewer and smaller ones.
 _SMALL, _FEWER = 3.0, (3, 1)
+# Points of width of a digit of them.
+_DIGIT = 5.0
 # A legend that would take more than this part of the height of axes that were given is left to the caller.
 _ROOM = 0.45
 # And one beside axes that is more than this part of their width goes within.
@@ -115,14 +117,19 @@ def set_box(axes: Any, sides: Sequence[float] | NDArray[np.float64]) -> None:
     longest = max(sides)
     # A box that is long in one direction is drawn longer than a cube.
     cube = (np.linalg.norm(sides) / (longest * np.sqrt(3.0))) ** 0.5
-    axes.set_box_aspect(sides, zoom=float(cube * max(0.5, 0.92 - 0.45 / inches)))
+    # A tuple: an array would be scaled in place.
+    axes.set_box_aspect(tuple(sides), zoom=float(cube * max(0.5, 0.92 - 0.45 / inches)))
     most, least = _NUMBERS if inches > _SMALL else _FEWER
     for letter, side in zip("xyz", sides, strict=True):
         axes.locator_params(axis=letter, nbins=max(least, round(most * side / longest)))
-        # Those of the third axis are beside its line, not below.
-        pad = 4.0 if letter == "z" else 0.0
+        axis = getattr(axes, f"{letter}axis")
+        numbers = axis.get_major_formatter().format_ticks(axis.get_majorticklocs())
+        wide = _DIGIT * max(0, max(map(len, numbers), default=0) - 2)
+        # Those of the third axis are beside its line, not below, and placed by their middle.
+        pad, further = (4.0 + 0.5 * wide, wide) if letter == "z" else (0.0, 0.3 * wide)
         axes.tick_params(axis=letter, labelsize="small" if inches > _SMALL else "x-small", pad=pad)
-        getattr(axes, f"{letter}axis").labelpad = 9.0 / cube
+        # A name is the further from its line the wider its numbers are.
+        axis.labelpad = (9.0 + further) / cube
 
 
 def legend_beside(axes: Any, *, columns: int = 1, fontsize: str = "small") -> None:

@@ -59,8 +59,8 @@ def short(record: DataclassInstance) -> str:
     Examples
     --------
     >>> import visviva as vv
-    >>> vv.orbits.elements(1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
-    Elements(mu=1, 21 more: print shows them)
+    >>> vv.orbits.conic(1.0, 1.0, [1.0, 0.0, 0.0], [0.0, 1.2, 0.0])
+    Conic(mass=1, 12 more: print shows them)
     """
     first, *rest = fields(record)
     value = getattr(record, first.name)

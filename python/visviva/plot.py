@@ -32,7 +32,9 @@ __all__ = [
     "is_noise",
     "mark_round_off",
     "new_figure",
+    "plot_energy",
     "plot_trajectory",
+    "set_ends",
     "sizes_of_terms",
 ]
 
@@ -44,6 +46,8 @@ LEGEND = 24
 """A legend of more names would hide the picture."""
 # So few outputs are places, and no path.
 _A_PATH = 10
+# Extents below this part of the places are rounding.
+_LINE = 1e-13
 # What turns at more than this part of its points is no line.
 _TURNING = 0.25
 # A relative change of the energy below this is the rounding of its terms, and no drift.
@@ -99,7 +103,10 @@ def given_axes(axes: Any) -> Axes:
 
 
 def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, ax: Axes | None) -> Figure:
-    """Orbits and, in a figure of its own and if it is known, the relative change of the energy."""
+    """Orbits and, in a figure of its own and if it is known, the relative change of the energy.
+
+    Of motions along one line, which is no picture, places against time instead.
+    """
     chosen, shown = chosen_bodies("plot", trajectory, bodies), directions(trajectory.position, plane)
     with_energy = "energy" in trajectory.recorded or {"position", "velocity"} <= set(trajectory.recorded)
     solid = len(shown) == 3
@@ -109,11 +116,31 @@ def plot_trajectory(trajectory: Trajectory, bodies: object, plane: str | None, a
             raise InvalidInput("ax", f"expected axes of {wanted} dimensions for plane={plane!r}, got {ax!r}")
         _orbits(ax, trajectory, chosen, shown)
         return cast("Figure", ax.figure)
+    line = _line(trajectory, chosen) if plane is None else None
     figure, axes = new_figure(2 if with_energy else 1, (11.0 if with_energy else 5.5, 5.0), solid=(0,) if solid else ())
-    _orbits(axes[0], trajectory, chosen, shown)
+    if line is None:
+        _orbits(axes[0], trajectory, chosen, shown)
+    else:
+        from visviva._plot_columns import draw_column
+
+        draw_column(axes[0], trajectory, "position", chosen, line)
+        if trajectory.scene.particles.names and len(chosen) <= LEGEND:
+            legend_beside(axes[0])
     if with_energy:
-        _energy(axes[1], trajectory)
+        plot_energy(axes[1], trajectory)
     return figure
+
+
+def _line(trajectory: Trajectory, bodies: list[int]) -> int | None:
+    """The direction of the one line along an axis that all stay on; None of few times, which are places."""
+    if len(trajectory) < _A_PATH:
+        return None
+    places = trajectory.position[:, bodies].reshape(-1, 3)
+    extent = np.ptp(places, axis=0)
+    # Rounding of the places, and of what moves along.
+    across = extent <= _LINE * np.maximum(np.abs(places).max(axis=0), extent.max())
+    along = np.flatnonzero(~across)
+    return int(along[0]) if len(along) == 1 else None
 
 
 def chosen_bodies(what: str, trajectory: Trajectory, bodies: object) -> list[int]:
@@ -166,11 +193,23 @@ def _orbits(axes: Any, trajectory: Trajectory, bodies: list[int], shown: Sequenc
         look = {"marker": ".", "linestyle": "none"} if len(trajectory) < _A_PATH else {}
         (line,) = axes.plot(*position[:, body].T, linewidth=0.8, label=label, **look)
         axes.plot(*trajectory.position[-1:, body, shown].T, "o", markersize=4, color=line.get_color())
+    if len(shown) == 3:
+        # All that is drawn: by themselves, axes give what is flat a height of 0.1, however small the rest is.
+        drawn = np.array([axes.xy_dataLim.intervalx, axes.xy_dataLim.intervaly, axes.zz_dataLim.intervalx])
+        set_ends(axes, drawn.min(axis=1), drawn.max(axis=1))
     label_places(axes, shown)
     axes.set_title("orbits")
     if names and len(bodies) <= LEGEND:
         # Orbits may be anywhere within.
         legend_beside(axes)
+
+
+def set_ends(axes: Any, low: NDArray[np.float64], high: NDArray[np.float64]) -> None:
+    """Show what is between two corners, with room about what moves, and some where nothing does."""
+    size = max(float(np.abs(low).max()), float(np.abs(high).max()))
+    room = 0.05 * max(float((high - low).max()), 1e-12 * size, float(np.finfo(float).tiny))
+    for axis, least, greatest in zip("xyz", low, high, strict=False):
+        getattr(axes, f"set_{axis}lim")(least - room, greatest + room)
 
 
 def label_places(axes: Any, shown: Sequence[int]) -> None:
@@ -217,7 +256,8 @@ def is_noise(change: NDArray[np.float64]) -> bool:
     return steps.shape[-1] > 2 and bool(np.mean(steps[..., 1:] * steps[..., :-1] < 0.0) > _TURNING)
 
 
-def _energy(axes: Axes, trajectory: Trajectory) -> None:
+def plot_energy(axes: Axes, trajectory: Trajectory) -> None:
+    """The relative change of the energy against time; where it is rounding, as points in a band."""
     energy = trajectory.energy
     scale = abs(energy[0]) if energy[0] != 0.0 else 1.0
     stride = max(1, len(trajectory) // POINTS)

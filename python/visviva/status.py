@@ -1,14 +1,11 @@
 """How a run ends: the codes of the core, of results and of files."""
 
-from enum import IntEnum
-from typing import NoReturn
-
-from visviva._made_by import refuse_value
+from visviva._made_by import NamedCode
 
 __all__ = ["Status"]
 
 
-class Status(IntEnum):
+class Status(NamedCode):
     """How a trajectory ended, and what to do about it; `OK` and `STOPPED` are no failures.
 
     A single run that fails raises; of an ensemble each copy has its status in ``out.status``, as a number.
@@ -40,6 +37,8 @@ class Status(IntEnum):
     >>> import visviva as vv
     >>> vv.problems.figure_eight().scene.run(t=1.0).status is vv.Status.OK
     True
+    >>> str(vv.Status.STOPPED), int(vv.Status.STOPPED)
+    ('STOPPED', 5)
     """
 
     OK = 0
@@ -50,10 +49,6 @@ class Status(IntEnum):
     STOPPED = 5
     OUTSIDE_DOMAIN = 6
     RESTING = 7
-
-    @classmethod
-    def _missing_(cls, value: object) -> NoReturn:
-        refuse_value(cls, value)
 
 
 def __dir__() -> list[str]:

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from visviva.body import BodyMotion
     from visviva.conservation import Conservation
     from visviva.scene import Scene
+    from visviva.typing import ColumnName
 
 __all__ = ["Status", "Trajectory"]
 
@@ -251,24 +252,34 @@ class Trajectory(Recorded):
 
     def plot(
         self,
+        column: ColumnName | None = None,
         *,
         bodies: object = None,
+        component: Literal["x", "y", "z", "w"] | None = None,
         plane: Literal["xy", "xz", "yz", "xyz"] | None = None,
         ax: Axes | None = None,
     ) -> Figure:
-        """Orbits beside the relative change of the energy, as a matplotlib Figure.
+        """Orbits beside the relative change of the energy, or a column against time, as a matplotlib Figure.
 
-        A change of the energy that is no more than rounding is drawn as points in a band of that name.
+        A change of the energy that is no more than rounding is drawn as points in a band of that name. Where all
+        bodies stay on one line along x, y or z, places against time are drawn for orbits, if neither a plane nor axes
+        are given.
 
         Parameters
         ----------
+        column : str, optional
+            What is drawn against time, a panel for each component: any that was recorded, or that follows from those.
+            Orbits if not given.
         bodies : sequence of int or str, optional
-            Which; all if not given.
+            Which; all if not given. Of a column of the whole scene, none.
+        component : {"x", "y", "z", "w"}, optional
+            Of a column, one panel; all if not given.
         plane : str, optional
             ``"xy"``, ``"xz"``, ``"yz"``, or ``"xyz"`` for three dimensions. By default the coordinate plane in which
             the orbits extend most, x–y if in doubt.
         ax : matplotlib.axes.Axes, optional
-            Where the orbits go, without the energy; of three dimensions for ``"xyz"``.
+            Where the orbits go, without the energy; of three dimensions for ``"xyz"``. Of a column, where its one panel
+            goes.
 
         Returns
         -------
@@ -278,18 +289,33 @@ class Trajectory(Recorded):
         Raises
         ------
         visviva.InvalidInput
-            If matplotlib is not installed, positions were not recorded, there is no body or no time, or an argument is
-            not one of these.
+            If matplotlib is not installed, what is drawn was not recorded, there is no body or no time, an argument is
+            not one of these, or a plane is given for a column or a component for orbits.
 
         Examples
         --------
-        >>> import visviva as vv
+        >>> import numpy as np, visviva as vv
         >>> figure = vv.problems.figure_eight().scene.run(t=[0.0, 1.0, 2.0]).plot(bodies=[0, 2])
         >>> len(figure.axes)
         2
+        >>> spring = vv.Scene(vv.Particles([1.0], [[1.0, 0.0, 0.0]]), vv.Harmonic(k=1.0))
+        >>> spring.run(t=np.linspace(0.0, 9.0, 99)).plot("position", component="x").axes[0].get_ylabel()
+        'position, x'
         """
         from visviva.plot import plot_trajectory
 
+        if column is not None:
+            from visviva._plot_columns import plot_column
+
+            if plane is not None:
+                raise InvalidInput(
+                    "plane", f"is of orbits, and {column!r} is drawn against time; say component= instead"
+                )
+            return plot_column(self, column, bodies, component, ax)
+        if component is not None:
+            raise InvalidInput(
+                "component", f"is of a column, as plot('position', component={component!r}); got no column"
+            )
         return plot_trajectory(self, bodies, plane, ax)
 
     def animate(

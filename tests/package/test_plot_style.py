@@ -18,6 +18,17 @@ FREE = vv.rigid.free_rotation([1.0, 2.0, 2.5], [0.3, 0.9, -0.5], T)
 TOP = vv.rigid.HeavyTop(A=5.0, C=1.0, mass=1.0, g=20.0, R=1.0).solve(T, theta=0.3, psi_dot=50.0, phi_dot=0.2)
 BEATS = vv.systems.coupled_oscillators(position=[1.0, 0.0]).run(t=np.linspace(0.0, 80.0, 801))
 PLANETS = vv.problems.outer_solar_system().scene.run(t=np.linspace(0.0, 6e4, 401), method="leapfrog", dt=50.0)
+HELIX = vv.Scene(
+    vv.Particles([1.0], [[1.0, 0.0, 0.0]], [[0.0, -1.0, 0.5]]), vv.UniformMagneticField([0.0, 0.0, 1.0], charge=[1.0])
+).run(t=np.linspace(0.0, 400.0, 1201))
+
+
+def ellipse(size: float) -> vv.Trajectory:
+    """A flat one, of such a size."""
+    bodies = vv.Particles([1.0], [[0.1 * size, 0.0, 0.0]], [[0.0, size, 0.0]])
+    return vv.Scene(bodies, vv.Harmonic(k=4.0)).run(t=np.linspace(0.0, 10.0, 201))
+
+
 Picture = Callable[[Any], Any]
 FLAT: dict[str, Picture] = {
     "coordinates": lambda ax: BEATS.plot(ax=ax),
@@ -33,6 +44,7 @@ SOLID: dict[str, Picture] = {
     "axes": lambda ax: FREE.plot("axes", ax=ax),
     "nutation": lambda ax: TOP.plot("nutation", ax=ax),
     "orbits": lambda ax: PLANETS.plot(plane="xyz", ax=ax),
+    "small orbits": lambda ax: ellipse(0.1).plot(plane="xyz", ax=ax),
 }
 
 
@@ -162,6 +174,52 @@ def test_numbers_along_three_axes_do_not_lie_on_each_other(name: str, own: bool)
         # Long names are slanted: their middle is on no number.
         middle = (0.5 * (name_of.x0 + name_of.x1), 0.5 * (name_of.y0 + name_of.y1))
         assert not any(box.padded(2).contains(*middle) for box in boxes), axis.axis_name
+
+
+def test_numbers_of_the_third_axis_lie_between_its_line_and_its_name() -> None:
+    wide = vv.rigid.free_rotation([1e-9, 2e-9, 2.5e-9], [0.3, 0.9, -0.5], T)
+    for figure in (HELIX.plot(plane="xyz"), ellipse(0.1).plot(plane="xyz"), wide.plot("polhode")):
+        figure.savefig(BytesIO())
+        axis = figure.axes[0].zaxis
+        name, line = axis.label.get_window_extent(), axis.line.get_window_extent()
+        low, high = sorted(axis.get_view_interval())
+        shown = [tick.label1 for tick in axis.get_major_ticks() if low <= tick.get_loc() <= high]
+        for box in [label.get_window_extent() for label in shown]:
+            # The first stroke of a minus sign may not be lost on the line.
+            assert line.x0 < box.x0
+            assert not name.overlaps(box)
+        # Within the figure, and not on what is beside it.
+        beside = figure.axes[1].get_tightbbox().x0 if len(figure.axes) > 1 else figure.bbox.x1
+        assert name.x1 < beside
+
+
+@pytest.mark.parametrize("size", [10.0**power for power in range(-12, 13, 3)] + [0.1, 0.3])
+def test_the_size_of_what_moves_is_no_matter(size: float) -> None:
+    """Of three dimensions: as many numbers, and as much of the box."""
+    for axes in (
+        ellipse(size).plot(plane="xyz").axes[0],
+        ellipse(size).animate(plane="xyz")._fig.axes[0],  # type: ignore[attr-defined]
+    ):
+        for letter in "xyz":
+            assert 2 <= len(getattr(axes, f"get_{letter}ticks")()) <= 7
+        low, high = axes.get_ylim()
+        assert 1.0 * size < high - low < 1.2 * size
+
+
+@pytest.mark.parametrize("inertia", [1e-12, 1.0, 1e12])
+def test_of_bodies_that_turn_the_moments_are_no_matter(inertia: float) -> None:
+    turning = vv.rigid.free_rotation(inertia * np.array([1.0, 2.0, 2.5]), [0.3, 0.9, -0.5], T)
+    axes = turning.plot("polhode").axes[0]
+    for letter in "xyz":
+        assert 2 <= len(getattr(axes, f"get_{letter}ticks")()) <= 7
+
+
+def test_a_second_run_in_the_same_box_is_shown_too() -> None:
+    axes = subplot(projection="3d")
+    ellipse(1.0).plot(plane="xyz", ax=axes)
+    ellipse(3.0).plot(plane="xyz", ax=axes)
+    low, high = axes.get_ylim()
+    assert high - low > 3.0
 
 
 def test_pictures_are_asked_for_in_one_way() -> None:

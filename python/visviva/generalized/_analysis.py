@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from visviva._arrays import float_array
-from visviva._html import Record
+from visviva._html import Record, Sheet, Shown, as_text, briefly
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 from visviva.generalized._calculus import Calculus
@@ -33,7 +33,7 @@ _BALANCED = 1e-8
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
-class Linearization(Record):
+class Linearization(Shown):
     """Small motions ξ about a place: M ξ̈ + C ξ̇ + K ξ = 0.
 
     Units: those of the system; frequencies in radians per time.
@@ -53,6 +53,8 @@ class Linearization(Record):
         Squared frequencies, those of unstable modes negative.
     rounding : ndarray, shape (n, n)
         By how much K may be off: what it changes by where place and parameters change in their last digits.
+    coordinates : tuple of str
+        What the numbers of places and modes are of.
 
     References
     ----------
@@ -64,6 +66,11 @@ class Linearization(Record):
     >>> small = vv.systems.pendulum(g=9.81, l=2.0).linearize(at=[0.0])
     >>> bool(abs(small.frequencies[0] - (9.81 / 2.0) ** 0.5) < 1e-15), small.stable
     (True, True)
+    >>> print(small)  # doctest: +ELLIPSIS
+    Small motions about (0): stable
+       angular frequency  period      shape (theta)
+    1  2.21472346         2.83700671  (0.5)
+    angular frequencies in radians per unit of time, periods in units of time; ...
     """
 
     position: NDArray[np.float64]
@@ -74,6 +81,18 @@ class Linearization(Record):
     modes: NDArray[np.float64] | None
     squares: NDArray[np.float64] | None
     rounding: NDArray[np.float64]
+    coordinates: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"Linearization(frequencies={briefly(self.frequencies)}, stable={self.stable})"
+
+    def __str__(self) -> str:
+        return as_text(self._sheet())
+
+    def _sheet(self) -> Sheet:
+        from visviva.generalized._told_modes import told
+
+        return told(self, _ON_THE_AXIS)
 
     @property
     def frequencies(self) -> NDArray[np.float64]:
@@ -280,6 +299,7 @@ def linearization(system: Lagrangian, at: ArrayLike | None) -> Linearization:
         None if symmetric is None else symmetric[1],
         None if symmetric is None else symmetric[0],
         _rounding(system, place, found["stiffness"]),
+        tuple(system.coordinates),
     )
 
 

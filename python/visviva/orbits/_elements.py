@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._html import Shown
+from visviva._html import Sheet, Shown, as_text
 from visviva._keywords import known_keywords
-from visviva._text import short, table
+from visviva._text import table
 from visviva.orbits._arguments import broadcast, fields, shaped
 from visviva.orbits._rows import OfOrbits
 
@@ -122,10 +122,19 @@ class Elements(OfOrbits, Shown):
     turning_angle: NDArray[np.float64]
 
     def __repr__(self) -> str:
-        return short(self)
+        from visviva.orbits._told_elements import in_a_line
+
+        return in_a_line(self)
 
     def __str__(self) -> str:
-        return table(self)
+        from visviva.orbits._told_elements import is_few
+
+        return table(self) if is_few(self) else as_text(self._sheet())
+
+    def _sheet(self) -> Sheet:
+        from visviva.orbits._told_elements import told
+
+        return told(self)
 
     def __reduce__(self) -> tuple[Any, ...]:
         # A dataclass would leave behind what is no field: the times and names of the rows.

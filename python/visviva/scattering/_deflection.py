@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import IntEnum
-from typing import TYPE_CHECKING, Literal, NoReturn
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -12,7 +11,7 @@ from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
-from visviva._made_by import refuse_value
+from visviva._made_by import NamedCode
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.potentials import Potential
@@ -25,7 +24,7 @@ if TYPE_CHECKING:
 __all__ = ["Deflection", "DeflectionStatus", "deflect", "deflection_angle"]
 
 
-class DeflectionStatus(IntEnum):
+class DeflectionStatus(NamedCode):
     """What became of a projectile.
 
     `CAPTURED`: it fell into the center, and has no angle. `NEAR_ORBITING`: it left, but its impact parameter is within
@@ -42,10 +41,6 @@ class DeflectionStatus(IntEnum):
     SCATTERED = 0
     CAPTURED = 1
     NEAR_ORBITING = 2
-
-    @classmethod
-    def _missing_(cls, value: object) -> NoReturn:
-        refuse_value(cls, value)
 
 
 @known_keywords

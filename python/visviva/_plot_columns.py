@@ -1,0 +1,104 @@
+"""Pictures of one run against time: a panel for each number of a column, a line for each body."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any, cast
+
+from visviva._exported import AXES
+from visviva._keywords import one_of
+from visviva._names import body_indices
+from visviva._style import legend_beside
+from visviva._text import count
+from visviva.errors import InvalidInput
+from visviva.plot import LEGEND, POINTS, chosen_bodies, given_axes, new_figure, plot_energy
+from visviva.recorded import COLUMN_AXES
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    import numpy as np
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+    from numpy.typing import NDArray
+
+    from visviva.trajectory import Trajectory
+
+__all__ = ["draw_column", "plot_column"]
+
+
+def plot_column(run: Trajectory, column: object, bodies: object, component: object, ax: Axes | None) -> Figure:
+    """As `Trajectory.plot` with a column."""
+    name = one_of("column", column, tuple(COLUMN_AXES))
+    if not len(run):
+        raise InvalidInput("plot", "expected a trajectory with times, got 0 times")
+    chosen, names = _chosen(run, name, bodies)
+    over = COLUMN_AXES[name]
+    letters = [str(each) for each in AXES[over[-1]]] if over else []
+    shown: Sequence[int] = range(len(letters))
+    if component is not None:
+        if not letters:
+            raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
+        shown = [letters.index(one_of("component", component, letters))]
+    panels = max(1, len(shown))
+    if ax is not None:
+        if panels != 1:
+            told = ", ".join(repr(letter) for letter in letters)
+            raise InvalidInput("ax", f"one pair of axes takes one panel, and there are {panels}: say component={told}")
+        axes, figure = [given_axes(ax)], cast("Figure", ax.figure)
+    else:
+        figure, axes = new_figure(panels, (1.5 + 4.0 * panels, 3.6))
+    if name == "energy":
+        plot_energy(axes[0], run)
+        return figure
+    for panel, at in zip(axes, shown or (None,), strict=True):
+        draw_column(panel, run, name, chosen, at)
+    if names and len(chosen) <= LEGEND:
+        legend_beside(axes[-1])
+    return figure
+
+
+def draw_column(axes: Any, run: Trajectory, name: str, bodies: Sequence[int], at: int | None) -> None:
+    """One number of a column, of each of these bodies, against time."""
+    over = COLUMN_AXES[name]
+    stride = max(1, len(run) // POINTS)
+    values: NDArray[np.float64] = getattr(run, name)[::stride]
+    values = values if at is None else values[..., at]
+    names = _names(run, over[0]) if bodies else ()
+    lines = values[:, list(bodies)].T if bodies else [values]
+    for index, line in enumerate(lines):
+        axes.plot(run.t[::stride], line, linewidth=0.8, label=names[bodies[index]] if names else None)
+    written = name.replace("_", " ")
+    axes.set(xlabel="t", ylabel=written if at is None else f"{written}, {AXES[over[-1]][at]}")
+    axes.margins(x=0.01)
+    # Ends of the scale, of so few digits that they do not lie on each other.
+    axes.locator_params(axis="x", nbins=6)
+
+
+def _names(run: Trajectory, over: str) -> tuple[str, ...]:
+    things = run.scene.particles if over == "body" else run.scene.rigid_bodies
+    return tuple(getattr(things, "names", None) or ())
+
+
+def _chosen(run: Trajectory, name: str, bodies: object) -> tuple[list[int], tuple[str, ...]]:
+    """Which bodies a column is drawn of, none if it is of the whole scene, and the names of all."""
+    over = COLUMN_AXES[name][:1]
+    if over == ("body",):
+        return chosen_bodies("plot", run, bodies), _names(run, "body")
+    if over != ("rigid_body",):
+        if bodies is not None:
+            raise InvalidInput("bodies", f"{name} is that of the whole scene, got bodies={bodies!r}")
+        return [], ()
+    rigid = run.scene.rigid_bodies
+    if rigid is None:
+        raise InvalidInput("column", f"{name} is that of rigid bodies, and there is none")
+    names, number = _names(run, "rigid_body"), len(rigid)
+    chosen = list(range(number)) if bodies is None else body_indices("bodies", bodies, names, number)
+    if not chosen:
+        raise InvalidInput(
+            "bodies", f"expected at least one of {count(number, 'rigid body', 'rigid bodies')}, got none"
+        )
+    return chosen, names
+
+
+def __dir__() -> list[str]:
+    return list(__all__)
