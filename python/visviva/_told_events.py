@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+from visviva._arrays import number
 from visviva._names import body_index
 from visviva.errors import InvalidInput
-from visviva.events import Event, _check_two, _made, apsis, distance, energy, function, plane
+from visviva.events import Event, _check_two, _made, apsis, distance, energy, function, plane, sign
 
 __all__ = ["described", "from_description", "resolved", "to_core"]
 
@@ -23,9 +24,9 @@ def to_core(given: Any) -> list[dict[str, Any]]:
         if isinstance(event, Event):
             told.append(event._to_core())
         elif callable(event):
-            way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
             try:
-                told.append(function(event, direction=way, terminal=last)._to_core())
+                way = sign(number("direction", getattr(event, "direction", 0)))
+                told.append(function(event, direction=way, terminal=getattr(event, "terminal", False))._to_core())
             except InvalidInput as error:
                 raise InvalidInput("events", f"events[{index}]: {error.message}") from None
         else:

@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.typing import SymbolicExpression
+    from visviva.typing import EventDirection, SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -46,7 +46,7 @@ class Event(Record):
     ----------
     kind : str
     parameters : tuple of (str, object)
-    direction : int
+    direction : {1, -1, 0}
         1 for zeros passed upwards in time (also in a run backwards), -1 downwards, 0 both.
     terminal : int
         The run ends with the zero of this number; 0 if it does not.
@@ -64,7 +64,7 @@ class Event(Record):
 
     kind: str
     parameters: tuple[tuple[str, object], ...]
-    direction: int
+    direction: EventDirection
     terminal: int
 
     def _to_core(self) -> dict[str, Any]:
@@ -87,8 +87,15 @@ class Event(Record):
 
 def _made(kind: str, direction: object, terminal: object, **parameters: Any) -> Event:
     way = number("direction", direction)
+    if way not in (-1.0, 0.0, 1.0):
+        raise InvalidInput("direction", f"expected 1 for upwards, -1 for downwards or 0 for both, got {direction!r}")
     last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
-    return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)
+    return Event(kind, tuple(parameters.items()), sign(way), last)
+
+
+def sign(way: float) -> EventDirection:
+    """The direction that a number tells by its sign, as that of an attribute of a function does in SciPy."""
+    return 1 if way > 0.0 else -1 if way < 0.0 else 0
 
 
 def _body(name: str, value: object) -> int | str:
@@ -108,7 +115,7 @@ def _point(name: str, value: object) -> tuple[float, float, float]:
 
 @known_keywords
 def distance(
-    first: int | str, second: int | str, *, below: float, direction: int = -1, terminal: bool | int = False
+    first: int | str, second: int | str, *, below: float, direction: EventDirection = -1, terminal: bool | int = False
 ) -> Event:
     """Two bodies come nearer to each other than a distance.
 
@@ -120,7 +127,7 @@ def distance(
         Indices of the bodies, or their names.
     below : float
         The distance, above 0.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         -1 where they come nearer, 1 where they part again, 0 for both.
     terminal : bool or int, optional
         Whether the run ends there, or with the zero of which number.
@@ -150,7 +157,12 @@ def distance(
 
 @known_keywords
 def plane(
-    point: ArrayLike, normal: ArrayLike, *, body: int | str = 0, direction: int = 0, terminal: bool | int = False
+    point: ArrayLike,
+    normal: ArrayLike,
+    *,
+    body: int | str = 0,
+    direction: EventDirection = 0,
+    terminal: bool | int = False,
 ) -> Event:
     """A body passes a plane.
 
@@ -162,7 +174,7 @@ def plane(
         A point of the plane, and its normal, of any length.
     body : int or str, optional
         Index of the body, or its name.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         1 where the body passes the way of the normal in time, -1 against it, 0 for both.
     terminal : bool or int, optional
         As of `distance`.
@@ -192,7 +204,9 @@ def plane(
 
 
 @known_keywords
-def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def apsis(
+    body: int | str, about: int | str | ArrayLike, *, direction: EventDirection = 0, terminal: bool | int = False
+) -> Event:
     """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
 
     Units: those of the run.
@@ -203,7 +217,7 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
         Index of the body, or its name.
     about : int, str or array_like, shape (3,)
         Index or name of the other body, or the point.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         1 for pericenters, -1 for apocenters, 0 for both, in runs forwards and backwards.
     terminal : bool or int, optional
         As of `distance`.
@@ -236,7 +250,7 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 
 @known_keywords
 def coordinate(
-    name: str | sympy.Expr, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False
+    name: str | sympy.Expr, value: float = 0.0, *, direction: EventDirection = 0, terminal: bool | int = False
 ) -> Event:
     """A generalized coordinate passes a value.
 
@@ -278,7 +292,10 @@ def coordinate(
 
 @known_keywords
 def expression(
-    expression: sympy.Expr | Callable[..., SymbolicExpression], *, direction: int = 0, terminal: bool | int = False
+    expression: sympy.Expr | Callable[..., SymbolicExpression],
+    *,
+    direction: EventDirection = 0,
+    terminal: bool | int = False,
 ) -> Event:
     """An expression of generalized coordinates passes zero.
 
@@ -317,7 +334,7 @@ def expression(
 
 
 @known_keywords
-def energy(value: float, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int = False) -> Event:
     """The energy of all bodies passes a value: of use where a force takes or gives energy.
 
     Where all forces keep the energy, what changes of it are errors of the steps, told from node to node.
@@ -356,7 +373,7 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
 def function(
     call: Callable[[float, NDArray[np.float64], NDArray[np.float64]], float],
     *,
-    direction: int = 0,
+    direction: EventDirection = 0,
     terminal: bool | int = False,
 ) -> Event:
     """A function of one's own passes zero.

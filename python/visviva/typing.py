@@ -1,7 +1,9 @@
 """Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
-has; a test compares. `TransformationName` is what a time transformation watches. `GeneralizedMethodName`,
+has; a test compares. `TransformationName` is what a time transformation watches. `EventDirection` is
+which zeros are events. `EventColumnName`, `GeneralizedEventColumnName`, `CollisionColumnName`, `ElementName` and
+`ScatteringColumnName` are columns of tables. `GeneralizedMethodName`,
 `DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
 `FoilTallyName` what Monte Carlo runs count, `MaterialName`, `IonName` and `ScreeningName` what foils are made of, and
 `EulerConvention` names the turns of `visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`,
@@ -31,17 +33,22 @@ if TYPE_CHECKING:
     from visviva.generalized import Expression, GeneralizedTrajectory
 
 __all__ = [
+    "CollisionColumnName",
     "CollisionRule",
     "ColumnName",
     "CompiledFunction",
     "DiscreteMethodName",
+    "ElementName",
     "EulerConvention",
+    "EventColumnName",
+    "EventDirection",
     "EventFunction",
     "Executor",
     "FoilTallyName",
     "Formula",
     "GeneralizedColumnName",
     "GeneralizedEvent",
+    "GeneralizedEventColumnName",
     "GeneralizedMethodName",
     "GeneralizedPath",
     "IonHistory",
@@ -53,6 +60,7 @@ __all__ = [
     "Progress",
     "Report",
     "RunSettings",
+    "ScatteringColumnName",
     "ScreeningName",
     "SolverName",
     "SymbolicExpression",
@@ -126,11 +134,38 @@ CollisionRule: TypeAlias = Literal["merge", "bounce", "stop"]
 
 TransformationName: TypeAlias = Literal["potential_energy", "distance"]
 
+EventDirection: TypeAlias = Literal[-1, 0, 1]
+"""Which zeros are events: those passed downwards in time, all, or those passed upwards."""
+
+EventColumnName: TypeAlias = Literal["which", "t", "position", "velocity", "member"]
+"""Columns of `visviva.events.EventTable`."""
+
+GeneralizedEventColumnName: TypeAlias = EventColumnName | Literal["momentum"]
+"""Columns of `visviva.generalized.GeneralizedEventTable`."""
+
+CollisionColumnName: TypeAlias = Literal[
+    "t", "first", "second", "speed", "position", "energy_lost", "survivor", "member"
+]
+"""Columns of `visviva.collisions.CollisionTable`."""
+
+ElementName: TypeAlias = Literal[
+    "mu", "angular_momentum", "energy", "laplace_runge_lenz", "hodograph_center", "hodograph_radius", "eccentricity",
+    "semi_major_axis", "semi_minor_axis", "semi_latus_rectum", "pericenter", "apocenter", "inclination", "node",
+    "argument_of_pericenter", "true_anomaly", "eccentric_anomaly", "mean_anomaly", "time_since_pericenter", "period",
+    "areal_rate", "turning_angle", "longitude_of_ascending_node", "longitude_of_pericenter", "mean_longitude",
+]  # fmt: skip
+"""Elements of `visviva.orbits.Elements`."""
+
 GeneralizedColumnName: TypeAlias = Literal["position", "velocity", "momentum", "energy", "reactions"]
 """What a run in generalized coordinates knows at its times."""
 
 TallyName: TypeAlias = Literal["cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"]
 """What `visviva.scattering.monte_carlo` counts of an event."""
+
+ScatteringColumnName: TypeAlias = (
+    TallyName | Literal["event", "component", "channel", "weight", "beam_energy", "incidence", "deflection"]
+)
+"""Columns of `visviva.scattering.scattering_events`."""
 
 FoilTallyName: TypeAlias = Literal[
     "lab_angle",
