@@ -20,7 +20,7 @@ import numpy as np
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event_table import EventTable
 from visviva._html import Record
-from visviva._keywords import check_call, known_keywords
+from visviva._keywords import check_call, known_keywords, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -419,3 +419,7 @@ def function(
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

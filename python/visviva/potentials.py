@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 from visviva import _core
 from visviva._arrays import float_array, number, positive
 from visviva._declared import Declared, make
-from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
+from visviva._keywords import did_you_mean, known_keywords, refuse_subclass, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -369,8 +369,24 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     return made
 
 
+def _written(made: Any) -> str:
+    """The formula of an `Expressed`, the values of its parameters, and its units where they are of its own."""
+    from visviva._expression_table import formula, parameter_names
+
+    # A table that was written by hand may do without names.
+    names = parameter_names(made.nodes)
+    names += tuple(f"values[{index}]" for index in range(len(names), len(made.values)))
+    values = dict(zip(names, made.values.tolist(), strict=False))
+    units = {name: getattr(made, name) for name in ("length", "energy") if getattr(made, name) != 1.0}
+    told = [formula(made.nodes, ("r",), names), *(f"{name}={value!r}" for name, value in (values | units).items())]
+    return f"Expressed({', '.join(told)})"
+
+
 # What a class has beside what is declared.
-_FURTHER: dict[str, dict[str, Any]] = {"screened_coulomb": {"between": classmethod(_between)}}
+_FURTHER: dict[str, dict[str, Any]] = {
+    "screened_coulomb": {"between": classmethod(_between)},
+    "expressed": {"__repr__": _written},
+}
 _SHAPES = "Distances may have any shape; values, forces and curvatures have the same."
 _BY_NAME = {
     entry["name"]: make(
@@ -441,3 +457,7 @@ def potential_from_core(description: dict[str, Any]) -> Potential:
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -14,7 +14,7 @@ import numpy as np
 
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._field_problems import arenstorf, crossed_fields, driven_oscillator, projectile
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva._problem import Problem, Reference, reference, rows
 from visviva._reference_states import (
     OUTER_SOLAR_SYSTEM,
@@ -419,3 +419,7 @@ def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Literal, Protocol, SupportsFloat, TypeAlias, T
 import numpy as np
 from numpy.typing import NDArray
 
+from visviva._keywords import unknown_name
 from visviva._progress import Progress, Report
 
 if TYPE_CHECKING:
@@ -334,3 +335,7 @@ class RunSettings(TypedDict, total=False):
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

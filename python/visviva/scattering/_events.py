@@ -8,11 +8,11 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import whole_number
+from visviva._declared import checked_potential
 from visviva._keywords import did_you_mean, known_keywords
 from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Potential
 from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam, _which
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
     from visviva._progress import Progress, Report
+    from visviva.potentials import Potential
     from visviva.scattering._channels import Channel
     from visviva.scattering._importance import LargeAngles, Strata
     from visviva.typing import ScatteringColumnName
@@ -95,8 +96,7 @@ def scattering_events(
     >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
     ([0, 1, 2], True)
     """
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    checked_potential("potential", potential)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)

@@ -10,6 +10,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive, positive_array, whole_number
+from visviva._declared import wrapped
 from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords, one_of
 from visviva._progress import callback
@@ -113,7 +114,9 @@ class Foil(Record):
         else:
             each = (potential,) if isinstance(potential, Potential) else potential
             if not isinstance(each, Sequence) or not all(isinstance(one, Potential) for one in each):
-                raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {potential!r}")
+                raise InvalidInput(
+                    "potential", f"expected a name or one of visviva.potentials, got {potential!r}{wrapped(potential)}"
+                )
             if len(each) != several:
                 raise InvalidInput("potential", f"expected one for each of {several} elements, got {len(each)}")
             potential = tuple(each)
