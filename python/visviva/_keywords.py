@@ -19,7 +19,16 @@ from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongA
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "one_of", "refuse_subclass", "unknown_name"]
+__all__ = [
+    "JOINING",
+    "check_call",
+    "did_you_mean",
+    "frozen",
+    "known_keywords",
+    "one_of",
+    "refuse_subclass",
+    "unknown_name",
+]
 
 # What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
 _ELSEWHERE = {
@@ -60,6 +69,12 @@ _IN_PARTS = {
     "Foil.run": "bombard in parts: go on with first_event=result.next_event, and add the results",
 }
 _ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
+
+# How bodies of two Particles become those of one.
+JOINING = (
+    "join their arrays: vv.Particles(np.concatenate([a.mass, b.mass]), np.concatenate([a.position, b.position]), "
+    "np.concatenate([a.velocity, b.velocity])), and names and radius likewise, where bodies have some"
+)
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")

@@ -130,6 +130,7 @@ except vv.Interrupted as stopped:
     if stopped.trajectory is not None:
         stopped.trajectory.t
 vv.stress.run(["dop835"])  # wrong
+scene.particles + scene.particles  # wrong
 orbits: vv.orbits.Elements = out.elements([1], about=0)
 orbits.plot("eccentricity")
 orbits.plot("ecc")  # wrong
