@@ -72,6 +72,8 @@ scene.run(1, method="RK4", dt=0.1)                  | method      | got 'RK4'; d
 scene.run(1, method="Kahan-Li 8", dt=0.1)           | method      | did you mean 'kahan_li8'\?
 scene.run(1, method="\ud800")                       | method      | got '\?'$
 scene.run(1, record="\ud800")                       | record      | got '\?'$
+scene.run(1, method="rk4", dt=0.1, rtol=1e-3)       | rtol        | an adaptive method such as verner98$
+scene.run(1, method="leapfrog", dt=[0.1, 0.2])      | dt          | an adaptive method such as verner98$
 scene.run(1, record="Angular-Momentum")             | record      | did you mean 'angular_momentum'\?
 scene.run(1, **{"Max Step": 1})                     | Max Step    | did you mean 'max_step'\?
 scene.run(1, method="rk4", dt=0.1, max_step=0.5)    | max_step    | rk4 has a fixed step.*got 0.5; leave max_step out

@@ -83,6 +83,8 @@ def scattering_events(
     Interrupted
         After Ctrl-C. The file holds the events written until then, from ``first_event`` without a gap; the message
         says how many.
+    KeyError
+        By what is returned, for a column that it has not, with those that it has.
 
     References
     ----------
