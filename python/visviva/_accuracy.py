@@ -70,7 +70,7 @@ def _judge_turns(result: dict[str, Any], *, ensemble: bool) -> None:
     shorter = f"a step that is {fewest / steps:.2g} times shorter or less, or " if steps > 0.0 else ""
     message = (
         f"{whose}a turn of body {body} about body {about}{tight} has {steps:.3g} steps, and the method "
-        f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, dop853)"
+        f"tells nothing of orbits with fewer than {fewest:g}: take {shorter}an adaptive method (taylor, verner98)"
     )
     warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
 
@@ -85,8 +85,8 @@ def _advice(result: dict[str, Any], error: float, dt: float | None, order: int) 
     named = f"dt = {float(f'{0.5 * longest * (_WANTED / min(error, _BLOWN_UP)) ** power:.0e}'):g}"
     told = f"a step of dt = {dt:g} does not resolve this motion; "
     if error < _UNRESOLVED:
-        return f"{told}try {named}, or an adaptive method (dop853)"
-    return f"{told}try an adaptive method (dop853), which finds the steps that close bodies take, or at most {named}"
+        return f"{told}try {named}, or an adaptive method (verner98)"
+    return f"{told}try an adaptive method (verner98), which finds the steps that close bodies take, or at most {named}"
 
 
 def judge_energies(dt: float, energies: NDArray[np.float64], sizes: NDArray[np.float64], *, ensemble: bool) -> None:

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from visviva.potentials import Potential
     from visviva.typing import CompiledFunction, ParameterValues
 
-__all__ = ["Custom"]
+__all__ = ["Custom", "written"]
 
 
 @known_keywords
@@ -128,3 +128,16 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
             raise
         raise InvalidInput("function", f"{error.message}; {cure}") from error
     return Expressed(nodes, values)
+
+
+def written(made: Any) -> str:
+    """The formula of an `Expressed`, the values of its parameters, and its units where they are of its own."""
+    from visviva._expression_table import formula, parameter_names
+
+    # A table that was written by hand may do without names.
+    names = parameter_names(made.nodes)
+    names += tuple(f"values[{index}]" for index in range(len(names), len(made.values)))
+    values = dict(zip(names, made.values.tolist(), strict=False))
+    units = {name: getattr(made, name) for name in ("length", "energy") if getattr(made, name) != 1.0}
+    told = [formula(made.nodes, ("r",), names), *(f"{name}={value!r}" for name, value in (values | units).items())]
+    return f"Expressed({', '.join(told)})"

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
-__all__ = ["Declared", "Parameter", "make", "scaled"]
+    from visviva.potentials import Potential
+
+__all__ = ["Declared", "Parameter", "checked_potential", "make", "scaled", "wrapped"]
 
 _VECTORS = ("vector", "axial_vector", "direction", "point")
 _QUANTITIES = ("number", "numbers", *_VECTORS)  # what has a dimension, and says so where it is none
@@ -80,7 +82,7 @@ class Parameter:
             table: NDArray[np.float64] = _frozen(float_array(self.name, value, (None,)), value)
             return table
         if self.kind == "potential":
-            return _potential(self.name, value)
+            return checked_potential(self.name, value)
         return one_of(self.name, value, self.choices)
 
     def _signed(self, value: float) -> float:
@@ -328,14 +330,23 @@ def _each(value: Any, change: Callable[[float], float]) -> Any:
     return tuple(map(change, value)) if isinstance(value, tuple) else change(value)
 
 
-def _potential(name: str, value: Any) -> Any:
+def checked_potential(name: str, value: object) -> Potential:
+    """Refuse what is no potential."""
     from visviva.potentials import Potential
 
     if not isinstance(value, Potential):
+        kind = type(value).__name__
         raise InvalidInput(
-            name, f"expected one of visviva.potentials, for example Coulomb(k=-1.0), got {type(value).__name__}"
+            name, f"expected one of visviva.potentials, for example Coulomb(k=-1.0), got {kind}{wrapped(value)}"
         )
     return value
+
+
+def wrapped(value: object) -> str:
+    """The end of a message that refuses a function, or a formula, as a potential: what makes one of it."""
+    if isinstance(value, type) or not (callable(value) or hasattr(value, "free_symbols")):
+        return ""
+    return "; wrap it: vv.potentials.Custom(function), and one that is no formula with r_min=… and r_max=…"
 
 
 def _frozen(array: NDArray[Any], given: object) -> Any:

@@ -7,7 +7,7 @@ the core is told follows from it.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -16,7 +16,10 @@ from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
 
-__all__ = ["Event", "made"]
+if TYPE_CHECKING:
+    from visviva.typing import EventDirection
+
+__all__ = ["Event", "made", "sign"]
 
 #: Of runs in generalized coordinates alone.
 _GENERALIZED = ("coordinate", "expression")
@@ -31,7 +34,7 @@ class Event(Record):
     ----------
     kind : str
     parameters : tuple of (str, object)
-    direction : int
+    direction : {1, -1, 0}
         1 for zeros passed upwards in time (also in a run backwards), -1 downwards, 0 both.
     terminal : int
         The run ends with the zero of this number; 0 if it does not.
@@ -49,7 +52,7 @@ class Event(Record):
 
     kind: str
     parameters: tuple[tuple[str, object], ...]
-    direction: int
+    direction: EventDirection
     terminal: int
 
     def _to_core(self) -> dict[str, Any]:
@@ -76,8 +79,15 @@ def made(kind: str, direction: object, terminal: object, **parameters: Any) -> E
     Raises
     ------
     visviva.InvalidInput
-        For a direction that is no number, or an end that is none.
+        For a direction that is none of the three, or an end that is none.
     """
     way = number("direction", direction)
+    if way not in (-1.0, 0.0, 1.0):
+        raise InvalidInput("direction", f"expected 1 for upwards, -1 for downwards or 0 for both, got {direction!r}")
     last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
-    return Event(kind, tuple(parameters.items()), int(np.sign(way)), last)
+    return Event(kind, tuple(parameters.items()), sign(way), last)
+
+
+def sign(way: float) -> EventDirection:
+    """The direction that a number tells by its sign, as that of an attribute of a function does in SciPy."""
+    return 1 if way > 0.0 else -1 if way < 0.0 else 0

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Self
+from typing import TYPE_CHECKING, Any, Self, TypeVar
 
 import numpy as np
 
@@ -20,12 +20,15 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
 
     from visviva.events import Event
+    from visviva.typing import EventColumnName
 
 __all__ = ["EventTable", "Lines"]
 
+Name = TypeVar("Name", bound=str)
+
 
 @known_keywords
-class Lines(Exported[str], Shown):
+class Lines(Exported[Name], Shown):
     """Base of tables of events: columns, a line for each event, and what was looked for."""
 
     __slots__ = ()
@@ -108,7 +111,7 @@ class Lines(Exported[str], Shown):
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class EventTable(Lines):
+class EventTable(Lines["EventColumnName"]):
     """The events of a run, in the order of the motion; of an ensemble, copy after copy.
 
     Units: those of the run.
@@ -148,7 +151,7 @@ class EventTable(Lines):
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
 
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+    def _exported(self, columns: EventColumnName | Sequence[EventColumnName] | None) -> Columns:
         known = self._names()
         of = {
             name: (("event", *["body", "component"][: 2 * (getattr(self, name).ndim == 3)]), getattr(self, name))

@@ -9,19 +9,24 @@ from typing import TYPE_CHECKING, Any
 
 from visviva._arrays import number
 from visviva._keywords import check_call
+from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.generalized._nodes import FUNCTIONS, Expression, Nodes, called, recorded
 from visviva.generalized._symbolic import Symbols, sympy, time
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
-__all__ = ["named", "of_distance", "parameter_names", "table"]
+__all__ = ["formula", "named", "of_distance", "parameter_names", "table"]
 
 #: Operations by their numbers in a table; functions come after them.
 _OPERATIONS = ("constant", "variable", "parameter", "time", "sum", "product", "quotient", "atan2", "power", *FUNCTIONS)
 #: In the place of an operation: the letters of a parameter's name follow.
 _NAME = 1000
+#: How strongly texts of expressions bind; a minus is before what is else a product.
+_SUM, _MINUS, _PRODUCT, _POWER, _ATOM = range(5)
+#: Letters of a formula that is still written out.
+_LONGEST = 80
 
 
 def table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]:
@@ -36,14 +41,75 @@ def table(nodes: Nodes, roots: list[int], names: tuple[str, ...]) -> list[float]
 
 def parameter_names(numbers: Iterable[float]) -> tuple[str, ...]:
     """Give the names of the parameters that a table has, in the order of their values."""
-    given = [int(number) for number in numbers]
-    names, at = [], 1 + given[0]
+    return tuple("".join(map(chr, letters)) for operation, _, letters in _rows(numbers) if operation == _NAME)
+
+
+def formula(numbers: Iterable[float], variables: tuple[str, ...], parameters: tuple[str, ...]) -> str:
+    """Write the one expression of a table as one reads it; of a long one how many nodes it has."""
+    numbers = list(numbers)
+    root = int(numbers[1])
+    rows = [row for row in _rows(numbers) if row[0] != _NAME]
+    # Of each node its text and how strongly that binds; nodes are shared, so that only short texts are kept.
+    texts: list[tuple[str, int]] = []
+    for operation, value, arguments in rows:
+        match _OPERATIONS[operation]:
+            case "constant":
+                texts.append((f"{value:.9g}", _MINUS if value < 0.0 else _ATOM))
+            case "variable":
+                texts.append((variables[int(value)], _ATOM))
+            case "parameter":
+                texts.append((parameters[int(value)], _ATOM))
+            case name:
+                texts.append(_written(name, [texts[at] for at in arguments]))
+        if len(texts[-1][0]) > _LONGEST:
+            return count(len(rows), "node")
+    return texts[root][0]
+
+
+def _written(operation: str, arguments: list[tuple[str, int]]) -> tuple[str, int]:
+    """The text of an operation, and how strongly it binds."""
+
+    def within(argument: tuple[str, int], least: int) -> str:
+        text, binds = argument
+        return text if binds >= least else f"({text})"
+
+    # A minus before a factor is one before them all.
+    minus = [binds == _MINUS for _, binds in arguments]
+    bare = [
+        (text[1:], _PRODUCT) if less else (text, binds) for (text, binds), less in zip(arguments, minus, strict=True)
+    ]
+    sign, level = ("-", _MINUS) if sum(minus) % 2 else ("", _PRODUCT)
+    match operation:
+        case "sum":
+            return " + ".join(text for text, _ in arguments).replace("+ -", "- "), _SUM
+        case "product":
+            factors = [within(each, _PRODUCT) for each in bare if each[0] != "1"]
+            above = [factor for factor in factors if not factor.startswith("1/")] or ["1"]
+            above.sort(key=lambda factor: not factor[0].isdigit())  # 2*r, not r*2
+            below = [factor[1:] for factor in factors if factor.startswith("1/")]
+            return f"{sign}{'*'.join(above)}{''.join(below)}", level
+        case "quotient":
+            return f"{'-' * minus[0]}{within(bare[0], _PRODUCT)}/{within(arguments[1], _POWER)}", (
+                _MINUS if minus[0] else _PRODUCT
+            )
+        case "power" if minus[1]:
+            base, power = within(arguments[0], _ATOM), bare[1][0]
+            power = power if power.replace(".", "").isalnum() else f"({power})"
+            return f"1/{base}" if power == "1" else f"1/{base}**{power}", _PRODUCT
+        case "power":
+            return f"{within(arguments[0], _ATOM)}**{within(arguments[1], _ATOM)}", _POWER
+        case name:
+            return f"{name}({', '.join(text for text, _ in arguments)})", _ATOM
+
+
+def _rows(numbers: Iterable[float]) -> Iterator[tuple[int, float, list[int]]]:
+    """Give the rows of a table after its roots: operation, value, and arguments or letters."""
+    given = list(numbers)
+    at = 1 + int(given[0])
     while at < len(given):
-        operation, _, count = given[at : at + 3]
-        if operation == _NAME:
-            names.append("".join(map(chr, given[at + 3 : at + 3 + count])))
-        at += 3 + count
-    return tuple(names)
+        length = int(given[at + 2])
+        yield int(given[at]), given[at + 1], [int(each) for each in given[at + 3 : at + 3 + length]]
+        at += 3 + length
 
 
 def named(parameters: Mapping[Any, float] | None, taken: tuple[str, ...]) -> tuple[tuple[str, ...], list[float]]:

@@ -112,7 +112,9 @@ def _all_names(there: _Bodies, central: Any, names: Any, count: int) -> tuple[st
     is_number = not hasattr(central, "names")
     if names is None:
         if there.names:
-            raise InvalidInput("names", "expected names of the new bodies, as those that are there have some")
+            cure = f"names=[f'particle {{i}}' for i in range({count})]"
+            new = f"expected {count} names, of each new body, as those that are there have some"
+            raise InvalidInput("names", f"{new}; give your own, or {cure}")
         return ()
     before = len(there.mass)
     expected = before + count if is_number else count

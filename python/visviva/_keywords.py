@@ -19,18 +19,33 @@ from visviva.errors import FrozenAttribute, InvalidInput, UnknownKeyword, WrongA
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-__all__ = ["check_call", "did_you_mean", "frozen", "known_keywords", "one_of", "refuse_subclass"]
+__all__ = [
+    "JOINING",
+    "check_call",
+    "did_you_mean",
+    "frozen",
+    "known_keywords",
+    "one_of",
+    "refuse_subclass",
+    "unknown_name",
+]
 
 # What people know by another name from elsewhere, or in another unit: function, keyword, what to do.
 _ELSEWHERE = {
     ("run", "t_eval"): "the output times are t",
     ("run", "t_span"): "give the end, or the output times, as t; the start is the scene's t0",
+    ("run", "t_end"): "give the end, or the output times, as t",
     ("run", "dense_output"): "give as t the times you want: outputs between steps cost little and change no step",
     ("run", "first_step"): "the first step follows from rtol; max_step bounds it",
     ("run", "y0"): "the initial state is the scene's: see Scene.with_state",
     ("run", "integrator"): "give it as method",
     ("state", "semi_major_axis"): "give pericenter = a|1 − e| (of repulsion a(e + 1))",
     ("state", "longitude_of_ascending_node"): "give it as node",
+    ("Particles", "m"): "give it as mass",
+    ("Particles", "x"): "give positions as position, of shape (N, 3)",
+    ("Particles", "pos"): "give it as position",
+    ("Particles", "v"): "give it as velocity",
+    ("Particles", "vel"): "give it as velocity",
     ("from_elements", "a"): "give it as semi_major_axis",
     ("from_elements", "e"): "give it as eccentricity",
     ("from_elements", "inc"): "give it as inclination",
@@ -54,6 +69,12 @@ _IN_PARTS = {
     "Foil.run": "bombard in parts: go on with first_event=result.next_event, and add the results",
 }
 _ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
+
+# How bodies of two Particles become those of one.
+JOINING = (
+    "join their arrays: vv.Particles(np.concatenate([a.mass, b.mass]), np.concatenate([a.position, b.position]), "
+    "np.concatenate([a.velocity, b.velocity])), and names and radius likewise, where bodies have some"
+)
 
 _P = ParamSpec("_P")
 _R = TypeVar("_R")
@@ -158,8 +179,8 @@ def refuse_subclass(made: type, advice: str) -> None:
 def did_you_mean(word: str, names: Iterable[str]) -> str:
     """The end of a message: the nearest of the names, if one is near at all.
 
-    Capitals do not count, and ``-``, ``_`` and a space are the same. The core judges, as it does of the names that
-    come to it.
+    Capitals do not count, and ``-``, ``_`` and a space are the same. Of the names that are near the core judges which
+    is nearest, as it does of the names that come to it.
 
     Examples
     --------
@@ -168,8 +189,44 @@ def did_you_mean(word: str, names: Iterable[str]) -> str:
     "; did you mean 'max_step'?"
     """
     # A name out of half a surrogate pair is a str of Python, but no text to anybody else.
-    near = _core.nearest(word.encode(errors="replace").decode(), list(names))
+    near_by = [name for name in names if _is_near(word, name)]
+    # Of names that differ in capitals alone the first is taken: toutatis is a function, Toutatis its class.
+    near_by.sort(key=lambda name: name[:1].isupper() != word[:1].isupper())
+    near = _core.nearest(word.encode(errors="replace").decode(), near_by)
     return f"; did you mean '{near}'?" if near else ""
+
+
+def _is_near(word: str, name: str) -> bool:
+    """Whether one is the other misspelt, or a part of it: letters that are shared by chance make no name near."""
+    given, known = (text.strip().lower().replace("-", "_").replace(" ", "_") for text in (word, name))
+    if given in known or known in given:
+        return True
+    longer = max(len(given), len(known))
+    start = -(-2 * longer // 3)  # velocities, velocity
+    return given[:start] == known[:start] or _slips(given, known) <= max(1, min(longer // 3, 3))
+
+
+def _slips(given: str, known: str) -> int:
+    """How many letters are wrong, missing, too many, or swapped with the next: the optimal string alignment."""
+    before, row = [0] * (len(known) + 1), list(range(len(known) + 1))
+    for i, x in enumerate(given):
+        two_before, before, row = before, row, [i + 1]
+        for j, y in enumerate(known):
+            least = min(before[j] + (x != y), before[j + 1] + 1, row[j] + 1)
+            if i and j and x == known[j - 1] and y == given[i - 1]:
+                least = min(least, two_before[j - 1] + 1)
+            row.append(least)
+    return row[-1]
+
+
+def unknown_name(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:
+    """The ``__getattr__`` of a room: a name that is not there is refused with the nearest one."""
+
+    def refused(name: str) -> NoReturn:
+        near = "" if name.startswith("_") else did_you_mean(name, names)
+        raise AttributeError(f"module {module!r} has no attribute {name!r}{near}")
+
+    return refused
 
 
 def _names(function: Callable[..., object]) -> tuple[str, ...]:

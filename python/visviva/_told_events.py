@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from visviva._event import Event, made
+from visviva._arrays import number
+from visviva._event import Event, made, sign
 from visviva._names import body_index
 from visviva.errors import InvalidInput
 from visviva.events import _check_two, apsis, distance, energy, function, plane
@@ -24,9 +25,9 @@ def to_core(given: Any) -> list[dict[str, Any]]:
         if isinstance(event, Event):
             told.append(event._to_core())
         elif callable(event):
-            way, last = getattr(event, "direction", 0), getattr(event, "terminal", False)
             try:
-                told.append(function(event, direction=way, terminal=last)._to_core())
+                way = sign(number("direction", getattr(event, "direction", 0)))
+                told.append(function(event, direction=way, terminal=getattr(event, "terminal", False))._to_core())
             except InvalidInput as error:
                 raise InvalidInput("events", f"events[{index}]: {error.message}") from None
         else:

@@ -19,7 +19,7 @@ from visviva._audit_methods import order, reversal, symplecticity
 from visviva._audit_motions import impulse, mass_ratio, rigidity
 from visviva._audit_third_law import ThirdLaw, third_law
 from visviva._html import Record
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva._quadrature import line_integral
 from visviva.errors import InvalidInput
 from visviva.forces import Force
@@ -61,6 +61,10 @@ _ROUNDING = 1e-8
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)
 
 
 @known_keywords

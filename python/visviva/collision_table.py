@@ -19,12 +19,14 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import CollisionColumnName
+
 __all__ = ["CollisionTable"]
 
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class CollisionTable(Exported[str], Shown):
+class CollisionTable(Exported["CollisionColumnName"], Shown):
     """The collisions of spheres in a run, in the order of the motion; of an ensemble, copy after copy.
 
     Units: those of the scene.
@@ -78,7 +80,7 @@ class CollisionTable(Exported[str], Shown):
             array.setflags(write=False)
         return cls(**found)
 
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+    def _exported(self, columns: CollisionColumnName | Sequence[CollisionColumnName] | None) -> Columns:
         names = chosen_columns(columns, self.__slots__, self.__slots__)
         of = {name: (("collision", *["component"] * (name == "position")), getattr(self, name)) for name in names}
         return Columns({"collision": np.arange(len(self))}, of)

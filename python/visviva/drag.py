@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 from visviva import _core
 from visviva._arrays import float_array, number, positive
 from visviva._drag_throw import Throw, throw
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva.errors import InvalidInput
 from visviva.forces import LinearDrag, QuadraticDrag, SampledDrag
 
@@ -327,3 +327,7 @@ def _both(one: str, first: float | None, other: str, second: float | None) -> tu
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -8,7 +8,7 @@ would catch anyway. All but `Interrupted` and the one warning derive from `Error
 from __future__ import annotations
 
 from dataclasses import FrozenInstanceError
-from typing import TYPE_CHECKING, TypeAlias
+from typing import TYPE_CHECKING, Never, TypeAlias
 
 if TYPE_CHECKING:
     from visviva.ensemble_trajectory import EnsembleTrajectory
@@ -288,3 +288,13 @@ class InternalError(Error, RuntimeError):
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+
+    def __getattr__(name: str) -> Never:
+        if name.startswith("_"):
+            raise AttributeError(f"module {__name__!r} has no attribute {name!r}")
+        from visviva._keywords import unknown_name  # which imports the errors itself
+
+        unknown_name(__name__, __all__)(name)

@@ -19,7 +19,7 @@ import numpy as np
 from visviva._arrays import float_array, number, positive, whole_number
 from visviva._event import Event, made
 from visviva._event_table import EventTable
-from visviva._keywords import check_call, known_keywords
+from visviva._keywords import check_call, known_keywords, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     import sympy
     from numpy.typing import ArrayLike, NDArray
 
-    from visviva.typing import SymbolicExpression
+    from visviva.typing import EventDirection, SymbolicExpression
 
 __all__ = ["Event", "EventTable", "apsis", "coordinate", "distance", "energy", "expression", "function", "plane"]
 
@@ -50,7 +50,7 @@ def _point(name: str, value: object) -> tuple[float, float, float]:
 
 @known_keywords
 def distance(
-    first: int | str, second: int | str, *, below: float, direction: int = -1, terminal: bool | int = False
+    first: int | str, second: int | str, *, below: float, direction: EventDirection = -1, terminal: bool | int = False
 ) -> Event:
     """Two bodies come nearer to each other than a distance.
 
@@ -62,7 +62,7 @@ def distance(
         Indices of the bodies, or their names.
     below : float
         The distance, above 0.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         -1 where they come nearer, 1 where they part again, 0 for both.
     terminal : bool or int, optional
         Whether the run ends there, or with the zero of which number.
@@ -92,7 +92,12 @@ def distance(
 
 @known_keywords
 def plane(
-    point: ArrayLike, normal: ArrayLike, *, body: int | str = 0, direction: int = 0, terminal: bool | int = False
+    point: ArrayLike,
+    normal: ArrayLike,
+    *,
+    body: int | str = 0,
+    direction: EventDirection = 0,
+    terminal: bool | int = False,
 ) -> Event:
     """A body passes a plane.
 
@@ -104,7 +109,7 @@ def plane(
         A point of the plane, and its normal, of any length.
     body : int or str, optional
         Index of the body, or its name.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         1 where the body passes the way of the normal in time, -1 against it, 0 for both.
     terminal : bool or int, optional
         As of `distance`.
@@ -134,7 +139,9 @@ def plane(
 
 
 @known_keywords
-def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def apsis(
+    body: int | str, about: int | str | ArrayLike, *, direction: EventDirection = 0, terminal: bool | int = False
+) -> Event:
     """The distance of a body from another one, or from a point at rest, is least or greatest: r·v = 0.
 
     Units: those of the run.
@@ -145,7 +152,7 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
         Index of the body, or its name.
     about : int, str or array_like, shape (3,)
         Index or name of the other body, or the point.
-    direction : int, optional
+    direction : {1, -1, 0}, optional
         1 for pericenters, -1 for apocenters, 0 for both, in runs forwards and backwards.
     terminal : bool or int, optional
         As of `distance`.
@@ -178,7 +185,7 @@ def apsis(body: int | str, about: int | str | ArrayLike, *, direction: int = 0, 
 
 @known_keywords
 def coordinate(
-    name: str | sympy.Expr, value: float = 0.0, *, direction: int = 0, terminal: bool | int = False
+    name: str | sympy.Expr, value: float = 0.0, *, direction: EventDirection = 0, terminal: bool | int = False
 ) -> Event:
     """A generalized coordinate passes a value.
 
@@ -220,7 +227,10 @@ def coordinate(
 
 @known_keywords
 def expression(
-    expression: sympy.Expr | Callable[..., SymbolicExpression], *, direction: int = 0, terminal: bool | int = False
+    expression: sympy.Expr | Callable[..., SymbolicExpression],
+    *,
+    direction: EventDirection = 0,
+    terminal: bool | int = False,
 ) -> Event:
     """An expression of generalized coordinates passes zero.
 
@@ -259,7 +269,7 @@ def expression(
 
 
 @known_keywords
-def energy(value: float, *, direction: int = 0, terminal: bool | int = False) -> Event:
+def energy(value: float, *, direction: EventDirection = 0, terminal: bool | int = False) -> Event:
     """The energy of all bodies passes a value: of use where a force takes or gives energy.
 
     Where all forces keep the energy, what changes of it are errors of the steps, told from node to node.
@@ -298,7 +308,7 @@ def energy(value: float, *, direction: int = 0, terminal: bool | int = False) ->
 def function(
     call: Callable[[float, NDArray[np.float64], NDArray[np.float64]], float],
     *,
-    direction: int = 0,
+    direction: EventDirection = 0,
     terminal: bool | int = False,
 ) -> Event:
     """A function of one's own passes zero.
@@ -344,3 +354,7 @@ def function(
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -13,7 +13,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._declared import Declared, make
-from visviva._keywords import known_keywords, refuse_subclass
+from visviva._keywords import known_keywords, refuse_subclass, unknown_name
 from visviva._moves import displacement, orthogonal
 from visviva.errors import InvalidInput
 
@@ -206,3 +206,7 @@ def force_from_core(description: dict[str, Any]) -> Force:
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -9,13 +9,14 @@ import numpy as np
 
 from visviva._arrays import float_array, in_range, mass_array, positive
 from visviva._html import Sheet, Shown, first_rows
-from visviva._keywords import known_keywords
+from visviva._keywords import JOINING, known_keywords
 from visviva._names import body_index, body_indices, checked_names
 from visviva._text import count
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from typing import NoReturn
 
     from numpy.typing import ArrayLike, NDArray
 
@@ -113,6 +114,13 @@ class Particles(Shown):
 
     def __iter__(self) -> Iterator[Particles]:
         return (self[body] for body in range(len(self)))
+
+    if not TYPE_CHECKING:  # to which there is no sum of them
+
+        def __add__(self, other: object) -> NoReturn:
+            raise TypeError(f"Particles are not added; {JOINING}")
+
+        __radd__ = __add__
 
     def __repr__(self) -> str:
         massless = int(np.count_nonzero(self.mass == 0.0))

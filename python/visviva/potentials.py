@@ -11,9 +11,9 @@ from typing import TYPE_CHECKING, Any, ClassVar, Self
 
 from visviva import _core
 from visviva._arrays import float_array, positive
-from visviva._custom_potential import Custom
+from visviva._custom_potential import Custom, written
 from visviva._declared import Declared, make
-from visviva._keywords import did_you_mean, known_keywords, refuse_subclass
+from visviva._keywords import did_you_mean, known_keywords, refuse_subclass, unknown_name
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
@@ -265,7 +265,10 @@ def _between(
 
 
 # What a class has beside what is declared.
-_FURTHER: dict[str, dict[str, Any]] = {"screened_coulomb": {"between": classmethod(_between)}}
+_FURTHER: dict[str, dict[str, Any]] = {
+    "screened_coulomb": {"between": classmethod(_between)},
+    "expressed": {"__repr__": written},
+}
 _SHAPES = "Distances may have any shape; values, forces and curvatures have the same."
 _BY_NAME = {
     entry["name"]: make(
@@ -336,3 +339,7 @@ def potential_from_core(description: dict[str, Any]) -> Potential:
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

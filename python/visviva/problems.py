@@ -8,13 +8,13 @@ amplifies a rounding of its input, so that nobody claims digits that float64 can
 from __future__ import annotations
 
 from math import pi, sqrt
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
 from visviva._arrays import number, whole_number
 from visviva._field_problems import arenstorf, crossed_fields, driven_oscillator, projectile
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva._problem import Problem, Reference, reference, rows
 from visviva._reference_states import (
     OUTER_SOLAR_SYSTEM,
@@ -274,3 +274,7 @@ def kepler(e: float = 0.5, mass_ratio: float = 1.0, periods: int = 1) -> Problem
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -51,18 +51,21 @@ _Check = TypeVar("_Check")
 
 
 # What is called so elsewhere, and what does here what it is for.
-_EXACT = "for digits that leave nothing, 'taylor' or 'dop853' with rtol=1e-13"
+_EXACT = "for digits that leave nothing, 'taylor' or 'verner98' with rtol=1e-13"
 _PLANETS = "for planets and many turns, 'kahan_li8' or 'stormer13' with dt"
+_ENCOUNTERS = "'verner98' takes smaller steps through encounters, and 'kahan_li8' keeps energies between them"
 _STIFF = "it is implicit, which scipy.integrate.solve_ivp has for stiff equations and visviva has not"
 _OF_OTHERS = {
     "ias15": _EXACT,
     "bs": _EXACT,
     "gbs": _EXACT,
     "whfast": _PLANETS,
+    "wisdom_holman": _PLANETS,
+    "janus": "for a way back that is the way there up to rounding, 'kahan_li8' with dt, which is symmetric",
     "saba": _PLANETS,
     "eos": _PLANETS,
-    "mercurius": "'dop853' takes smaller steps through encounters, and 'kahan_li8' keeps energies between them",
-    "trace": "'dop853' takes smaller steps through encounters, and 'kahan_li8' keeps energies between them",
+    "mercurius": _ENCOUNTERS,
+    "trace": _ENCOUNTERS,
     "rk45": "'dormand_prince54' is that pair",
     "rk23": "'bogacki_shampine32' is that pair",
     "verlet": "'leapfrog' is that method",
@@ -80,7 +83,7 @@ def _method(name: str, value: object) -> str:
 
         if isinstance(value, Method):
             return value.name
-    elif (cure := _OF_OTHERS.get(value.lower().replace("-", "_"))) is not None:
+    elif (cure := _OF_OTHERS.get(value.lower().replace("-", "_").replace(" ", "_"))) is not None:
         raise InvalidInput(name, f"{value} is none of visviva.methods(); {cure}")
     return _word(name, value)
 
@@ -123,7 +126,7 @@ def _step(name: str, value: object) -> float:
             name,
             "expected one number, the length of every step, got several: a symplectic method whose steps change from "
             "one to the next is no symplectic map, and its energy drifts; give one dt and a time_transformation, which "
-            "lets steps change in time and keeps the map, or name an adaptive method such as dop853",
+            "lets steps change in time and keeps the map, or name an adaptive method such as verner98",
         )
     return number(name, value)
 
@@ -194,7 +197,7 @@ class PlanRequest:
             raise InvalidInput(
                 "rtol",
                 f"{asked['method']} has a fixed step, dt, which nothing else changes: expected none, got {self.rtol}; "
-                "leave rtol out and choose dt, or name an adaptive method such as dop853",
+                "leave rtol out and choose dt, or name an adaptive method such as verner98",
             )
         if asked["events"]:
             from visviva._told_events import resolved

@@ -19,7 +19,7 @@ from visviva._body_force import BodyForce
 from visviva._continuation import attached
 from visviva._frames import Framed
 from visviva._html import Sheet
-from visviva._keywords import known_keywords
+from visviva._keywords import JOINING, known_keywords
 from visviva._text import article
 from visviva._turning import described, joined, with_centers
 from visviva.errors import InvalidInput
@@ -145,7 +145,7 @@ class Scene(Runnable[Trajectory], Framed):
                 argument, wanted = ("parts", "Particles, RigidBodies and ") if place < named else ("forces", "")
                 raise InvalidInput(argument, f"expected {wanted}forces ({known}), got {came}")
         if len(found) > 1 or not (found or rigid):
-            advice = "join their arrays" if found else "the forces need bodies to act on"
+            advice = JOINING if found else "the forces need bodies to act on"
             raise InvalidInput("parts", f"expected exactly one Particles, got {len(found)}; {advice}")
         bodies = joined(rigid) if rigid else None
         points = with_centers(found, bodies) if bodies else found[0]

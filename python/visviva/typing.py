@@ -1,7 +1,9 @@
 """Types to annotate with: the names that `run` and `solve_ivp` take, and what they report to.
 
 `MethodName`, `SolverName` (of `solve_ivp`) and `ColumnName` are written by ``tools/write_names.py`` from what the core
-has; a test compares. `TransformationName` is what a time transformation watches. `GeneralizedMethodName`,
+has; a test compares. `TransformationName` is what a time transformation watches. `EventDirection` is
+which zeros are events. `EventColumnName`, `GeneralizedEventColumnName`, `CollisionColumnName`, `ElementName` and
+`ScatteringColumnName` are columns of tables. `GeneralizedMethodName`,
 `DiscreteMethodName` and `GeneralizedColumnName` are those of systems in generalized coordinates; `TallyName` and
 `FoilTallyName` what Monte Carlo runs count, `MaterialName`, `IonName` and `ScreeningName` what foils are made of, and
 `EulerConvention` names the turns of `visviva.rigid`. `SymbolicExpression`, `Formula`, `ParameterValues`,
@@ -18,6 +20,8 @@ from typing import TYPE_CHECKING, Literal, Protocol, SupportsFloat, TypeAlias, T
 import numpy as np
 from numpy.typing import NDArray
 
+from visviva._keywords import unknown_name
+
 if TYPE_CHECKING:
     from ctypes import _CFunctionType
 
@@ -29,17 +33,22 @@ if TYPE_CHECKING:
     from visviva.generalized import Expression, GeneralizedTrajectory
 
 __all__ = [
+    "CollisionColumnName",
     "CollisionRule",
     "ColumnName",
     "CompiledFunction",
     "DiscreteMethodName",
+    "ElementName",
     "EulerConvention",
+    "EventColumnName",
+    "EventDirection",
     "EventFunction",
     "Executor",
     "FoilTallyName",
     "Formula",
     "GeneralizedColumnName",
     "GeneralizedEvent",
+    "GeneralizedEventColumnName",
     "GeneralizedMethodName",
     "GeneralizedPath",
     "IonHistory",
@@ -51,6 +60,7 @@ __all__ = [
     "Progress",
     "Report",
     "RunSettings",
+    "ScatteringColumnName",
     "ScreeningName",
     "SolverName",
     "SymbolicExpression",
@@ -131,11 +141,38 @@ Progress: TypeAlias = bool | Report
 TransformationName: TypeAlias = Literal["potential_energy", "distance"]
 """What a time transformation watches: the steps are shorter where it is large."""
 
+EventDirection: TypeAlias = Literal[-1, 0, 1]
+"""Which zeros are events: those passed downwards in time, all, or those passed upwards."""
+
+EventColumnName: TypeAlias = Literal["which", "t", "position", "velocity", "member"]
+"""Columns of `visviva.events.EventTable`."""
+
+GeneralizedEventColumnName: TypeAlias = EventColumnName | Literal["momentum"]
+"""Columns of `visviva.generalized.GeneralizedEventTable`."""
+
+CollisionColumnName: TypeAlias = Literal[
+    "t", "first", "second", "speed", "position", "energy_lost", "survivor", "member"
+]
+"""Columns of `visviva.collisions.CollisionTable`."""
+
+ElementName: TypeAlias = Literal[
+    "mu", "angular_momentum", "energy", "laplace_runge_lenz", "hodograph_center", "hodograph_radius", "eccentricity",
+    "semi_major_axis", "semi_minor_axis", "semi_latus_rectum", "pericenter", "apocenter", "inclination", "node",
+    "argument_of_pericenter", "true_anomaly", "eccentric_anomaly", "mean_anomaly", "time_since_pericenter", "period",
+    "areal_rate", "turning_angle", "longitude_of_ascending_node", "longitude_of_pericenter", "mean_longitude",
+]  # fmt: skip
+"""Elements of `visviva.orbits.Elements`."""
+
 GeneralizedColumnName: TypeAlias = Literal["position", "velocity", "momentum", "energy", "reactions"]
 """What a run in generalized coordinates knows at its times."""
 
 TallyName: TypeAlias = Literal["cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"]
 """What `visviva.scattering.monte_carlo` counts of an event."""
+
+ScatteringColumnName: TypeAlias = (
+    TallyName | Literal["event", "component", "channel", "weight", "beam_energy", "incidence", "deflection"]
+)
+"""Columns of `visviva.scattering.scattering_events`."""
 
 FoilTallyName: TypeAlias = Literal[
     "lab_angle",
@@ -307,3 +344,7 @@ class RunSettings(TypedDict, total=False):
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -22,9 +22,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from fractions import Fraction
+from typing import TYPE_CHECKING
 
 from visviva._html import Shown
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva._text import table
 
 __all__ = [
@@ -243,3 +244,7 @@ N_BODY = Units(
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

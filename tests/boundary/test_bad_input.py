@@ -72,6 +72,8 @@ scene.run(1, method="RK4", dt=0.1)                  | method      | got 'RK4'; d
 scene.run(1, method="Kahan-Li 8", dt=0.1)           | method      | did you mean 'kahan_li8'\?
 scene.run(1, method="\ud800")                       | method      | got '\?'$
 scene.run(1, record="\ud800")                       | record      | got '\?'$
+scene.run(1, method="rk4", dt=0.1, rtol=1e-3)       | rtol        | an adaptive method such as verner98$
+scene.run(1, method="leapfrog", dt=[0.1, 0.2])      | dt          | an adaptive method such as verner98$
 scene.run(1, record="Angular-Momentum")             | record      | did you mean 'angular_momentum'\?
 scene.run(1, **{"Max Step": 1})                     | Max Step    | did you mean 'max_step'\?
 scene.run(1, method="rk4", dt=0.1, max_step=0.5)    | max_step    | rk4 has a fixed step.*got 0.5; leave max_step out
@@ -147,6 +149,15 @@ vv.problems.lagrange_triangle(side=-1)              | side        | positive len
 vv.problems.lagrange_triangle(turn="once")          | turn        | expected real numbers
 vv.problems.kepler().error(3)                       | final       | expected a Scene or a Trajectory, got int
 vv.load(__file__)                                   | path        | expected a run that visviva saved
+vv.CentralField(lambda r: -1 / r)                   | potential   | got function; wrap it: vv.potentials.Custom\(function\)
+vv.PairPotential(lambda r: -1 / r)                  | potential   | wrap it: vv.potentials.Custom\(function\)
+vv.PairPotential(vv.potentials.Coulomb)             | potential   | got type$
+mc(lambda r: 1 / r)                                 | potential   | wrap it: vv.potentials.Custom\(function\)
+vv.scattering.deflect(abs, energy=1, impact_parameter=1) | potential | wrap it: vv.potentials.Custom\(function\)
+vv.scattering.rainbows(abs, energy=1)               | potential   | wrap it: vv.potentials.Custom\(function\)
+vv.scattering.Foil("gold", 1.0, potential=abs)      | potential   | wrap it: vv.potentials.Custom\(function\)
+vv.orbits.central_orbit(abs, position=[1, 0, 0], velocity=[0, 1, 0]) | potential | wrap it: vv.potentials.Custom\(function\)
+vv.orbits.central_orbit([coulomb, abs], position=[1, 0, 0], velocity=[0, 1, 0]) | potential | wrap it: vv.potentials.Custom
 mc(vv.Gravity(1.0))                  | potential   | expected one of visviva.potentials
 mc(beam_energy=-1)                                  | beam_energy | positive finite number, got -1
 mc(masses=(1, 1, 1))                                | masses      | expected shape \(2,\), got \(3,\)
@@ -194,6 +205,8 @@ def test_a_folder_that_is_not_there_is_named(tmp_path: object) -> None:
     [
         ("gravity", "did you mean 'Gravity'?"),
         ("Partcles", "did you mean 'Particles'?"),
+        ("simulate", "has no attribute 'simulate'"),
+        ("Friction", "has no attribute 'Friction'"),
         ("Yukawa", "it is visviva.potentials.Yukawa"),
         ("_hidden", "has no attribute '_hidden'"),
     ],
@@ -202,6 +215,19 @@ def test_a_name_that_is_not_there_is_told_from_the_nearest(name: str, message: s
     with pytest.raises(AttributeError) as caught:
         getattr(vv, name)
     assert str(caught.value).endswith(message)
+
+
+@pytest.mark.parametrize("room", vv._ROOMS)
+def test_a_room_names_the_nearest_of_its_names(room: str) -> None:
+    module = getattr(vv, room)
+    name = module.__all__[-1]
+    with pytest.raises(
+        AttributeError, match=rf"module 'visviva\.{room}' has no attribute .*; did you mean '{name}'\?$"
+    ):
+        getattr(module, name + "x")
+    for unknown in ("_hidden", "zzzzzzzz"):
+        with pytest.raises(AttributeError, match=rf"module 'visviva\.{room}' has no attribute '{unknown}'$"):
+            getattr(module, unknown)
 
 
 def test_a_path_whose_text_is_none_is_refused() -> None:

@@ -157,6 +157,35 @@ def test_the_nearest_name_is_suggested(call: Callable[[], object], came: str, me
     assert str(caught.value).endswith(f"; did you mean '{meant}'?")
 
 
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: ONE.run(t=1.0, heartbeat=print),
+        lambda: vv.solve_ivp(lambda t, y: -y, (0.0, 1.0), [1.0], progress=True),
+        lambda: vv.Scene(vv.Particles([1.0], [[0, 0, 0]]), gravity=1.0),
+    ],
+)
+def test_letters_that_are_shared_by_chance_make_no_name_near(call: Callable[[], object]) -> None:
+    with pytest.raises(vv.UnknownKeyword) as caught:
+        call()
+    assert "did you mean" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("call", "cure"),
+    [
+        (lambda: ONE.run(t_end=1.0), "give the end, or the output times, as t"),
+        (lambda: vv.Particles(m=[1.0], position=[[0, 0, 0]]), "give it as mass"),
+        (lambda: vv.Particles([1.0], pos=[[0, 0, 0]]), "give it as position"),
+        (lambda: vv.Particles([1.0], [[0, 0, 0]], v=[[0, 0, 0]]), "give it as velocity"),
+        (lambda: vv.Particles([1.0], x=[[0, 0, 0]]), "give positions as position"),
+    ],
+)
+def test_a_name_from_elsewhere_leads_to_ours(call: Callable[[], object], cure: str) -> None:
+    with pytest.raises(vv.UnknownKeyword, match=cure):
+        call()
+
+
 def test_a_keyword_that_is_no_text_is_refused_like_any_other() -> None:
     with pytest.raises(vv.UnknownKeyword, match="expected a keyword of run"):
         ONE.run(t=1.0, **{"\ud800": 1})

@@ -33,6 +33,9 @@ def test_events_refuse_by_name() -> None:
         ("about", lambda: events.apsis(1, 1)),
         ("terminal", lambda: events.apsis(1, 0, terminal=-1)),
         ("direction", lambda: events.apsis(1, 0, direction="up")),  # type: ignore[arg-type]
+        ("direction", lambda: events.plane([0, 0, 0], [0, 0, 1], direction=2)),  # type: ignore[arg-type]
+        ("direction", lambda: events.distance(0, 1, below=1.0, direction=-0.5)),  # type: ignore[arg-type]
+        ("direction", lambda: events.energy(1.0, direction=3)),  # type: ignore[arg-type]
         ("value", lambda: events.energy(np.inf)),
         ("call", lambda: events.function(3)),  # type: ignore[arg-type]
     ]
@@ -42,3 +45,20 @@ def test_events_refuse_by_name() -> None:
         assert refused.value.argument == argument
     with pytest.raises(vv.InvalidInput, match="no events were looked for"):
         _ = vv.problems.kepler(e=0.3).scene.run(t=1.0).events
+
+
+def test_a_direction_is_said_with_what_it_may_be() -> None:
+    with pytest.raises(vv.InvalidInput, match=r"direction: expected 1 for upwards, -1 for downwards or 0 .*, got 2"):
+        events.plane([0, 0, 0], [0, 0, 1], direction=2)  # type: ignore[arg-type]
+
+
+def test_the_sign_of_a_functions_own_direction_counts_as_in_scipy() -> None:
+    def height(t: float, position: Any, velocity: Any) -> float:
+        return float(position[1, 1])
+
+    scene = vv.problems.kepler(e=0.3).scene
+    one = scene.run(t=10.0, events=[events.function(height, direction=-1)]).events
+    height.direction = -2.5  # type: ignore[attr-defined]
+    other = scene.run(t=10.0, events=[height]).events
+    assert len(one) > 0
+    assert np.array_equal(one.t, other.t)

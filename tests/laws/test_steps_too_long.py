@@ -13,7 +13,7 @@ PLANETS = vv.datasets.solar_system().scene
 @pytest.mark.parametrize("dt", [2.0, 2.5, 3.0])
 def test_mercury_by_a_multistep_method(dt: float) -> None:
     """Two days are 44 steps in a turn of Mercury, which was thrown out to 192 AU without a word."""
-    with pytest.warns(vv.AccuracyWarning, match="a turn of body 1 about body 0 has"):
+    with pytest.warns(vv.AccuracyWarning, match=r"a turn of body 1 about body 0 has .*\(taylor, verner98\)"):
         PLANETS.run(t=3652.5, method="stormer13", dt=dt)
     assert any(row[0] == "step too long" for row in PLANETS.plan(t=3652.5, method="stormer13", dt=dt).rows)
 

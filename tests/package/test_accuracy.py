@@ -31,6 +31,7 @@ def test_a_step_that_resolves_nothing_is_named_and_so_is_one_that_does(
     with pytest.warns(vv.AccuracyWarning, match="kinetic") as caught:
         scene.run(t=t, method=method, dt=dt)
     assert caught[0].filename == __file__
+    assert "an adaptive method (verner98)" in str(caught[0].message)
     better = step_named(str(caught[0].message))
     assert better < dt
     with warnings.catch_warnings():

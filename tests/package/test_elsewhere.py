@@ -9,6 +9,7 @@ import pytest
 import visviva as vv
 
 SCENE = vv.problems.kepler(e=0.5).scene
+SUN = vv.Particles([1.0], [[0, 0, 0]], names=["Sun"])
 METHODS = {method.name for method in vv.methods()}
 
 
@@ -16,9 +17,14 @@ METHODS = {method.name for method in vv.methods()}
     ("method", "cure"),
     [
         ("ias15", "taylor"),
-        ("IAS15", "dop853"),
+        ("IAS15", "verner98"),
+        ("bs", "verner98"),
         ("whfast", "kahan_li8"),
-        ("mercurius", "dop853"),
+        ("wisdom_holman", "kahan_li8"),
+        ("Wisdom Holman", "kahan_li8"),
+        ("janus", "kahan_li8"),
+        ("mercurius", "verner98"),
+        ("trace", "verner98"),
         ("RK45", "dormand_prince54"),
         ("velocity-verlet", "leapfrog"),
         ("LSODA", "implicit"),
@@ -61,6 +67,13 @@ def test_the_package_says_what_takes_the_place_of_others(name: str, cure: str) -
         (lambda: vv.Particles(1.0, [0, 0, 0], [1, 0, 0]), "mass", "one body is [1.0], [[x, y, z]]"),
         (lambda: vv.Particles([1.0], [[0, 0]]), "position", "in a plane give z = 0"),
         (lambda: vv.collisions.elastic(1.0, 2.0, [1, 0, 0], [0, 0, 0]), "normal", "on a line, normal=[1, 0, 0]"),
+        (lambda: vv.Scene(SCENE.particles, SCENE.particles), "parts", "np.concatenate([a.mass, b.mass])"),
+        (
+            lambda: vv.Particles.from_elements(SUN, np.zeros(1000), G=1.0, semi_major_axis=1.0),
+            "names",
+            "expected 1000 names, of each new body, as those that are there have some; give your own, or "
+            "names=[f'particle {i}' for i in range(1000)]",
+        ),
         (lambda: vv.Particles.from_elements(1.0, a=1.0), "a", "semi_major_axis"),
         (lambda: vv.scattering.Foil("Au", 0.4), "material", "did you mean 'gold'?"),
     ],
@@ -98,3 +111,14 @@ def test_deflections_are_short_in_words_and_a_table_in_a_notebook() -> None:
     table = found._repr_html_()
     assert "and 38 more" in table
     assert "captured" in table
+
+
+def test_bodies_are_joined_as_a_sum_of_them_is_told_to() -> None:
+    a, b = SCENE.particles, SUN
+    for added in (lambda: a + b, lambda: sum([a, b])):
+        with pytest.raises(TypeError, match=r"^Particles are not added; join their arrays: ") as refused:
+            added()
+    told = str(refused.value).partition("arrays: ")[2].partition(", and names")[0]
+    both = eval(told, {"vv": vv, "np": np, "a": a, "b": b})
+    assert len(both) == len(a) + len(b)
+    assert np.array_equal(both.velocity[: len(a)], a.velocity)

@@ -236,3 +236,44 @@ def test_what_fades_leaves_the_rest(made: Any, force: Any) -> None:
     slope = (potential.value(near + 1e-5) - potential.value(near - 1e-5)) / 2e-5
     # Of a difference over 2e-5: h²/6 of the third derivative, some hundreds, and rounding.
     assert potential.force(near) == pytest.approx(-slope, rel=1e-7, abs=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("made", "shown"),
+    [
+        (Custom(lambda r: -1.0 / r), "Expressed(-1/r)"),
+        (Custom(lambda r: (r - 1.0) ** 2 - 3.0 * r), "Expressed((r - 1)**2 - 3*r)"),
+        (Custom(k * sp.exp(-r) / r, parameters={k: 1.5}), "Expressed(k*exp(-r)/r, k=1.5)"),
+        (Custom(lambda r: sum(r**n / n for n in range(1, 20))), "Expressed(78 nodes)"),
+        (Custom(lambda r: r).rescaled(length=2.0), "Expressed(r, length=2.0, energy=4.0)"),
+        (Expressed([1.0, 0.0, 2.0, 0.0, 0.0], [3.0]), "Expressed(values[0], values[0]=3.0)"),
+    ],
+)
+def test_a_formula_prints_as_one(made: Expressed, shown: str) -> None:
+    assert repr(made) == shown
+    assert shown in repr(vv.CentralField(made))
+
+
+WRITTEN: list[Any] = [
+    lambda r: (r - 1) ** 2 / (2 * r + 1) - 3 * r,
+    lambda r: -2.5 * r**-1.5 + 4,
+    lambda r: r ** (-r),
+    lambda r: (-r) ** 2,
+    lambda r: -(r**2),
+    lambda r: r - (1 - r),
+    lambda r: 1 / (1 / r),
+    lambda r: 2 / (r * 3),
+    lambda r: (r + 1) * -2 * (r - 3) / -r,
+    lambda r: 2 ** (r + 1),
+    lambda r: (r**2) ** 3,
+    lambda r: r**-1e-7,
+    lambda r: np.arctan2(r, 1) - (r / 2) ** -2,
+]
+
+
+@pytest.mark.parametrize("function", WRITTEN)
+def test_the_formula_that_is_printed_is_the_one_that_is_computed(function: Any) -> None:
+    made = Custom(function)
+    text = repr(made).removeprefix("Expressed(").removesuffix(")")
+    found = eval(text, {"r": 1.3, "atan2": np.arctan2})
+    assert found == pytest.approx(function(1.3), rel=1e-12)

@@ -130,6 +130,26 @@ except vv.Interrupted as stopped:
     if stopped.trajectory is not None:
         stopped.trajectory.t
 vv.stress.run(["dop835"])  # wrong
+scene.particles + scene.particles  # wrong
+orbits: vv.orbits.Elements = out.elements([1], about=0)
+orbits.plot("eccentricity")
+orbits.plot("ecc")  # wrong
+orbits.to_pandas(["eccentricity", "mean_longitude"])
+orbits.to_pandas(["ecc"])  # wrong
+orbits.to_xarray("ecc")  # wrong
+orbits.to_parquet("orbits.parquet", ["ecc"])  # wrong
+out.events.to_pandas(["t", "position"])
+out.events.to_pandas(["positon"])  # wrong
+out.collisions.to_pandas(["energy_lost"])
+out.collisions.to_pandas(["enrgy"])  # wrong
+vv.systems.pendulum().run(1.0, events=["theta"]).events.to_pandas(["momentum"])
+vv.systems.pendulum().run(1.0, events=["theta"]).events.to_pandas(["momentun"])  # wrong
+events = vv.scattering.scattering_events(atom, beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1)
+events["channel"]
+events["chanel"]  # wrong
+vv.events.plane([0, 0, 0], [0, 1, 0], direction=-1)
+vv.events.plane([0, 0, 0], [0, 1, 0], direction=2)  # wrong
+vv.systems.henon_heiles().poincare("x", t=1.0, direction=2)  # wrong
 """
 
 

@@ -85,6 +85,34 @@ def test_what_foils_are_made_of() -> None:
         assert vv.potentials.ScreenedCoulomb.between(2, 79, screening=name).screening == name  # type: ignore[arg-type]
 
 
+def test_columns_of_tables() -> None:
+    pytest.importorskip("pandas")
+    scene = vv.problems.kepler(e=0.5).scene
+    out = scene.run(1.0, events=[vv.events.apsis(1, 0)])
+    swing = vv.systems.pendulum().run(1.0, events=["theta"]).events
+    balls = vv.Particles([1.0, 1.0], [[-2.0, 0, 0], [2.0, 0, 0]], [[1.0, 0, 0], [-1.0, 0, 0]], radius=0.5)
+    struck = vv.Scene(balls).run(t=4.0, collisions="bounce").collisions
+    tables: list[tuple[Any, Any]] = [
+        (out.events, typing.EventColumnName),
+        (swing, typing.GeneralizedEventColumnName),
+        (struck, typing.CollisionColumnName),
+        (out.elements([1], about=0), typing.ElementName),
+    ]
+    for table, alias in tables:
+        assert refused(lambda table=table: table.to_pandas("?"), "there are") == words(alias)  # type: ignore[misc]
+
+
+def test_columns_of_scattering_events() -> None:
+    asked: dict[str, Any] = {"beam_energy": 1.0, "masses": (1.0, 1.0), "b_max": 1.0, "n_events": 3, "seed": 1}
+    channel = vv.scattering.Channel(-0.1, 0.5)
+    strata = vv.scattering.Strata([0.0, 0.1, 1.0])
+    potential = vv.potentials.PowerLaw(1.0, 1.0)
+    events: Any = vv.scattering.scattering_events(potential, **asked, channels=channel, importance=strata)
+    assert set(events) == words(typing.ScatteringColumnName)
+    with pytest.raises(KeyError, match=r"no column 'chanel'; there are event, .*did you mean 'channel'"):
+        events["chanel"]
+
+
 def test_conventions_of_euler_angles() -> None:
     taken = set()
     for letters in product("xyzXYZ", repeat=3):

@@ -4,6 +4,7 @@ A conversion is within 4 ε of the rotation; SciPy's own rounding is as large, h
 """
 
 import itertools
+import sys
 
 import numpy as np
 import pytest
@@ -185,3 +186,9 @@ def test_bad_input(call, argument, words):
 def test_nearly_unit_quaternions_are_taken():
     q = np.array([0.6, 0.0, 0.0, 0.8])
     assert np.allclose(vv.rigid.rotate(q * (1 + 9e-7), [0, 1, 0]), vv.rigid.rotate(q, [0, 1, 0]), atol=4e-16)
+
+
+def test_what_makes_a_rotation_of_scipy_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "scipy.spatial.transform", None)
+    with pytest.raises(ImportError, match=r"^to_scipy needs the package scipy: pip install scipy$"):
+        vv.rigid.to_scipy([0.0, 0.0, 0.0, 1.0])

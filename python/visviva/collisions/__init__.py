@@ -7,6 +7,9 @@ their three components along the last axis; all arguments broadcast against each
 Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.11; Landau & Lifshitz, *Mechanics*, §16–17.
 """
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import unknown_name
 from visviva.collision_table import CollisionTable
 from visviva.collisions._impacts import (
     CollisionOutcome,
@@ -36,3 +39,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

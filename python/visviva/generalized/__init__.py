@@ -7,6 +7,9 @@ new derivation. The names here are those of `visviva` itself.
 Units are those of the parameters. Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. ch. 1, 2, 6 and 8.
 """
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import unknown_name
 from visviva.generalized._accessory import AccessoryProblem
 from visviva.generalized._action import PathIntegral
 from visviva.generalized._analysis import Linearization, PoincareSection
@@ -52,3 +55,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

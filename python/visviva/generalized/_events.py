@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._arrays import number
+from visviva._event import sign
 from visviva._event_table import Lines
 from visviva._exported import Columns, chosen_columns
 from visviva._keywords import did_you_mean, known_keywords
@@ -23,6 +25,7 @@ if TYPE_CHECKING:
 
     from visviva.generalized._nodes import Node
     from visviva.generalized._states import States
+    from visviva.typing import GeneralizedEventColumnName
 
 __all__ = ["GeneralizedEventTable", "described", "events_of", "found_events", "told"]
 
@@ -50,8 +53,8 @@ def _event(index: int, given: Any) -> Event:
     if isinstance(given, str):
         return coordinate(given)
     if callable(given) or hasattr(given, "free_symbols"):
-        how = {name: getattr(given, name, 0) for name in ("direction", "terminal")}
-        return expression(given, **how)
+        way = sign(number("direction", getattr(given, "direction", 0)))
+        return expression(given, direction=way, terminal=getattr(given, "terminal", 0))
     raise InvalidInput(
         "events",
         "expected one of visviva.events, the name of a coordinate, an expression of SymPy or a function f(q, v, t), "
@@ -141,7 +144,7 @@ def _symbols(system: States, nodes: Nodes) -> Symbols:
 
 @known_keywords
 @dataclass(frozen=True, slots=True, eq=False)
-class GeneralizedEventTable(Lines):
+class GeneralizedEventTable(Lines["GeneralizedEventColumnName"]):
     """The events of a run in generalized coordinates, in the order of the motion; of an ensemble, copy after copy.
 
     Units: those of the system, which are those of its parameters; angles in radians.
@@ -177,7 +180,7 @@ class GeneralizedEventTable(Lines):
     member: NDArray[np.int64]
     definitions: tuple[Event, ...]
 
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+    def _exported(self, columns: GeneralizedEventColumnName | Sequence[GeneralizedEventColumnName] | None) -> Columns:
         known = self._names()
         of = {
             name: (("event", *["coordinate"][: getattr(self, name).ndim - 1]), getattr(self, name))

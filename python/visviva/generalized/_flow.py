@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from visviva.generalized._legendre import LegendreTransform
     from visviva.generalized._nodes import Node
     from visviva.integrators import Method
-    from visviva.typing import Formula, GeneralizedMethodName
+    from visviva.typing import EventDirection, Formula, GeneralizedMethodName
 
 __all__ = ["Flow"]
 
@@ -34,7 +34,7 @@ class Flow:
         section: str | Formula,
         t: float,
         *,
-        direction: int = 1,
+        direction: EventDirection = 1,
         method: GeneralizedMethodName | Method = "gauss16",
         rtol: float = 1e-12,
         dt: float | None = None,

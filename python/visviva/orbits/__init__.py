@@ -12,6 +12,9 @@ reference direction and z the pole. Source: Goldstein, Poole & Safko, *Classical
 Danby, *Fundamentals of Celestial Mechanics* (1988) ch. 6.
 """
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import unknown_name
 from visviva.orbits._central import (
     CircularOrbits,
     RadialRange,
@@ -90,3 +93,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

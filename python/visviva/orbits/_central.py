@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import number, positive
+from visviva._declared import wrapped
 from visviva._html import Record, Shown
 from visviva._keywords import known_keywords
 from visviva._text import short, table
@@ -30,9 +31,15 @@ def terms_of(potential: Potential | Sequence[Potential]) -> tuple[Potential, ...
         terms = ()
     if not terms or not all(isinstance(term, Potential) for term in terms):
         raise InvalidInput(
-            "potential", f"expected one of visviva.potentials, or several to be added, got {potential!r}"
+            "potential",
+            f"expected one of visviva.potentials, or several to be added, got {potential!r}{_cure(potential)}",
         )
     return terms
+
+
+def _cure(given: object) -> str:
+    several = given if isinstance(given, list | tuple) else (given,)
+    return next(filter(None, map(wrapped, several)), "")
 
 
 def core_potentials(potential: Potential | Sequence[Potential]) -> list[dict[str, Any]]:

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
 
+    from visviva.typing import ElementName
+
 
 @known_keywords
 @dataclass(frozen=True, eq=False, kw_only=True, slots=True)
@@ -215,7 +217,7 @@ class Elements(OfOrbits, Shown):
         position, velocity = _core.orbit_state_again(flat)
         return position.reshape((*shape, 3)), velocity.reshape((*shape, 3))
 
-    def plot(self, element: str | None = None, *, ax: Axes | None = None) -> Figure:
+    def plot(self, element: ElementName | None = None, *, ax: Axes | None = None) -> Figure:
         """Draw elements of a run against time, a line for each body.
 
         Angles are drawn in degrees; their lines break where they go round.

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from visviva.typing import ElementName
+
 __all__ = ["OfOrbits"]
 
 # What follows from the fields, and can be asked for by name.
@@ -27,7 +29,7 @@ ANGLES = (
 )
 
 
-class OfOrbits(Exported[str]):
+class OfOrbits(Exported["ElementName"]):
     """Base of what has one value, or one vector, for each of several orbits."""
 
     __slots__ = ("_axes",)
@@ -52,7 +54,7 @@ class OfOrbits(Exported[str]):
     def _row_axes(self) -> tuple[str, ...]:
         return tuple(self._labels())
 
-    def _exported(self, columns: str | Sequence[str] | None) -> Columns:
+    def _exported(self, columns: ElementName | Sequence[ElementName] | None) -> Columns:
         axes = self._labels()
         shape = tuple(map(len, axes.values()))
         own = tuple(type(self).__slots__)

@@ -8,7 +8,10 @@ in radians, the vector axis is the last, and any leading axes broadcast. Whereve
 Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. ch. 4–5; Landau & Lifshitz, *Mechanics* 3rd ed. ch. VI.
 """
 
+from typing import TYPE_CHECKING
+
 from visviva._body_force import BodyForce
+from visviva._keywords import unknown_name
 from visviva.rigid._cones import ConeAngles, cone_angles
 from visviva.rigid._euler import angular_velocity_from_euler, euler_angles, euler_rates, quaternion_from_euler
 from visviva.rigid._free import FreeRotation, free_rotation
@@ -108,3 +111,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

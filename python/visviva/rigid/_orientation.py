@@ -322,7 +322,7 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6.
     ImportError
-        Without SciPy.
+        Without the package scipy: ``pip install scipy``.
 
     Examples
     --------
@@ -330,8 +330,10 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
     >>> vv.rigid.to_scipy([0.0, 0.0, 1.0, 0.0]).apply([1.0, 0.0, 0.0])
     array([-1.,  0.,  0.])
     """
-    from scipy.spatial.transform import Rotation
-
+    try:
+        from scipy.spatial.transform import Rotation
+    except ImportError as error:
+        raise ImportError("to_scipy needs the package scipy: pip install scipy") from error
     return Rotation.from_quat(_form("normalized", (4,), ("quaternion", quaternion, (4,))))
 
 

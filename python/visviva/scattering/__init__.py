@@ -9,6 +9,9 @@ Source: Goldstein, Poole & Safko, *Classical Mechanics* 3rd ed. §3.10–3.11; L
 §16–20.
 """
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import unknown_name
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._bins import Bins
 from visviva.scattering._channels import Channel
@@ -121,3 +124,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)

@@ -9,17 +9,19 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._declared import checked_potential
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._made_by import NamedCode
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.potentials import Potential
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.potentials import Potential
 
 __all__ = ["Deflection", "DeflectionStatus", "deflect", "deflection_angle"]
 
@@ -326,8 +328,7 @@ def _deflections(
     everything: bool,
 ) -> tuple[tuple[NDArray[np.float64], NDArray[np.float64]], list[NDArray[np.float64]], list[NDArray[np.int64]]]:
     """Check what was asked for, and ask the core."""
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    known = checked_potential("potential", potential)
     energies, parameters = float_array("energy", energy, None), float_array("impact_parameter", impact_parameter, None)
     if (wrong := energies <= 0.0).any():
         raise InvalidInput("energy", f"expected positive numbers, got {energies[wrong][0]}")
@@ -341,7 +342,7 @@ def _deflections(
         raise InvalidInput("impact_parameter", message) from None
     pairs = np.broadcast_to(energies, shape), np.broadcast_to(parameters, shape)
     columns, counts = _core.deflections(
-        potential._to_core(),
+        known._to_core(),
         pairs[0].ravel(),
         pairs[1].ravel(),
         number("tolerance", tolerance),

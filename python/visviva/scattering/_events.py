@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 import numpy as np
 
 from visviva import _core
 from visviva._arrays import whole_number
-from visviva._keywords import known_keywords
+from visviva._declared import checked_potential
+from visviva._keywords import did_you_mean, known_keywords
 from visviva._paths import path_text
 from visviva._progress import callback
 from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Potential
 from visviva.scattering._beam import Spectrum, Spread, described
 from visviva.scattering._monte_carlo import _beam, _which
 
@@ -22,9 +22,10 @@ if TYPE_CHECKING:
 
     from numpy.typing import NDArray
 
+    from visviva.potentials import Potential
     from visviva.scattering._channels import Channel
     from visviva.scattering._importance import LargeAngles, Strata
-    from visviva.typing import Progress, Report
+    from visviva.typing import Progress, Report, ScatteringColumnName
 
 __all__ = ["scattering_events"]
 
@@ -47,7 +48,7 @@ def scattering_events(
     importance: Strata | LargeAngles | None = None,
     channels: Channel | Iterable[Channel] | None = None,
     to: str | PathLike[str] | None = None,
-) -> dict[str, NDArray[np.float64] | NDArray[np.uint64]]:
+) -> dict[ScatteringColumnName, NDArray[np.float64] | NDArray[np.uint64]]:
     """The very events that `monte_carlo` counts, one by one.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -81,6 +82,8 @@ def scattering_events(
     Interrupted
         After Ctrl-C. The file holds the events written until then, from ``first_event`` without a gap; the message
         says how many.
+    KeyError
+        By what is returned, for a column that it has not, with those that it has.
 
     References
     ----------
@@ -94,8 +97,7 @@ def scattering_events(
     >>> events["event"].tolist(), bool((events["energy"] + events["recoil_energy"]).round(12).max() == 2.0)
     ([0, 1, 2], True)
     """
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    checked_potential("potential", potential)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     first, count, key = _which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
@@ -104,10 +106,20 @@ def scattering_events(
         if to is None:
             return _columns(request, first, count, report)
         _stream(request, first, count, report, path_text("to", to))
-    return {}
+    return _Columns()
 
 
-_QUANTITIES = (
+class _Columns(dict["ScatteringColumnName", "NDArray[Any]"]):
+    """Columns by name, which says what there is where one is not."""
+
+    __slots__ = ()
+
+    def __missing__(self, name: object) -> NoReturn:
+        there = f"there are {', '.join(self)}" if self else "all are in the file that was written"
+        raise KeyError(f"there is no column {name!r}; {there}{did_you_mean(str(name), self)}")
+
+
+_QUANTITIES: tuple[ScatteringColumnName, ...] = (
     *("weight", "beam_energy", "incidence", "deflection"),
     *("cm_angle", "lab_angle", "recoil_angle", "energy", "recoil_energy", "impact_parameter"),
 )
@@ -115,17 +127,22 @@ _QUANTITIES = (
 _GROUP = 1 << 18
 
 
-def _columns(request: dict[str, Any], first: int, count: int, report: Report | None) -> dict[str, NDArray[Any]]:
+def _columns(
+    request: dict[str, Any], first: int, count: int, report: Report | None
+) -> dict[ScatteringColumnName, NDArray[Any]]:
     (component, channel), values = _core.scattering_events(
         **request, n_events=count, first_event=first, progress=report
     )
     columns = dict(zip(_QUANTITIES, np.ascontiguousarray(values.T), strict=True))
     if request["beam"]["importance"] is None:
         del columns["weight"]
-    which = {"event": np.arange(first, first + count, dtype=np.uint64), "component": component}
+    which: dict[ScatteringColumnName, NDArray[Any]] = {
+        "event": np.arange(first, first + count, dtype=np.uint64),
+        "component": component,
+    }
     if request["beam"]["channels"]:
         which["channel"] = channel
-    return {**which, **columns}
+    return _Columns({**which, **columns})
 
 
 def _stream(request: dict[str, Any], first: int, count: int, report: Report | None, path: str) -> None:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import float_array, positive
+from visviva._declared import wrapped
 from visviva._html import Record
 from visviva._keywords import did_you_mean, known_keywords
 from visviva.errors import InvalidInput
@@ -238,7 +239,7 @@ def potential_of(given: Any, several: int) -> Any:
         return given
     each = (given,) if isinstance(given, Potential) else given
     if not isinstance(each, Sequence) or not all(isinstance(one, Potential) for one in each):
-        raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {given!r}")
+        raise InvalidInput("potential", f"expected a name or one of visviva.potentials, got {given!r}{wrapped(given)}")
     if len(each) != several:
         raise InvalidInput("potential", f"expected one for each of {several} elements, got {len(each)}")
     return tuple(each)

@@ -9,10 +9,10 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, number, positive, whole_number
+from visviva._declared import checked_potential
 from visviva._keywords import known_keywords
 from visviva._progress import callback
-from visviva.errors import Interrupted, InvalidInput
-from visviva.potentials import Potential
+from visviva.errors import Interrupted
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from numpy.typing import ArrayLike
 
+    from visviva.potentials import Potential
     from visviva.scattering._bins import Axes, Bins
     from visviva.typing import Executor, Progress, TallyName
 
@@ -164,8 +165,7 @@ def monte_carlo(
     >>> bool(((part + rest)["cm_angle"].counts == whole["cm_angle"].counts).all())
     True
     """
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
+    checked_potential("potential", potential)
     asked = asked_for(tally, bins)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
     return _run(beam, asked, n_events, seed, first_event, threads, progress, executor)

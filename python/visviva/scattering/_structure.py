@@ -9,13 +9,15 @@ import numpy as np
 
 from visviva import _core
 from visviva._arrays import float_array, positive
+from visviva._declared import checked_potential
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva.errors import InvalidInput
-from visviva.potentials import Potential
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike, NDArray
+
+    from visviva.potentials import Potential
 
 __all__ = ["Glory", "Orbit", "Rainbow", "glories", "impact_parameter", "orbiting", "rainbows"]
 
@@ -298,9 +300,7 @@ def orbits(potential: object, energy: NDArray[np.float64]) -> list[list[tuple[fl
 
 def described(potential: object) -> dict[str, object]:
     """Check that it is a potential, and write it for the core."""
-    if not isinstance(potential, Potential):
-        raise InvalidInput("potential", f"expected one of visviva.potentials, got {potential!r}")
-    return potential._to_core()
+    return checked_potential("potential", potential)._to_core()
 
 
 def angles_within(angle: object, limit: float, bound: str, name: str = "angle") -> NDArray[np.float64]:

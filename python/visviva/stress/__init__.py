@@ -10,7 +10,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 from visviva._html import Sheet, Shown, first_rows
-from visviva._keywords import known_keywords
+from visviva._keywords import known_keywords, unknown_name
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.integrators import methods as all_methods
@@ -27,6 +27,10 @@ __all__ = ["Report", "Verdict", "run"]
 
 def __dir__() -> list[str]:
     return sorted(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)
 
 
 @known_keywords

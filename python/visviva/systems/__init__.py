@@ -14,6 +14,9 @@ Examples
 (2.925055676, True)
 """
 
+from typing import TYPE_CHECKING
+
+from visviva._keywords import unknown_name
 from visviva.systems._driven import hoop, kapitza, moving_pivot, rod
 from visviva.systems._fields import central_force, charged_particle, henon_heiles
 from visviva.systems._oscillators import constant_force, coupled_oscillators, foucault, oscillator
@@ -52,3 +55,7 @@ __all__ = [
 
 def __dir__() -> list[str]:
     return list(__all__)
+
+
+if not TYPE_CHECKING:
+    __getattr__ = unknown_name(__name__, __all__)
