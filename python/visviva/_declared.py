@@ -184,15 +184,20 @@ class Declared:
         self._check_pairs()
 
     def _check_pairs(self) -> None:
-        """Refuse pairs of one body, of what acts between listed ones; names are judged when the scene knows them."""
+        """Refuse pairs of one body, of what acts between listed ones, by their indices or by their names."""
         ends = [getattr(self, p.name) for p in self._parameters if p.kind == "indices"]
-        if len(ends) != 2 or any(isinstance(end, str | tuple) for end in ends):
+        if len(ends) != 2:
             return
-        first, second = map(np.atleast_1d, ends)
-        same = first[first == second] if first.shape == second.shape else first[:0]
-        if same.size:
-            i, j = (p.name for p in self._parameters if p.kind == "indices")
-            raise InvalidInput(j, f"expected another body than {i}, got {same[0]} for both; give two that are apart")
+        first, second = (
+            end.tolist() if isinstance(end, np.ndarray) else [*end] if isinstance(end, tuple) else [end] for end in ends
+        )
+        several = max(len(first), len(second))
+        # One end may be that of all pairs; what does not fit is refused by the scene.
+        first, second = (each * several if len(each) == 1 else each for each in (first, second))
+        for one, other in zip(first, second, strict=False):
+            if one == other:
+                i, j = (p.name for p in self._parameters if p.kind == "indices")
+                raise InvalidInput(j, f"expected another body than {i}, got {one!r} for both; give two that are apart")
 
     def _values(self) -> dict[str, Any]:
         return {parameter.name: getattr(self, parameter.name) for parameter in self._parameters}

@@ -21,6 +21,8 @@ __all__ = ["Throw", "throw"]
 class Throw(Record):
     """What is told of a body thrown straight up, as plain numbers.
 
+    Units: those of the arguments of `throw`.
+
     Attributes
     ----------
     terminal_speed : float
@@ -33,8 +35,6 @@ class Throw(Record):
         When it is back at the start.
     return_speed : float
         How fast it is then.
-
-    Units: those of the arguments of `throw`.
 
     References
     ----------

@@ -19,7 +19,7 @@ from visviva.errors import InvalidInput
 if TYPE_CHECKING:
     from visviva.typing import EventDirection
 
-__all__ = ["Event", "made", "sign"]
+__all__ = ["Event", "checked_direction", "made", "sign"]
 
 #: Of runs in generalized coordinates alone.
 _GENERALIZED = ("coordinate", "expression")
@@ -81,11 +81,23 @@ def made(kind: str, direction: object, terminal: object, **parameters: Any) -> E
     visviva.InvalidInput
         For a direction that is none of the three, or an end that is none.
     """
+    way = checked_direction(direction)
+    last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
+    return Event(kind, tuple(parameters.items()), way, last)
+
+
+def checked_direction(direction: object) -> EventDirection:
+    """Which zeros are events.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For anything but 1, -1 and 0.
+    """
     way = number("direction", direction)
     if way not in (-1.0, 0.0, 1.0):
         raise InvalidInput("direction", f"expected 1 for upwards, -1 for downwards or 0 for both, got {direction!r}")
-    last = whole_number("terminal", int(terminal) if isinstance(terminal, bool | np.bool) else terminal, low=0)
-    return Event(kind, tuple(parameters.items()), sign(way), last)
+    return sign(way)
 
 
 def sign(way: float) -> EventDirection:

@@ -78,8 +78,11 @@ class NamedCode(IntEnum):
         return self.name
 
     def __format__(self, spec: str) -> str:
-        # Who asks for a number by the kind of it gets the number.
-        return format(int(self) if spec.endswith(_NUMERIC) else self.name, spec)
+        # Who asks for what only numbers have gets the number.
+        try:
+            return format(int(self) if spec.endswith(_NUMERIC) or spec.startswith("0") else self.name, spec)
+        except ValueError:
+            return format(int(self), spec)
 
     @classmethod
     def _missing_(cls, value: object) -> NoReturn:

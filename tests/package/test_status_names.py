@@ -15,6 +15,8 @@ def test_a_code_prints_as_its_name_and_counts_as_its_number(kind: type[IntEnum])
     for at, member in enumerate(kind):
         assert str(member) == f"{member}" == member.name
         assert f"{member:>20}" == member.name.rjust(20)
+        assert f"{member:03}" == f"{at:03}"
+        assert f"{member:,}" == f"{member:+}".lstrip("+") == str(at)
         assert f"{member:d}" == "%d" % member == json.dumps(member) == str(at)  # noqa: UP031
         assert member == at == int(member)
         assert np.array([at], dtype=np.int8)[0] == member

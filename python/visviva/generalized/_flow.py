@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
-import numpy as np
-
 from visviva._arrays import number, whole_number
+from visviva._event import checked_direction
 from visviva._keywords import known_keywords
 from visviva.errors import ConvergenceError, Interrupted, InvalidInput
 
 if TYPE_CHECKING:
+    import numpy as np
     from matplotlib.axes import Axes
     from numpy.typing import ArrayLike, NDArray
 
@@ -78,8 +78,7 @@ class Flow:
         """
         from visviva.generalized._analysis import PoincareSection
 
-        if not isinstance(direction, int | np.integer) or direction not in (1, -1, 0):
-            raise InvalidInput("direction", f"expected 1, -1 or 0, got {direction!r}")
+        way = checked_direction(direction)
         if isinstance(section, str):
             if section not in self.coordinates:
                 raise InvalidInput("section", f"there is no coordinate {section!r}; there are {list(self.coordinates)}")
@@ -92,7 +91,7 @@ class Flow:
                 raise InvalidInput("section", f"expected a function of the state, got {section!r}, which is one number")
         asked, _ = self._asked(number("t", t), method, rtol, dt, None)
         passed = {"nodes": nodes, "root": root, "energy": None, "function": None}
-        asked["events"] = [passed | {"direction": float(direction), "last": None}]
+        asked["events"] = [passed | {"direction": float(way), "last": None}]
         self._check_start()
         result = self._run(asked, self._start()[None, :], self._values[None, :], 1, progress=False)
         times, states = result["found_t"], result["found_y"]

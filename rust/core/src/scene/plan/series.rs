@@ -12,8 +12,8 @@ use std::sync::Arc;
 /// The series of all pairs of more bodies leave the caches, and other methods are faster.
 const MOST_BODIES: usize = 64;
 
-/// The method that `auto` prefers to the one that serves all. It is that of series where few bodies attract each other and nothing else acts: there it takes about the time of DOP853
-/// and is off by a tenth to a ten thousandth of its errors. Measured on fourteen scenes of 3 to 8 bodies, massless ones and
+/// The method that `auto` prefers to the one that serves all. It is that of series where few bodies attract each other and
+/// nothing else acts: there it takes about the time of DOP853 and is off by a tenth to a ten thousandth of its errors. Measured on fourteen scenes of 3 to 8 bodies, massless ones and
 /// ensembles among them, with tolerances of 1e-6 to 1e-12: 0.6 to 1.6 times the time; of more bodies up to five times, and
 /// with flattening or relativity beside the pulls four to eight.
 ///

@@ -24,8 +24,6 @@ const MANY_EVALUATIONS: u64 = 2_000;
 /// More massive bodies are not looked at.
 const MOST: usize = 2_000;
 
-/// Larger errors are looked at again.
-const SUSPECT: f64 = 1e-3;
 /// Smaller energies may be products with masses that are not normal numbers, and have no digits to be off by.
 const LEAST: f64 = 1e-290;
 
@@ -86,7 +84,8 @@ pub(super) fn look(
                 if conserved { change.abs() } else { (plan.direction * change).max(0.0) }
             };
             outcome.energy_error = error(whole);
-            if outcome.energy_error > SUSPECT && outcome.counts.steps > 0 {
+            let begins_with_nothing = kinetic.plus(absolute(potential)).value().high() == 0.0;
+            if begins_with_nothing && outcome.energy_error > 0.0 && outcome.counts.steps > 0 {
                 let step = plan.dt.map_or(plan.span / outcome.counts.steps as f64, f64::abs);
                 let gained = gained_from_rest(scene, copy, (plan, step), ticker)?;
                 outcome.energy_error = error(whole.plus(gained));
@@ -96,8 +95,8 @@ pub(super) fn look(
     Ok(())
 }
 
-/// What forces give to bodies at rest in a step. Where both ends are at rest, and potential energies vanish there, nothing
-/// else tells how large the energies of the motion are.
+/// What forces give to bodies at rest in a step. Of a motion that begins at rest, where potential energies vanish, and comes
+/// back there, nothing else tells how large its energies are.
 fn gained_from_rest(
     scene: &Scene,
     copy: usize,
