@@ -9,7 +9,7 @@ import math
 from typing import Any, TypeAlias, TypeVar
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
 from visviva._text import article
 from visviva.errors import InvalidInput
@@ -23,6 +23,8 @@ __all__ = [
     "number",
     "positive",
     "positive_array",
+    "radius_array",
+    "read_only",
     "whole_number",
 ]
 
@@ -339,3 +341,20 @@ def _check_shape(name: str, came: tuple[int, ...], shape: Shape, sizes: Sizes) -
     if len(shape) == 2 and came[::-1][1:] == shape[1:] and came[1:] != shape[1:]:
         message += "; the vector axis is the last: pass x.T"
     raise InvalidInput(name, message)
+
+
+def radius_array(value: ArrayLike, shape: tuple[int, ...], sizes: Sizes | None = None) -> NDArray[np.float64]:
+    """Radii of this shape: one for all, or one for each body."""
+    given = float_array("radius", value, () if np.ndim(value) == 0 else ("N",) if len(shape) == 1 else shape, sizes)
+    if (given < 0.0).any():
+        raise InvalidInput("radius", f"expected radii of at least 0, got {float(given.min())}; 0 is a point")
+    return given if given.shape == shape else np.full(shape, float(given))
+
+
+def read_only(array: NDArray[np.float64], given: object = None) -> NDArray[np.float64]:
+    """The array, or a copy of what was given, as nobody can write to it."""
+    if array is given or not array.flags.owndata:
+        # Views are copied too, read-only ones among them: somebody else may hold what they look at.
+        array = array.copy()
+    array.flags.writeable = False
+    return array

@@ -9,13 +9,12 @@ from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
-from visviva._exported import AXES
 from visviva._keywords import one_of
 from visviva._style import BLUE, legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import POINTS, given_axes, is_noise, mark_round_off, new_figure, sizes_of_terms
-from visviva.recorded import COLUMN_AXES
+from visviva.recorded import COLUMN_AXES, components_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,14 +41,9 @@ def plot_ensemble(
     if over[:1] == ("rigid_body",) and run.ensemble.scene.rigid_bodies is None:
         raise InvalidInput("column", f"{name} is that of a rigid body, and there is none")
     values = _of_body(run, name, body) if over and over[0] in ("body", "rigid_body") else _whole(run, name, body)
-    letters = [str(each) for each in AXES[over[-1]]] if over else []
-    if component is not None:
-        if not letters:
-            raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
-        at = letters.index(one_of("component", component, letters))
-        letters, values = [letters[at]], values[..., at : at + 1]
-    panels = values if letters else values[..., None]
-    labels = [f"{name}, {letter}" for letter in letters] or [name.replace("_", " ")]
+    letters, shown = components_of(name, component)
+    panels = values[..., list(shown)] if letters else values[..., None]
+    labels = [f"{name}, {letters[at]}" for at in shown] or [name.replace("_", " ")]
     terms = None
     if name == "energy":
         terms = np.ones(len(values))

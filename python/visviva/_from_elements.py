@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import number
+from visviva._arrays import number, radius_array
 from visviva._names import CENTER_OF_MASS, JACOBI, body_index, body_label, checked_names
 from visviva.errors import InvalidInput
 from visviva.orbits import semi_major_axis as of_period
@@ -57,8 +57,6 @@ def from_elements(
     given: dict[str, Any],
 ) -> Particles:
     """`Particles.from_elements`; `given` has the mass and the elements by name, None for what was not given."""
-    from visviva.particles import radius_array
-
     there = _there(make, central)
     size = _one_of(given, _SIZES)
     if size is None:

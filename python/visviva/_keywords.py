@@ -119,7 +119,7 @@ mean 'distance'?
             called = target.__name__ if attribute == "__init__" else attribute
             setattr(target, attribute, _checked(value, called, 1))
         elif attribute == "__new__" and isinstance(value, staticmethod):  # of a NamedTuple
-            target.__new__ = staticmethod(_checked(value.__func__, target.__name__, 1))  # type: ignore[method-assign]
+            setattr(target, attribute, staticmethod(_checked(value.__func__, target.__name__, 1)))
         elif isinstance(value, classmethod) and not attribute.startswith("_"):
             made = _checked(value.__func__, attribute, 1)
             setattr(target, attribute, classmethod(made))
@@ -179,8 +179,8 @@ def refuse_subclass(made: type, advice: str) -> None:
 def did_you_mean(word: str, names: Iterable[str]) -> str:
     """The end of a message: the nearest of the names, if one is near at all.
 
-    Capitals do not count, and ``-``, ``_`` and a space are the same. Of the names that are near the core judges which
-    is nearest, as it does of the names that come to it.
+    Capitals do not count, and ``-``, ``_`` and a space are the same. The core judges it, as it does of names that come
+    to it.
 
     Examples
     --------
@@ -188,35 +188,11 @@ def did_you_mean(word: str, names: Iterable[str]) -> str:
     >>> did_you_mean("Max Step", ["dt", "max_step"])
     "; did you mean 'max_step'?"
     """
-    # A name out of half a surrogate pair is a str of Python, but no text to anybody else.
-    near_by = [name for name in names if _is_near(word, name)]
     # Of names that differ in capitals alone the first is taken: toutatis is a function, Toutatis its class.
-    near_by.sort(key=lambda name: name[:1].isupper() != word[:1].isupper())
-    near = _core.nearest(word.encode(errors="replace").decode(), near_by)
+    ordered = sorted(names, key=lambda name: name[:1].isupper() != word[:1].isupper())
+    # A name out of half a surrogate pair is a str of Python, but no text to anybody else.
+    near = _core.nearest(word.encode(errors="replace").decode(), ordered)
     return f"; did you mean '{near}'?" if near else ""
-
-
-def _is_near(word: str, name: str) -> bool:
-    """Whether one is the other misspelt, or a part of it: letters that are shared by chance make no name near."""
-    given, known = (text.strip().lower().replace("-", "_").replace(" ", "_") for text in (word, name))
-    if given in known or known in given:
-        return True
-    longer = max(len(given), len(known))
-    start = -(-2 * longer // 3)  # velocities, velocity
-    return given[:start] == known[:start] or _slips(given, known) <= max(1, min(longer // 3, 3))
-
-
-def _slips(given: str, known: str) -> int:
-    """How many letters are wrong, missing, too many, or swapped with the next: the optimal string alignment."""
-    before, row = [0] * (len(known) + 1), list(range(len(known) + 1))
-    for i, x in enumerate(given):
-        two_before, before, row = before, row, [i + 1]
-        for j, y in enumerate(known):
-            least = min(before[j] + (x != y), before[j + 1] + 1, row[j] + 1)
-            if i and j and x == known[j - 1] and y == given[i - 1]:
-                least = min(least, two_before[j - 1] + 1)
-            row.append(least)
-    return row[-1]
 
 
 def unknown_name(module: str, names: Iterable[str]) -> Callable[[str], NoReturn]:

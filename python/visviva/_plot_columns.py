@@ -11,7 +11,7 @@ from visviva._style import legend_beside
 from visviva._text import count
 from visviva.errors import InvalidInput
 from visviva.plot import LEGEND, POINTS, chosen_bodies, given_axes, new_figure, plot_energy
-from visviva.recorded import COLUMN_AXES
+from visviva.recorded import COLUMN_AXES, components_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -32,13 +32,7 @@ def plot_column(run: Trajectory, column: object, bodies: object, component: obje
     if not len(run):
         raise InvalidInput("plot", "expected a trajectory with times, got 0 times")
     chosen, names = _chosen(run, name, bodies)
-    over = COLUMN_AXES[name]
-    letters = [str(each) for each in AXES[over[-1]]] if over else []
-    shown: Sequence[int] = range(len(letters))
-    if component is not None:
-        if not letters:
-            raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
-        shown = [letters.index(one_of("component", component, letters))]
+    letters, shown = components_of(name, component)
     panels = max(1, len(shown))
     if ax is not None:
         if panels != 1:

@@ -23,6 +23,8 @@ from visviva.scene import Scene
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from numpy.typing import NDArray
+
 __all__ = ["euler_collinear", "lagrange_triangle"]
 
 
@@ -75,10 +77,7 @@ def lagrange_triangle(masses: Sequence[float] = (1.0, 2.0, 3.0), side: float = 2
     rate = sqrt(total / (side * side * side))
     corners = side / sqrt(3.0) * np.array([[cos(a), sin(a), 0.0] for a in (0.0, 2 * pi / 3, 4 * pi / 3)])
     position = corners - Particles(masses, corners).center_of_mass()[0]
-    velocity = rate * np.stack([-position[:, 1], position[:, 0], np.zeros(3)], axis=1)
-    t_end = 2.0 * pi * turn / rate
-    c, s = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
-    turned = position @ np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]])
+    velocity, t_end, turned = _turning(position, rate, turn)
     # Routh's linear growth rate of the instability, in units of the rotation rate; zero when stable.
     routh = 27.0 * (a * b + b * d + d * a) / total**2
     growth = sqrt(max(0.0, sqrt(routh) - 1.0)) / 2.0
@@ -150,10 +149,7 @@ def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float
     # Of two bodies that move relative to each other: what pulls them together is ω² times their distance.
     (r12, r23), r13 = np.diff(places), places[2]
     rate = sqrt(((a + b) / r12**2 + c * (1 / r13**2 - 1 / r23**2)) / r12)
-    velocity = rate * np.stack([-position[:, 1], position[:, 0], np.zeros(3)], axis=1)
-    t_end = 2.0 * pi * turn / rate
-    cosine, sine = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
-    turned = position @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    velocity, t_end, turned = _turning(position, rate, turn)
     # The third eigenvalue of the field's gradient, beside that of a displacement and of a stretch, in units of ω².
     third = ((a + b) / r12**3 + (b + c) / r23**3 + (a + c) / r13**3) / rate**2 - 1.0
     growth = sqrt((third - 2.0 + sqrt(9.0 * third**2 - 8.0 * third)) / 2.0)
@@ -166,3 +162,13 @@ def euler_collinear(masses: Sequence[float] = (1.0, 2.0, 3.0), separation: float
         ((t_end, float(np.exp(2.0 * pi * abs(turn) * growth))),),
         "Euler, De motu rectilineo trium corporum se mutuo attrahentium (1767)",
     )
+
+
+def _turning(
+    position: NDArray[np.float64], rate: float, turn: float
+) -> tuple[NDArray[np.float64], float, NDArray[np.float64]]:
+    """Velocities of places that turn about z at a rate, when they have made so many turns, and where they are then."""
+    velocity = rate * np.stack([-position[:, 1], position[:, 0], np.zeros(len(position))], axis=1)
+    cosine, sine = cos(2.0 * pi * turn), sin(2.0 * pi * turn)
+    turned = position @ np.array([[cosine, sine, 0.0], [-sine, cosine, 0.0], [0.0, 0.0, 1.0]])
+    return velocity, 2.0 * pi * turn / rate, turned

@@ -46,18 +46,18 @@ def new_panels(
         If matplotlib is not installed.
     """
     across = max(min(len(below), _ROW), 1)
-    rows = -(-len(below) // across)
-    figure, _ = new_figure(0, (size[0] * across, size[1] * max(rows, 1)))
-    grid = figure.add_gridspec(2 * rows, across, height_ratios=_HEIGHTS * rows) if rows else None
+    rows = max(-(-len(below) // across), 1)
+    figure, _ = new_figure(0, (size[0] * across, size[1] * rows))
+    grid = figure.add_gridspec(2 * rows, across, height_ratios=_HEIGHTS * rows)
     panels: list[tuple[Axes, Axes | None]] = []
     for at, two in enumerate(below):
         row, column = 2 * (at // across), at % across
-        place = grid[row if two else slice(row, row + 2), column]  # type: ignore[index]
+        place = grid[row if two else slice(row, row + 2), column]
         upper = figure.add_subplot(place, projection="3d" if at in solid else "rectilinear")
         dress(upper)
         lower = None
         if two:
-            lower = figure.add_subplot(grid[row + 1, column], sharex=upper)  # type: ignore[index]
+            lower = figure.add_subplot(grid[row + 1, column], sharex=upper)
             dress(lower)
             upper.tick_params(labelbottom=False)
         panels.append((upper, lower))

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
-from visviva._arrays import float_array, mass_array
+from visviva._arrays import float_array, mass_array, radius_array, read_only
 from visviva._continuation import attached, of_copies
 from visviva._html import Sheet
 from visviva._keywords import frozen, known_keywords
@@ -16,7 +16,7 @@ from visviva._text import count
 from visviva._turning import of_copies_turning, rigid_of_copies, turning_of
 from visviva.ensemble_trajectory import EnsembleTrajectory, one_or_some, rows_of
 from visviva.errors import InvalidInput
-from visviva.particles import Particles, radius_array, read_only
+from visviva.particles import Particles
 from visviva.request import StreamRequest, asked_by
 from visviva.runnable import Runnable
 

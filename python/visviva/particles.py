@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import float_array, in_range, mass_array, positive
+from visviva._arrays import float_array, in_range, mass_array, positive, radius_array, read_only
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import JOINING, known_keywords
 from visviva._names import body_index, body_indices, checked_names
@@ -377,25 +377,6 @@ def weighted_mean(values: NDArray[np.float64], weights: NDArray[np.float64]) -> 
         raise InvalidInput("mass", "the total mass is zero, so there is no centre of mass; give one body a mass")
     products = (values.reshape(values.shape[0], -1).T * weights).tolist()
     return np.array([fsum(row) / total for row in products]).reshape(values.shape[1:])
-
-
-def radius_array(value: ArrayLike, shape: tuple[int, ...], sizes: Sizes | None = None) -> NDArray[np.float64]:
-    """Radii of this shape: one for all, or one for each body."""
-    from visviva.errors import InvalidInput
-
-    given = float_array("radius", value, () if np.ndim(value) == 0 else ("N",) if len(shape) == 1 else shape, sizes)
-    if (given < 0.0).any():
-        raise InvalidInput("radius", f"expected radii of at least 0, got {float(given.min())}; 0 is a point")
-    return given if given.shape == shape else np.full(shape, float(given))
-
-
-def read_only(array: NDArray[np.float64], given: object = None) -> NDArray[np.float64]:
-    """The array, or a copy of what was given, as nobody can write to it."""
-    if array is given or not array.flags.owndata:
-        # Views are copied too, read-only ones among them: somebody else may hold what they look at.
-        array = array.copy()
-    array.flags.writeable = False
-    return array
 
 
 def _vector(numbers: NDArray[np.float64]) -> str:

@@ -12,9 +12,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva import _core
-from visviva._exported import Columns, Exported, chosen_columns, labels
+from visviva._exported import AXES, Columns, Exported, chosen_columns, labels
 from visviva._html import Sheet, Shown
-from visviva._keywords import frozen, known_keywords
+from visviva._keywords import frozen, known_keywords, one_of
 from visviva._names import body_index
 from visviva._text import count
 from visviva._totals import Totals
@@ -47,6 +47,23 @@ COLUMN_AXES: dict[str, tuple[str, ...]] = {
     "angular_velocity": ("rigid_body", "component"),
 }
 COLUMN_AXES |= {name: ("component",) if width == 3 else () for name, _, width, _ in _core.columns()}
+
+
+def components_of(name: str, component: object) -> tuple[list[str], list[int]]:
+    """The letters of the numbers that a column has at a time, and which of them are chosen: all if none is named.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For a component that is none of them, or of a column that is one number.
+    """
+    over = COLUMN_AXES[name]
+    letters = [str(each) for each in AXES[over[-1]]] if over else []
+    if component is None:
+        return letters, list(range(len(letters)))
+    if not letters:
+        raise InvalidInput("component", f"{name} is one number and has no components, got {component!r}")
+    return letters, [letters.index(one_of("component", component, letters))]
 
 
 # What people look for from elsewhere, and where it is here.

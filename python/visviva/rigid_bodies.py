@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._arrays import float_array, mass_array
+from visviva._arrays import float_array, mass_array, read_only
 from visviva._html import Sheet, Shown, first_rows
 from visviva._keywords import known_keywords
 from visviva._names import body_index, body_indices, body_label, checked_names
@@ -19,7 +19,6 @@ from visviva._rigid_arguments import IDENTITY, pivots, principal, unit, which
 from visviva._rigid_frames import FramedBodies
 from visviva._text import count
 from visviva.errors import InvalidInput
-from visviva.particles import read_only
 from visviva.rigid._arguments import rows
 from visviva.rigid._orientation import rotate, rotate_back
 

@@ -77,7 +77,7 @@ scene.run(1, method="leapfrog", dt=[0.1, 0.2])      | dt          | an adaptive 
 scene.run(1, record="Angular-Momentum")             | record      | did you mean 'angular_momentum'\?
 scene.run(1, **{"Max Step": 1})                     | Max Step    | did you mean 'max_step'\?
 scene.run(1, method="rk4", dt=0.1, max_step=0.5)    | max_step    | rk4 has a fixed step.*got 0.5; leave max_step out
-scene.run(1, method="leapfrog", dt=0.1, atol=0)     | atol        | leapfrog has a fixed step.*got 0.0; leave atol out.*dop853
+scene.run(1, method="leapfrog", dt=0.1, atol=0)     | atol        | leapfrog has a fixed step.*got 0.0; leave atol out.*verner98
 scene.plan(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fixed step
 scene.plan(1, method="rk4", dt=0.1, atol=1e-9)      | atol        | got 1e-09
 copies.run(1, method="rk4", dt=0.1, max_step=0.5)   | max_step    | rk4 has a fixed step

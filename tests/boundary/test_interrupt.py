@@ -323,8 +323,8 @@ def test_ctrl_c_is_answered_where_much_is_prepared(what: str) -> None:
 
 
 FOUND_BY_RUNS = {
-    "section": ('vv.systems.henon_heiles().poincare("x", t=1e8)', "error.result.t[-1] > 1.0"),
-    "advice": ("vv.datasets.solar_system().scene.advise(t=1e8, accuracy=1e-10)", "True"),
+    "section": ("vv.systems.henon_heiles()", 'of.poincare("x", t=1e8)', "error.result.t[-1] > 1.0"),
+    "advice": ("vv.datasets.solar_system().scene", "of.advise(t=1e8, accuracy=1e-10)", "True"),
 }
 
 
@@ -332,10 +332,12 @@ FOUND_BY_RUNS = {
 @pytest.mark.parametrize("what", FOUND_BY_RUNS)
 def test_what_is_found_by_runs_is_not_told_of_a_part(what: str) -> None:
     """A section came back as if it were whole, and advice as if the methods that were tried then had failed."""
-    call, kept = FOUND_BY_RUNS[what]
+    of, call, kept = FOUND_BY_RUNS[what]
     _, line = interrupted_child(
         f"""
         import visviva as vv
+        of = {of}
+        of.run(t=1.0)
         print("ready", flush=True)
         try:
             {call}

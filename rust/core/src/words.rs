@@ -30,7 +30,8 @@ pub fn numbers(values: &[f64]) -> String {
     format!("[{}]", values.iter().copied().map(number).collect::<Vec<_>>().join(", "))
 }
 
-/// The nearest of the names, if it is near at all: the one that shares most letters with the word, in order.
+/// The nearest of the names, if one is the word misspelt, or has it in it: of those that are, the one that shares most
+/// letters with it, in order. Letters that are shared by chance make no name near.
 ///
 /// Capitals do not count, and `-`, `_` and a space are the same. Of equally near names the first is taken.
 pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&'a str> {
@@ -41,6 +42,9 @@ pub fn nearest<'a>(word: &str, names: impl Iterator<Item = &'a str>) -> Option<&
         let letters = word.len() + known.len();
         // Half of the letters of both must be shared, which words of very different lengths cannot do.
         if letters == 0 || 4 * word.len().min(known.len()) < letters {
+            continue;
+        }
+        if !is_near(&word, &known) {
             continue;
         }
         let shared = shared(&word, &known);
@@ -61,6 +65,33 @@ pub fn unknown<'a>(argument: &str, word: &str, names: impl Iterator<Item = &'a s
 fn folded(word: &str) -> Vec<char> {
     let one = |letter| if matches!(letter, '-' | ' ') { '_' } else { letter };
     word.trim().chars().flat_map(char::to_lowercase).map(one).collect()
+}
+
+/// Whether one has the other in it, begins with most of it, or is it but for few slips.
+fn is_near(word: &[char], known: &[char]) -> bool {
+    let (short, long) = if word.len() < known.len() { (word, known) } else { (known, word) };
+    let begins = (2 * long.len()).div_ceil(3); // velocities, velocity
+    short.is_empty()
+        || long.windows(short.len()).any(|part| part == short)
+        || short.get(..begins).is_some_and(|part| long.starts_with(part))
+        || slips(word, known) <= (long.len() / 3).clamp(1, 3)
+}
+
+/// How many letters are wrong, missing, too many, or swapped with the next: the optimal string alignment.
+fn slips(word: &[char], known: &[char]) -> usize {
+    let (mut two_before, mut before) = (Vec::new(), Vec::new());
+    let mut row: Vec<usize> = (0..=known.len()).collect();
+    for (i, &x) in word.iter().enumerate() {
+        two_before = core::mem::replace(&mut before, core::mem::replace(&mut row, vec![i + 1]));
+        for (j, &y) in known.iter().enumerate() {
+            let mut least = (before[j] + usize::from(x != y)).min(before[j + 1] + 1).min(row[j] + 1);
+            if i > 0 && j > 0 && x == known[j - 1] && y == word[i - 1] {
+                least = least.min(two_before[j - 1] + 1);
+            }
+            row.push(least);
+        }
+    }
+    row[known.len()]
 }
 
 /// The length of the longest common subsequence.
@@ -137,6 +168,20 @@ mod tests {
         assert_eq!(nearest("tol", ["rtol", "atol"].into_iter()), Some("rtol"));
         assert_eq!(nearest("energy", ["tally", "beam_energy"].into_iter()), Some("beam_energy"));
         assert_eq!(nearest("x", core::iter::empty()), None);
+    }
+
+    #[test]
+    fn letters_that_are_shared_by_chance_make_no_name_near() {
+        let columns = ["position", "velocity", "energy", "kinetic_energy", "virial", "angular_momentum"];
+        for word in ["inertia", "entropy", "spin"] {
+            assert_eq!(nearest(word, columns.into_iter()), None, "{word}");
+        }
+        for word in ["implicit", "symmetric"] {
+            assert_eq!(nearest(word, ["midpoint", "symplectic_euler"].into_iter()), None, "{word}");
+        }
+        for (word, meant) in [("positoin", "position"), ("velocities", "velocity"), ("enrgy", "energy")] {
+            assert_eq!(nearest(word, columns.into_iter()), Some(meant));
+        }
     }
 
     #[test]

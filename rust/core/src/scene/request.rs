@@ -190,7 +190,7 @@ impl Request {
         if self.collisions.is_some() {
             // What goes on from a contact begins anew, with the step of a distance that is then the smallest.
             let message = "expected None beside collisions, after which the step would no longer be that of the start; use \
-                           an adaptive method such as dop853";
+                           an adaptive method such as verner98";
             return Err(Error::invalid("time_transformation", message));
         }
         if method.transforms() && !automatic {
@@ -261,7 +261,7 @@ impl Request {
                     };
                     let message = format!(
                         "{} has a fixed step, dt, which nothing else changes: expected None, got {}; leave {argument} \
-                         out and choose dt, or name an adaptive method such as dop853{transforms}",
+                         out and choose dt, or name an adaptive method such as verner98{transforms}",
                         method.name, given
                     );
                     return Err(Error::invalid(argument, message));
