@@ -79,10 +79,10 @@ fn is_near(word: &[char], known: &[char]) -> bool {
 
 /// How many letters are wrong, missing, too many, or swapped with the next: the optimal string alignment.
 fn slips(word: &[char], known: &[char]) -> usize {
-    let (mut two_before, mut before) = (Vec::new(), Vec::new());
+    let mut before = Vec::new();
     let mut row: Vec<usize> = (0..=known.len()).collect();
     for (i, &x) in word.iter().enumerate() {
-        two_before = core::mem::replace(&mut before, core::mem::replace(&mut row, vec![i + 1]));
+        let two_before = core::mem::replace(&mut before, core::mem::replace(&mut row, vec![i + 1]));
         for (j, &y) in known.iter().enumerate() {
             let mut least = (before[j] + usize::from(x != y)).min(before[j + 1] + 1).min(row[j] + 1);
             if i > 0 && j > 0 && x == known[j - 1] && y == word[i - 1] {
