@@ -319,6 +319,10 @@ def finished(
         from visviva._told_events import described
 
         result["looked_for"] = described(asked["events"])
+    if asked["end_only"] and not ensemble and result["status"][0] == Status.STOPPED:
+        from visviva._stopped import ended_at_the_stop
+
+        ended_at_the_stop(result, asked)
     made = make(result)
     judge(result, ensemble=ensemble)
     error = result["error"]

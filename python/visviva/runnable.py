@@ -82,7 +82,8 @@ class Runnable(Shown, ABC, Generic[_Result]):
         events : sequence, optional
             Of `visviva.events`, or functions ``f(t, position, velocity)``: their zeros on the way come back in
             ``out.events``. They change no bit of the run. A terminal one ends it: rows, ``final`` and the table end
-            there, with `Status.STOPPED`; no closed form is used. An ensemble with functions runs on one thread.
+            there, with `Status.STOPPED`; where `t` is an end time, the last row of a single run is that of the event.
+            No closed form is used. An ensemble with functions runs on one thread.
         collisions : {"merge", "bounce", "stop"}, optional
             What bodies with a `Particles.radius` do when they touch; by default they pass through each other.
             ``"merge"``: they become one body in the place of the more massive (of equal ones, the first); mass,

@@ -354,3 +354,17 @@ def test_an_energy_that_is_lost_passes_that_of_a_while_later() -> None:
     out = slowed.run(1.0, events=[events.energy(0.5 * (1 - 1e-12))])
     # E = exp(−2 t)/2: at t = 5e-13.
     np.testing.assert_allclose(out.events.t, [5e-13], rtol=1e-3)
+
+
+@pytest.mark.parametrize("method", ["auto", "taylor", "gauss16", "rk4", "dop853"])
+def test_the_last_row_of_a_run_to_an_end_time_is_the_event(method: str) -> None:
+    pendulum = vv.systems.pendulum(position=[1.0])
+    how = {"dt": 0.01} if method == "rk4" else {}
+    low = vv.events.coordinate("theta", 0.0, terminal=True)
+    out = pendulum.run(10.0, method=method, events=[low], **how)
+    assert list(out.t) == [0.0, out.final.t0]
+    assert abs(out["theta"][-1]) < 1e-15  # of an angle of 1 at a speed of 3: one unit in its last place
+    assert out.velocity[-1] == out.final.velocity
+    # rtol = 1e-12 in some ten steps; of rk4 fifty steps of h = 0.01, h⁴ each.
+    assert out.energy[-1] == pytest.approx(out.energy[0], rel=1e-7 if method == "rk4" else 1e-11)
+    assert len(pendulum.run([0.0, 10.0], method=method, events=[low], **how)) == 1

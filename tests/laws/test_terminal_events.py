@@ -2,12 +2,17 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING
+
 import numpy as np
 import pytest
 from event_scenes import BY_NAME, METHODS, PERIOD, kepler, options
 
 import visviva as vv
 from visviva import events
+
+if TYPE_CHECKING:
+    from pathlib import Path
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -166,3 +171,47 @@ def test_an_event_of_massive_bodies_stops_those_that_follow_them(massive: int) -
     # A run to the time of the event ends its last steps there: what rtol leaves.
     to_there = scene.run(t=[0.0, float(runs[0].final.t0)], rtol=1e-10, method="dop853").final.particles
     np.testing.assert_allclose(runs[0].final.particles.position, to_there.position, rtol=0.0, atol=1e-7)
+
+
+COLUMNS = ("position", "velocity", "energy", "angular_momentum")
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.filterwarnings("ignore::visviva.AccuracyWarning")  # Euler's method, which ends all the same
+def test_the_last_row_of_a_run_to_an_end_time_is_the_event(method: str) -> None:
+    """In every column; a table of output times has rows at those times alone."""
+    scene = kepler()
+    asked = [events.apsis(1, 0, direction=1, terminal=True)]
+    out = scene.run(4.0 * PERIOD, method=method, events=asked, record=COLUMNS, **options(method))
+    assert list(out.t) == [scene.t0, out.final.t0]
+    np.testing.assert_array_equal(out.position[-1], out.events.position[-1])
+    np.testing.assert_array_equal(out.velocity[-1], out.events.velocity[-1])
+    there = out.final.run([out.final.t0], record=COLUMNS)
+    for name in COLUMNS:
+        np.testing.assert_array_equal(getattr(out, name)[-1], getattr(there, name)[0])
+
+
+def test_the_last_row_of_a_contact_has_the_masses_of_before_and_after() -> None:
+    """Two spheres merge, what they become passes a plane: its energy is that of one body, 2·½²/2."""
+    pair = vv.Particles(mass=[1.0, 1.0], position=[[0, 0, 0], [3, 0, 0]], velocity=[[0, 0, 0], [-1, 0, 0]], radius=0.5)
+    scene = vv.Scene(pair)
+    out = scene.run(10.0, collisions="stop", record=("position", "energy"))
+    assert list(out.t) == [0.0, 2.0]
+    np.testing.assert_array_equal(out.position[-1], [[0, 0, 0], [1, 0, 0]])
+    plane = events.plane([-0.5, 0.0, 0.0], [1.0, 0.0, 0.0], terminal=True)
+    merged = scene.run(10.0, collisions="merge", events=[plane], record=("position", "energy"))
+    # From 1/2 at t = 2 over a length of 1 at half the speed.
+    assert merged.t == pytest.approx([0.0, 4.0], abs=1e-15)
+    assert merged.energy == pytest.approx([0.5, 0.25], abs=1e-15)
+
+
+def test_a_saved_run_to_an_end_time_ends_with_the_event(tmp_path: Path) -> None:
+    scene = kepler()
+    how = {"events": [events.apsis(1, 0, direction=1, terminal=True)], "method": "dop853", "record": COLUMNS}
+    straight = scene.run(4.0 * PERIOD, **how)
+    saved = scene.run(4.0 * PERIOD, save_every=0.3 * PERIOD, save_to=tmp_path / "run", **how)
+    for out in (saved, vv.resume(tmp_path / "run")):
+        assert len(out.t) == 2
+        # Parts have steps of their own: as near as rtol = 1e-9 holds them.
+        assert out.t == pytest.approx(straight.t, rel=1e-7)
+        assert out.energy == pytest.approx(straight.energy, rel=1e-7)

@@ -166,7 +166,7 @@ class Runs(States):
             expressions of SymPy, functions ``f(q, v, t, **parameters)`` as that of the system, and
             `visviva.events.expression`, which pass zero; `energy` and `function` as of scenes. What is found on the way
             comes back in ``out.events``. Events change no bit of the run. A terminal one ends it: rows, ``final`` and
-            the table end there, with `Status.STOPPED`.
+            the table end there, with `Status.STOPPED`; where `t` is an end time, the last row is that of the event.
         progress : bool or callable
             As in `Scene.run`.
 
@@ -198,12 +198,14 @@ class Runs(States):
         >>> out["theta"].shape, bool(abs(out.energy - out.energy[0]).max() < 1e-13)
         ((101,), True)
         """
-        from visviva.generalized._trajectory import GeneralizedTrajectory
+        from visviva.generalized._trajectory import STATUS, GeneralizedTrajectory
 
         start = self._start()
         asked, outputs = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         self._check_start()
         result = self._run(asked, start[None, :], self._values[None, :], 1, progress)
+        if np.ndim(t) == 0 and STATUS[result["endings"][0]] is Status.STOPPED:
+            _end_at_the_stop(result)
         out = GeneralizedTrajectory(whole(self), result, asked)
         if result["interrupted"]:
             raise Interrupted("the run was interrupted", out)
@@ -274,3 +276,12 @@ class Runs(States):
 
         asked, _ = self._asked(t, method, rtol, dt, max_step, max_steps, events, atol)
         return GeneralizedPlan._of(whole(self), asked)
+
+
+def _end_at_the_stop(result: dict[str, Any]) -> None:
+    """Add the state at the event that ended the run, as its last row: the end there was for the one asked for."""
+    if result["found_t"][-1] == result["t"][-1]:
+        return
+    result["t"] = np.append(result["t"], result["found_t"][-1])
+    result["y"] = np.concatenate([result["y"], result["found_y"][-1:]])
+    result["lengths"] = [len(result["t"])]
