@@ -89,10 +89,11 @@ def test_the_most_steps() -> None:
     for method, dt in (("gauss16", None), ("dop853", None), ("rk4", 0.01)):
         with pytest.raises(vv.ConvergenceError, match="3 steps do not reach the end; pass a larger max_steps") as ended:
             swing.run([0.001, 100.0], method=method, dt=dt, max_steps=3)
+        assert ended.value.trajectory.status is vv.Status.TOO_MANY_STEPS
         assert ended.value.trajectory.steps == 3
         assert len(ended.value.trajectory.t) == 1
     many = swing.ensemble(position=[[0.1], [0.2]]).run(100.0, max_steps=3)
-    assert (many.status == vv.Status.STEP_FAILURE).all()
+    assert (many.status == vv.Status.TOO_MANY_STEPS).all()
 
 
 SWING = vv.systems.pendulum(position=[1.0])

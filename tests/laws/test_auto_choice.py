@@ -58,6 +58,29 @@ def test_what_is_written_as_an_expression_is_met_by_shorter_steps() -> None:
     assert out.position[-1, 0, 0] == pytest.approx(-34.98791, abs=1e-5)
 
 
+@pytest.mark.parametrize("method", ["auto", "verner98", "bogacki_shampine32"])
+@pytest.mark.parametrize("width", [0.3, 0.05, 0.02])
+def test_no_step_is_a_large_part_of_a_run_among_expressions(method: vv.typing.MethodName, width: float) -> None:
+    """Bodies and a wall higher than their energies: many went through it where it was narrower than a step."""
+    wall = vv.ExpressionForce(potential=lambda r, v, t: 50.0 * np.exp(-(((r[0] - 3.0) / width) ** 2)))
+    random = np.random.default_rng(1)
+    place, speed = random.uniform(-1.0, 1.0, 100), random.uniform(1.0, 5.0, 100)
+    at_rest = np.zeros((100, 2))
+    bodies = vv.Particles(np.ones(100), np.c_[place, at_rest], np.c_[speed, at_rest])
+    out = vv.Scene(bodies, wall).run(t=6.0, method=method)
+    assert (out.position[-1, :, 0] < 3.0).all()
+
+
+def test_a_pulse_within_a_long_free_way_is_felt() -> None:
+    """It changes the velocity by its integral, √π times its height and width; no step of a free body ends before it."""
+    pulse = vv.ExpressionForce(force=lambda r, v, t: (200.0 * np.exp(-(((t - 3.0) / 0.02) ** 2)), 0.0, 0.0))
+    scene = vv.Scene(vv.Particles([1.0], [[0.0, 0.0, 0.0]], [[0.0, 1.0, 0.0]]), pulse)
+    for method in ("auto", "verner98"):
+        assert scene.run(t=6.0, method=method).velocity[-1, 0, 0] == pytest.approx(4.0 * np.sqrt(np.pi), rel=1e-8)
+    assert "longest step" in str(scene.plan(t=6.0))
+    assert "longest step" not in str(scene.plan(t=6.0, max_step=1.0))
+
+
 def test_massless_bodies_do_not_enter_the_choice() -> None:
     """Massive bodies have the bits that they have without them."""
     random = np.random.default_rng(1)

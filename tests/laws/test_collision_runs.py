@@ -173,7 +173,7 @@ def test_without_spheres_nothing_is_looked_for() -> None:
 def test_stopped_spheres_go_on_with_a_bounce() -> None:
     stopped = head_on(1.0, 3.0).run(4.0, collisions="stop")
     assert stopped.status is vv.Status.STOPPED
-    assert stopped.t.tolist() == [0.0]
+    assert stopped.t.tolist() == [0.0, 1.625]
     again = stopped.final.run(4.0, collisions="stop")
     assert again.status is vv.Status.STOPPED
     assert again.final.t0 == stopped.final.t0

@@ -185,6 +185,8 @@ def restored(
 
 
 def _check(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
+    from visviva.generalized._trajectory import STATUS
+
     check_version(header, VERSION)
     check_keys("header", header, _HEADER)
     check_keys("account of the system", header["source"], _SOURCE)
@@ -200,8 +202,7 @@ def _check(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
     which = arrays["events/which"]
     if ((which < 0) | (which >= len(header["events"]))).any():
         raise Damaged("the file has an event that was not looked for")
-    known = [int(status) for status in (Status.OK, Status.STOPPED, Status.STEP_FAILURE, Status.INTERRUPTED)]
-    if not np.isin(arrays["status"], known).all():
+    if not np.isin(arrays["status"], [int(status) for status in STATUS.values()]).all():
         raise Damaged("the file has a status that this version does not know")
     stopped = (arrays["status"] == int(Status.STOPPED)) & (arrays["found"] == 0)
     if stopped.any():

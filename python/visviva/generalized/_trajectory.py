@@ -37,6 +37,7 @@ STATUS = {
     "stopped": Status.STOPPED,
     "step too small": Status.STEP_FAILURE,
     "not finite": Status.STEP_FAILURE,
+    "too many steps": Status.TOO_MANY_STEPS,
     "interrupted": Status.INTERRUPTED,
 }
 

@@ -314,6 +314,7 @@ fn dictionary<'py>(
         Ending::Stopped => (1, "A termination event occurred."),
         Ending::StepTooSmall => (-1, "Required step size is less than spacing between numbers."),
         Ending::NotFinite => (-1, "A number of the state is infinite or not a number."),
+        Ending::TooManySteps => (-1, "Too many steps were taken."),
         Ending::Interrupted => (-1, "The run was interrupted."),
     };
     dict.set_item("status", status)?;

@@ -316,7 +316,7 @@ impl<'a> Abreast<'a> {
             }
             if solution.steps == self.request.max_steps {
                 let why = too_many_steps(self.request.max_steps);
-                self.end(lane, Ending::StepTooSmall, Some(why), ticker);
+                self.end(lane, Ending::TooManySteps, Some(why), ticker);
                 continue;
             }
             *smallest = 0.0;

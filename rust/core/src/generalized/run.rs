@@ -202,7 +202,8 @@ pub fn solve(
     });
     let sticking = Sticking::new(model, parameters, t0);
     let most = request.max_steps;
-    let mut recorder = Counted { table, watch, sticking, steps: 0, last: 0.0, reached: t0, most };
+    let mut recorder =
+        Counted { table, watch, sticking, steps: 0, last: 0.0, reached: t0, most, beyond: false };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
     let outcome = match request.integrator {
@@ -245,7 +246,10 @@ pub fn solve(
     };
     let (ending, failure) = match outcome {
         Ok(ending) => (ending, ending.reason()),
-        Err(Error::Convergence { message, .. }) => (Ending::StepTooSmall, Some(message)),
+        Err(Error::Convergence { message, .. }) => {
+            let ending = if recorder.beyond { Ending::TooManySteps } else { Ending::StepTooSmall };
+            (ending, Some(message))
+        }
         Err(error) => return Err(error),
     };
     let Counted { table, watch, steps, last, reached, .. } = recorder;
@@ -266,6 +270,8 @@ struct Counted<'a> {
     reached: f64,
     /// The most steps.
     most: u64,
+    /// Whether there was one more.
+    beyond: bool,
 }
 
 impl Recorder for Counted<'_> {
@@ -276,6 +282,7 @@ impl Recorder for Counted<'_> {
 
     fn step(&mut self, step: &mut Step<'_, '_>) -> Result<Option<f64>> {
         if self.steps == self.most {
+            self.beyond = true;
             return Err(Error::Convergence { message: too_many_steps(self.most), time: step.from });
         }
         self.steps += 1;

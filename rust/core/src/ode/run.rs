@@ -26,6 +26,8 @@ pub enum Ending {
     StepTooSmall,
     /// A number is infinite or none.
     NotFinite,
+    /// The most steps that it may take were taken.
+    TooManySteps,
     /// Somebody asked to stop.
     Interrupted,
 }
@@ -40,7 +42,7 @@ impl Ending {
             Self::NotFinite => {
                 "a number became infinite, or none: a singularity of the expressions, or growth beyond 1.8e308"
             }
-            Self::Finished | Self::Stopped | Self::Interrupted => return None,
+            Self::Finished | Self::Stopped | Self::TooManySteps | Self::Interrupted => return None,
         };
         Some(why.to_owned())
     }

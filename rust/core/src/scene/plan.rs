@@ -51,6 +51,8 @@ const STATES_FOR_THREADS: usize = 4_096;
 /// The relative tolerance at which what has a closed form is integrated for its events: the errors of thousands of turns are
 /// then those of rounding.
 const AS_KNOWN: f64 = 3e-14;
+/// What part of a run a step is at most, where forces may change within any.
+const LARGEST_PART: f64 = 1.0 / 128.0;
 /// Massless bodies in one unit with the massive ones, where they cannot follow them.
 const PASSIVE_PER_UNIT: usize = 64;
 
@@ -89,6 +91,8 @@ pub struct Plan {
     pub alike: usize,
     /// The time that is planned for: from the start to the end, or a step if all are equal.
     pub span: f64,
+    /// The longest step where none is asked for, if the method chooses its own and forces may change within any.
+    longest_untold: Option<f64>,
     /// Whether the method moves the massive bodies relative to the first one.
     pub relative: bool,
     /// How units lie in lanes.
@@ -223,6 +227,9 @@ impl Plan {
         let whole = (end - scene.t0).abs();
         // Equal steps go on from where they ended: their units must not depend on where that was.
         let span = dt.map_or(whole, f64::abs);
+        let chooses = dt.is_none() && request.max_step.is_none() && !turning.steps();
+        let longest_untold = Some(whole * LARGEST_PART)
+            .filter(|step| chooses && *step > 0.0 && forces.iter().any(|force| force.may_change_anywhere()));
         let mut plan = Self {
             method,
             dt,
@@ -233,6 +240,7 @@ impl Plan {
             planar,
             alike,
             span,
+            longest_untold,
             units: units(scene, 0, frame, &groups, span),
             forces,
             own,
@@ -290,6 +298,11 @@ impl Plan {
         } else {
             request.rtol
         }
+    }
+
+    /// The longest step of a run, with the sign of time left out.
+    pub fn max_step(&self, request: &Request) -> f64 {
+        request.max_step.or(self.longest_untold).unwrap_or(f64::MAX)
     }
 
     /// The units for a copy by itself.

@@ -275,7 +275,7 @@ fn run_part(
         times: &request.times,
         rtol: plan.rtol(request),
         atol: request.atol.as_ref(),
-        max_step: request.max_step.unwrap_or(f64::MAX),
+        max_step: plan.max_step(request),
         max_steps: request.max_steps.map_or(u64::MAX, |steps| steps as u64),
         watches: true,
         from: part.from(),

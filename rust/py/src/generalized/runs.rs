@@ -104,6 +104,7 @@ fn collected<'py>(py: Python<'py>, solutions: &[Solution], numbers: usize) -> Py
             Ending::Stopped => "stopped",
             Ending::StepTooSmall => "step too small",
             Ending::NotFinite => "not finite",
+            Ending::TooManySteps => "too many steps",
             Ending::Interrupted => "interrupted",
         })
         .collect();

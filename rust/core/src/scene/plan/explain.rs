@@ -57,6 +57,11 @@ impl Plan {
                 (None, None, _) => "steps chosen by the error estimate".to_owned(),
             };
             row("method", self.method.name.to_owned(), format!("order {}, {steps}", self.method.order));
+            if let Some(step) = self.longest_untold {
+                let why = "what an ExpressionForce does between the stages of a step is not felt: give max_step where it \
+                           lasts for less";
+                row("longest step", number(step), why.to_owned());
+            }
             if self.known.as_ref().is_some_and(|known| !known.integrates()) {
                 let why =
                     "the motion has a closed form; events are looked for on steps, which are to be as exact";

@@ -184,7 +184,7 @@ fn again(
         times: &times,
         rtol: part.plan.rtol(request),
         atol: request.atol.as_ref(),
-        max_step: request.max_step.unwrap_or(f64::MAX),
+        max_step: part.plan.max_step(request),
         max_steps: u64::MAX,
         watches: false,
         from: part.from(),
