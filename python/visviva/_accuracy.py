@@ -43,7 +43,10 @@ def _callers_inside() -> int:
 
 
 def judge(result: dict[str, Any], *, ensemble: bool) -> None:
-    """Warn of a step that is longer than the run, and of an energy error that is out of all proportion."""
+    """Warn of a step longer than the run, of events that cannot be, and of an energy error out of all proportion."""
+    for place in result.pop("without_numbers", ()):
+        message = f"events[{place}] gave NaN whenever it was asked: it has no zeros, and none were looked for"
+        warnings.warn(message, AccuracyWarning, stacklevel=_callers_inside())
     if "dt_beyond" in result:
         dt, span = result["dt_beyond"]
         message = f"dt = {dt:g} is longer than the run, which takes {span:g}: all of it is part of one step"

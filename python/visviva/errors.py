@@ -249,7 +249,8 @@ class AccuracyWarning(UserWarning):
     """A run came to its end, but resolved nothing: the energy at the end is not that of the start.
 
     After fixed steps the two are compared, wherever that costs next to nothing beside the run. The message names the
-    figure and a step that would do.
+    figure and a step that would do. So are told a step longer than the run, and a function among the events that gave
+    NaN throughout.
 
     Examples
     --------

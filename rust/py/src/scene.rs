@@ -45,17 +45,18 @@ pub(crate) fn run<'py>(
     progress: Option<Py<PyAny>>,
     ensemble: bool,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (scene, request, raised) = asked.prepared(threads)?;
+    let (scene, request, functions) = asked.prepared(threads)?;
     let start = std::time::Instant::now();
     let outcome = compute(py, 0, progress.as_ref(), |ticker| run_scene(&scene, &request, ticker))?;
     let (output, mut interrupted) = outcome.partial(py)?;
-    if let Some(exception) = raised.take() {
+    if let Some(exception) = functions.raised.take() {
         if !is_ctrl_c(py, &exception) {
             return Err(exception);
         }
         interrupted = true;
     }
     let dict = output_dict(py, &scene, request, output, start.elapsed().as_secs_f64(), ensemble)?;
+    dict.set_item("without_numbers", functions.without_numbers())?;
     if interrupted {
         // Also for a batch, and for a run that ended before it noticed: Ctrl-C is never swallowed.
         dict.set_item("error", error_dict(py, &Error::Interrupted)?)?;

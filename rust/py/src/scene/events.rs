@@ -8,6 +8,7 @@ use crate::errors::raised;
 use crate::gate::attached;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use visviva_core::scene::events::{Event, Focus, What};
 use visviva_core::{Error, Result};
@@ -15,6 +16,22 @@ use visviva_core::{Error, Result};
 /// What a Python function among the events has raised.
 #[derive(Clone, Default)]
 pub(crate) struct Raised(Arc<Mutex<Option<PyErr>>>);
+
+/// What the Python functions among the events did.
+#[derive(Default)]
+pub(super) struct Functions {
+    pub(super) raised: Raised,
+    /// Of each its place among the events, and whether it has given a number yet.
+    numbers: Vec<(usize, Arc<AtomicBool>)>,
+}
+
+impl Functions {
+    /// The places of those that gave none but NaN.
+    pub(super) fn without_numbers(&self) -> Vec<usize> {
+        let without = self.numbers.iter().filter(|(_, given)| !given.load(Ordering::Relaxed));
+        without.map(|(place, _)| *place).collect()
+    }
+}
 
 impl Raised {
     fn with<T>(&self, action: impl FnOnce(&mut Option<PyErr>) -> T) -> T {
@@ -45,12 +62,18 @@ impl Raised {
 pub(super) fn events(
     descriptions: &[Bound<'_, PyDict>],
     particles: usize,
-    raised: &Raised,
+    functions: &mut Functions,
 ) -> PyResult<Vec<Event>> {
-    descriptions.iter().map(|description| event(description, particles, raised)).collect()
+    let of_each = |(place, description)| event(description, place, particles, functions);
+    descriptions.iter().enumerate().map(of_each).collect()
 }
 
-fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised) -> PyResult<Event> {
+fn event(
+    description: &Bound<'_, PyDict>,
+    place: usize,
+    particles: usize,
+    functions: &mut Functions,
+) -> PyResult<Event> {
     let item = |name: &str| description.as_any().get_item(name);
     let kind: String = item("kind")?.extract()?;
     let what = match kind.as_str() {
@@ -79,7 +102,11 @@ fn event(description: &Bound<'_, PyDict>, particles: usize, exceptions: &Raised)
             What::Apsis { body: item("body")?.extract()?, about }
         }
         "energy" => What::Energy(item("value")?.extract()?),
-        "function" => function(item("function")?.unbind(), particles, exceptions.clone()),
+        "function" => {
+            let given = Arc::new(AtomicBool::new(false));
+            functions.numbers.push((place, given.clone()));
+            function(item("function")?.unbind(), particles, functions.raised.clone(), given)
+        }
         other => {
             let message = format!("expected one of visviva.events, got the kind {other}");
             return Err(raised(description.py(), Error::invalid("events", message)));
@@ -102,14 +129,18 @@ pub(crate) fn number(value: &Bound<'_, PyAny>) -> PyResult<f64> {
     })
 }
 
-fn function(function: Py<PyAny>, particles: usize, exceptions: Raised) -> What {
+fn function(function: Py<PyAny>, particles: usize, exceptions: Raised, given: Arc<AtomicBool>) -> What {
     let call = move |t: f64, position: &[f64], velocity: &[f64]| -> Result<f64> {
-        exceptions.called(|py| {
+        let value = exceptions.called(|py| {
             let shape = [particles, 3];
             let position = moved(py, position.to_vec(), &shape)?;
             let velocity = moved(py, velocity.to_vec(), &shape)?;
             number(function.call1(py, (t, position, velocity))?.bind(py))
-        })
+        })?;
+        if !value.is_nan() {
+            given.store(true, Ordering::Relaxed);
+        }
+        Ok(value)
     };
     What::Function(Arc::new(call))
 }

@@ -1,6 +1,6 @@
 //! What Python asks of a scene: its keywords as the core's plain data.
 
-use super::events::{Raised, events};
+use super::events::{Functions, events};
 use super::rigid::Described;
 use crate::arrays::copied;
 use crate::errors::raised;
@@ -99,11 +99,11 @@ impl Continued<'_> {
 }
 
 impl Asked<'_> {
-    /// The scene and the request, to be run on so many threads, and what Python functions among the events raise.
+    /// The scene and the request, to be run on so many threads, and what Python functions among the events do.
     ///
     /// # Errors
     /// `InvalidInput` for arrays whose shapes do not agree, no copies, an unknown force, a number of threads that cannot be.
-    pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request, Raised)> {
+    pub(super) fn prepared(self, threads: Option<i64>) -> PyResult<(Scene, Request, Functions)> {
         let py = self.forces.py();
         let (mass, [copies, particles]) = copied("mass", &self.mass, [None, None])?;
         if copies == 0 {
@@ -130,8 +130,8 @@ impl Asked<'_> {
                 Some(Collisions::named(name, part).map_err(|error| raised(py, error))?)
             }
         };
-        let raised = Raised::default();
-        let events = events(&self.events, particles, &raised)?;
+        let mut functions = Functions::default();
+        let events = events(&self.events, particles, &mut functions)?;
         let Self { method, dt, time_transformation, rtol, atol, max_step, max_steps, record, .. } = self;
         // An end alone means the start and the end.
         let times = if self.end_only { [t0].into_iter().chain(times).collect() } else { times };
@@ -166,7 +166,7 @@ impl Asked<'_> {
             collisions,
             threads,
         };
-        Ok((scene, request, raised))
+        Ok((scene, request, functions))
     }
 }
 

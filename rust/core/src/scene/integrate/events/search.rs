@@ -14,6 +14,9 @@ use crate::parallel::Ticker;
 /// Where a step is sampled, as fractions of it: close to its ends to see which way the function leaves and comes.
 const SAMPLES: [f64; 9] = [0.015625, 0.125, 0.25, 0.375, 0.5, 0.625, 0.75, 0.875, 0.984375];
 
+/// A function of which nothing else is known is sampled so often in a run at least: of a free body one step may be the whole.
+const FEWEST: f64 = 128.0;
+
 /// Secants after which a zero is sought in another way.
 const SECANTS: usize = 6;
 
@@ -68,7 +71,7 @@ impl Search<'_, '_> {
         let [start, end] =
             [&self.watch.sights[self.event], &self.watch.next[self.event]].map(|sight| self.rate(sight));
         let (mut points, mut rates) = (vec![(0.0, self.ends[0])], vec![start]);
-        for theta in SAMPLES {
+        for theta in self.samples() {
             let sight = self.sight_between(theta, ticker)?;
             points.push((theta, sight.value));
             rates.push(self.rate(&sight));
@@ -123,6 +126,22 @@ impl Search<'_, '_> {
         zeros.sort_by(f64::total_cmp);
         zeros.dedup();
         Ok(zeros)
+    }
+
+    /// Where the step is sampled.
+    fn samples(&self) -> Vec<f64> {
+        let job = self.watch.job;
+        let run = job.times.last().map_or(0.0, |end| (end - job.scene.t0).abs());
+        let parts = (FEWEST * self.length().abs() / run).ceil().min(FEWEST);
+        let mut samples = SAMPLES.to_vec();
+        let is_known = !matches!(self.watch.event(self.event).0.what, What::Function(_));
+        if is_known || parts <= SAMPLES.len() as f64 {
+            return samples;
+        }
+        samples.extend((1..parts as u32).map(|part| f64::from(part) / parts));
+        samples.sort_by(f64::total_cmp);
+        samples.dedup();
+        samples
     }
 
     /// Where the function is zero, and its slope there, if it goes almost straight from one sign to the other: told from the
