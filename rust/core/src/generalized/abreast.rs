@@ -12,7 +12,8 @@ pub use side_by_side::SideBySide;
 use super::gauss::GaussEight;
 use super::model::Model;
 use super::motion::Motion;
-use super::run::{Integrator, Request, Solution, norm, too_many_steps};
+use super::poles::Poles;
+use super::run::{Integrator, Request, Solution, norm, solve, too_many_steps};
 use super::sticking::Sticking;
 use crate::error::{Error, Result};
 use crate::numerics::lanes::{Bits, Lanes, WIDTH};
@@ -60,6 +61,7 @@ struct Slot {
     /// Evaluations before it began.
     before: u64,
     sticking: Sticking,
+    poles: Poles,
 }
 
 /// What is at work.
@@ -79,6 +81,8 @@ struct Abreast<'a> {
     parameters: Vec<Lanes>,
     slots: [Option<Slot>; WIDTH],
     done: Vec<Option<Solution>>,
+    /// Those that went through a pole.
+    passed: Vec<usize>,
 }
 
 /// Runs states (n numbers each) with their parameters. Each that ends is told to the ticker.
@@ -108,7 +112,12 @@ pub fn solve_together(
         }
     };
     match outcome {
-        Ok(()) => {}
+        Ok(()) => {
+            // By themselves, in shorter steps.
+            for index in core::mem::take(&mut run.passed) {
+                run.done[index] = Some(solve(model, request, member(index), ticker)?);
+            }
+        }
         Err(Error::Interrupted) => run.interrupt(),
         Err(error) => return Err(error),
     }
@@ -168,6 +177,7 @@ impl<'a> Abreast<'a> {
             parameters,
             slots: [const { None }; WIDTH],
             done: (0..members).map(|_| None).collect(),
+            passed: vec![],
         })
     }
 
@@ -210,8 +220,9 @@ impl<'a> Abreast<'a> {
             let solution = Solution::at(t0);
             let (from, before) = (t0, self.system.evaluations());
             let sticking = Sticking::new(self.model, parameters, t0);
+            let poles = Poles::new(self.model, parameters, t0, y0);
             self.slots[lane] =
-                Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before, sticking });
+                Some(Slot { index, solution, next_output: 0, smallest: 0.0, from, before, sticking, poles });
         }
         if fresh.any() {
             self.system.set_parameters(&self.parameters);
@@ -237,6 +248,7 @@ impl<'a> Abreast<'a> {
         let Self { trial, system, state, clock, norm, .. } = self;
         let outcome = trial.attempt(running, system, state, clock, norm, ticker)?;
         let kept = self.judge(&outcome, running, ticker);
+        let kept = self.short_of_poles(kept, ticker);
         self.record(&outcome, kept, ticker)?;
         self.trial.keep(kept, &mut self.state);
         for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
@@ -255,6 +267,24 @@ impl<'a> Abreast<'a> {
             }
         }
         Ok(())
+    }
+
+    /// The lanes of these whose step did not go through a pole; the others end.
+    fn short_of_poles(&mut self, kept: Bits, ticker: &mut Ticker<'_>) -> Bits {
+        let mut short = Bits(0);
+        for lane in (0..WIDTH).filter(|&lane| kept.lane(lane)) {
+            let Some(slot) = self.slots[lane].as_mut() else { continue };
+            if !slot.poles.is_empty() {
+                let y: Vec<f64> = self.trial.next().all().0.iter().map(|y| y.0[lane]).collect();
+                if let Err(Error::Convergence { message, .. }) = slot.poles.look(slot.solution.reached, &y) {
+                    self.passed.push(slot.index);
+                    self.end(lane, Ending::StepTooSmall, Some(message), ticker);
+                    continue;
+                }
+            }
+            short = short.or(Bits(1 << lane));
+        }
+        short
     }
 
     /// The slots in the lanes of a mask.

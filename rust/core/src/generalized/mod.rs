@@ -23,6 +23,7 @@ pub mod linear_motion;
 pub mod model;
 pub mod motion;
 pub mod one_freedom;
+pub mod poles;
 pub mod projection;
 pub mod run;
 mod sizes;

@@ -1,5 +1,6 @@
 //! A mechanical system in generalized coordinates: where it comes from and what was made of it.
 
+use super::poles::Divisors;
 use super::projection::Projection;
 use super::{hamiltonian, lagrangian, sticking};
 use crate::error::{Error, Result};
@@ -75,6 +76,8 @@ pub struct Model {
     pub projection: Option<Projection>,
     /// Velocities that dry friction may hold, with their rates, as code.
     pub switches: Vec<Arc<Code>>,
+    /// What it divides by, if that may change its sign.
+    pub divisors: Option<Divisors>,
 }
 
 impl Model {
@@ -111,9 +114,11 @@ impl Model {
             columns,
             projection: None,
             switches: vec![],
+            divisors: None,
         };
         model.projection = Projection::new(&mut model)?;
         model.switches = sticking::switches(&mut model)?;
+        model.divisors = Divisors::of(&model)?;
         Ok(model)
     }
 

@@ -10,6 +10,7 @@ use super::gauss::{self, GaussStep, Steps};
 use super::linear_motion::LinearMotion;
 use super::model::Model;
 use super::motion::Motion;
+use super::poles::Poles;
 use super::projection::{Projected, Projector};
 use super::sizes::sizes;
 use super::sticking::Sticking;
@@ -176,7 +177,22 @@ impl Solution {
 pub fn solve(
     model: &Model,
     request: &Request,
+    of: (&[f64], &[f64]),
+    ticker: &mut Ticker<'_>,
+) -> Result<Solution> {
+    solve_within(model, request, of, request.longest_step(model), ticker)
+}
+
+/// How much shorter steps are where one went through a pole, and down to which part of the run.
+const SHORTER: f64 = 1.0 / 16.0;
+const SHORTEST_PART: f64 = 1.0 / 1_048_576.0;
+
+/// In steps of at most that length, where the method chooses them; in shorter ones where one went through a pole.
+fn solve_within(
+    model: &Model,
+    request: &Request,
     (y0, parameters): (&[f64], &[f64]),
+    max_step: f64,
     ticker: &mut Ticker<'_>,
 ) -> Result<Solution> {
     let (t0, end) = request.span;
@@ -189,7 +205,6 @@ pub fn solve(
     if let (Some(mean), Some(atol)) = (&mut norm.mean, request.absolute_tolerances(model, parameters, y0)) {
         mean.atol = atol;
     }
-    let max_step = request.longest_step(model);
     let mut table = Table::new(request.outputs.as_deref(), false, None, Unwatched::new(vec![]));
     if t0 == end {
         table.still(request.span, y0)?;
@@ -201,9 +216,20 @@ pub fn solve(
         if request.dt.is_some() { projector } else { projector.for_tolerance(request.rtol) }
     });
     let sticking = Sticking::new(model, parameters, t0);
+    let poles = Poles::new(model, parameters, t0, y0);
     let most = request.max_steps;
-    let mut recorder =
-        Counted { table, watch, sticking, steps: 0, last: 0.0, reached: t0, most, beyond: false };
+    let mut recorder = Counted {
+        table,
+        watch,
+        sticking,
+        poles,
+        passed: None,
+        steps: 0,
+        last: 0.0,
+        reached: t0,
+        most,
+        beyond: false,
+    };
     let mut drive = Drive { system: &mut system, state: &mut state, norm: &norm, request, ticker };
     let mut own = 0;
     let outcome = match request.integrator {
@@ -244,6 +270,11 @@ pub fn solve(
             }
         },
     };
+    if let (Some(h), None) = (recorder.passed, request.dt)
+        && h * SHORTER > (end - t0).abs() * SHORTEST_PART
+    {
+        return solve_within(model, request, (y0, parameters), h * SHORTER, ticker);
+    }
     let (ending, failure) = match outcome {
         Ok(ending) => (ending, ending.reason()),
         Err(Error::Convergence { message, .. }) => {
@@ -263,6 +294,9 @@ struct Counted<'a> {
     table: Table<'a>,
     watch: Watch<'a>,
     sticking: Sticking,
+    poles: Poles,
+    /// The length of the step that went through a pole.
+    passed: Option<f64>,
     steps: u64,
     /// The longest step.
     last: f64,
@@ -287,6 +321,9 @@ impl Recorder for Counted<'_> {
         }
         self.steps += 1;
         let length = (step.to - step.from).abs();
+        if !self.poles.is_empty() {
+            self.poles.look(step.to, step.end()).inspect_err(|_| self.passed = Some(length))?;
+        }
         self.last = if length > self.last { length } else { self.last };
         let stop = self.watch.look(&mut Stepped(step))?;
         self.reached = stop.unwrap_or(step.to);

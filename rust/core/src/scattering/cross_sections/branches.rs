@@ -9,6 +9,10 @@ use core::f64::consts::PI;
 
 /// Each place of a tail is so many times as far as the one before.
 const FURTHER: f64 = 4.0;
+/// Where V ends at a wall, ψ falls as √(R − b): how much the power of the outermost sample may be off.
+const SQUARE_ROOT: f64 = 0.05;
+/// An angle that stands for 0 where the cross section does not vanish there.
+const FORWARD: f64 = 1e-150;
 
 /// One way to an angle.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +78,9 @@ impl Structure<'_> {
                 found.extend(self.solve(&beyond, target, ticker)?);
             }
         }
+        for target in [angle, -angle] {
+            found.extend(self.grazing(target));
+        }
         found.sort_by(|a, b| a.b.total_cmp(&b.b));
         found.dedup_by(|a, b| a.b == b.b);
         let branch = |sample: &Sample| Branch {
@@ -97,6 +104,11 @@ impl Structure<'_> {
         if angle == 0.0 && self.outermost().is_some() {
             return Ok(f64::INFINITY);
         }
+        let angle = if angle == 0.0 && self.grazing(FORWARD).or(self.grazing(-FORWARD)).is_some() {
+            FORWARD
+        } else {
+            angle
+        };
         // From +0 on: an empty sum of floats is −0.
         Ok(self.branches(angle, ticker)?.iter().map(Branch::cross_section).fold(0.0, |sum, part| sum + part))
     }
@@ -157,6 +169,23 @@ impl Structure<'_> {
     fn outermost(&self) -> Option<Sample> {
         let last = *self.stretches.last()?.last()?;
         (self.deflector.range() == f64::INFINITY && last.angle != 0.0).then_some(last)
+    }
+
+    /// The sample with that ψ nearer to the edge of V than b can tell, where V ends at a wall; `None` if it is not there.
+    fn grazing(&self, target: f64) -> Option<Sample> {
+        let last = *self.stretches.last()?.last()?;
+        let range = self.deflector.range();
+        if !range.is_finite() || target == 0.0 || target.signum() != last.angle.signum() {
+            return None;
+        }
+        let power = -last.derivative * (range - last.b) / last.angle;
+        let at_wall = (power - 0.5).abs() < SQUARE_ROOT && target.abs() < last.angle.abs();
+        at_wall.then(|| Sample {
+            b: range,
+            angle: target,
+            complement: PI - target.abs(),
+            derivative: last.derivative * (last.angle / target),
+        })
     }
 
     /// From there on, up to less than that ψ; `None` if it is not beyond. Far out ψ falls to zero, whatever the potential.

@@ -1,4 +1,5 @@
-//! The orbits on which bodies are at the start, each about the one that pulls it most; and steps that are too long for them.
+//! The orbits on which bodies are at the start, each about the one that pulls it most, and moons about the one whose pull
+//! changes most on the way; and steps that are too long for them.
 
 use super::super::{Scene, distance};
 use crate::forces::ForceTerm;
@@ -9,8 +10,13 @@ use std::sync::Arc;
 /// Bodies with at most this part of the mass that they are about change energies by less than anybody looks at.
 const LIGHT: f64 = 1e-3;
 
-/// Beyond these looking at all pairs would take as long as a step.
-const BODIES: usize = 64;
+/// To look at so many pairs takes less than a hundredth of a run of so many steps for each.
+const PAIRS: usize = 4_096;
+const STEPS: f64 = 100.0;
+const MOST_PAIRS: usize = 1 << 18;
+
+/// Orbits that come as near as this many softening lengths are no conics.
+const SOFT: f64 = 100.0;
 
 /// An orbit.
 #[derive(Clone, Copy, Debug)]
@@ -18,6 +24,7 @@ pub(super) struct Turn {
     /// The body that it is about.
     pub(super) about: usize,
     pub(super) eccentricity: f64,
+    pericenter: f64,
     pub(super) period: f64,
     /// The period of a circle through the pericenter.
     pub(super) at_pericenter: f64,
@@ -26,16 +33,35 @@ pub(super) struct Turn {
 /// The orbit of a body of a copy about the one that pulls it most: `Some(None)` of one that is pulled by none more than it
 /// pulls, nothing if it is not bound.
 pub(super) fn turn(scene: &Scene, copy: usize, constant: f64, body: usize) -> Option<Option<Turn>> {
-    let (mass, places, velocities) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
+    let (mass, places) = (scene.masses(copy), scene.positions(copy));
     let pull = |other: &usize| {
         let apart = distance(places[body], places[*other]);
         constant * mass[*other] / apart / apart
     };
-    let others = (0..scene.particles).filter(|&other| other != body);
-    let about = others.max_by(|a, b| pull(a).total_cmp(&pull(b)))?;
+    let others = (0..scene.particles).filter(|&other| other != body && mass[other] > 0.0);
+    let Some(about) = others.max_by(|a, b| pull(a).total_cmp(&pull(b))) else { return Some(None) };
     if mass[about] < mass[body] {
         return Some(None);
     }
+    turn_about(scene, copy, constant, (body, about)).map(Some)
+}
+
+/// The orbit of a body about the heavier one whose pull changes most from place to place, as that of a planet at its moon.
+fn turn_of_moon(scene: &Scene, copy: usize, constant: f64, body: usize) -> Option<Turn> {
+    let (mass, places) = (scene.masses(copy), scene.positions(copy));
+    let tide = |other: &usize| {
+        let apart = distance(places[body], places[*other]);
+        mass[*other] / apart / apart / apart
+    };
+    let heavier =
+        (0..scene.particles).filter(|&other| other != body && mass[other] > 0.0 && mass[other] >= mass[body]);
+    let about = heavier.max_by(|a, b| tide(a).total_cmp(&tide(b)))?;
+    turn_about(scene, copy, constant, (body, about))
+}
+
+/// The orbit of one body about another, if it is bound.
+fn turn_about(scene: &Scene, copy: usize, constant: f64, (body, about): (usize, usize)) -> Option<Turn> {
+    let (mass, places, velocities) = (scene.masses(copy), scene.positions(copy), scene.velocities(copy));
     let strength = constant * (mass[about] + mass[body]);
     let r = distance(places[body], places[about]);
     let [x, v] =
@@ -49,7 +75,7 @@ pub(super) fn turn(scene: &Scene, copy: usize, constant: f64, body: usize) -> Op
     let pericenter = axis * (1.0 - eccentricity);
     let circle = |radius: f64| TAU * radius * (radius / strength).sqrt();
     let (period, at_pericenter) = (circle(axis), circle(pericenter));
-    (axis > 0.0).then_some(Some(Turn { about, eccentricity, period, at_pericenter }))
+    (axis > 0.0).then_some(Turn { about, eccentricity, pericenter, period, at_pericenter })
 }
 
 /// A step that is too long for an orbit at the start.
@@ -77,19 +103,31 @@ pub(super) fn too_long(
     touching: bool,
 ) -> Option<TooLong> {
     let dt = dt?.abs();
-    let (constant, 0.0) = forces.iter().find_map(|force| force.as_newtonian())? else { return None };
-    // Copies whose forces are their own have constants of their own.
-    if scene.particles > BODIES || scene.own_forces.is_some() || method.adaptive() {
+    let newtonian = |forces: &[Arc<dyn ForceTerm>]| forces.iter().find_map(|force| force.as_newtonian());
+    let told = newtonian(forces);
+    if method.adaptive() || (told.is_none() && scene.own_forces.is_none()) {
+        return None;
+    }
+    let massive = scene.masses(0).iter().filter(|&&mass| mass > 0.0).count();
+    let pairs = scene.particles * massive;
+    if pairs > MOST_PAIRS || (pairs > PAIRS && span < STEPS * dt) {
         return None;
     }
     let fewest = method.fewest_steps();
     let mut worst: Option<TooLong> = None;
     for copy in 0..scene.copies {
-        for body in 0..scene.particles {
-            let Some(Some(Turn { about, period, at_pericenter, .. })) = turn(scene, copy, constant, body)
-            else {
+        let own = if scene.own_forces.is_some() { newtonian(scene.forces_of(copy)) } else { told };
+        let Some((constant, softening)) = own else { continue };
+        let orbits = (0..scene.particles).flat_map(|body| {
+            let of_planet = turn(scene, copy, constant, body).flatten();
+            let of_moon = turn_of_moon(scene, copy, constant, body);
+            let other = of_moon.filter(|moon| of_planet.is_none_or(|planet| planet.about != moon.about));
+            [of_planet, other].into_iter().flatten().map(move |turn| (body, turn))
+        });
+        for (body, Turn { about, pericenter, period, at_pericenter, .. }) in orbits {
+            if pericenter < SOFT * softening {
                 continue;
-            };
+            }
             // What is wrong at the pericenter of a heavier one the energy tells; where spheres touch, none may come there.
             let light = !touching && scene.masses(copy)[body] <= LIGHT * scene.masses(copy)[about];
             let turns = [(period, fewest, false), (at_pericenter, FEWEST_STEPS, true)];

@@ -19,8 +19,8 @@ use crate::units::Units;
 
 /// A sum over so few pairs is nothing beside a run.
 const FEW_PAIRS: u64 = 100;
-/// A sum over pairs takes less than a hundredth of so many evaluations of the forces.
-const MANY_EVALUATIONS: u64 = 2_000;
+/// The sums over pairs at both ends take as long as five evaluations of the forces: about a hundredth of so many.
+const MANY_EVALUATIONS: u64 = 400;
 /// More massive bodies are not looked at.
 const MOST: usize = 2_000;
 
