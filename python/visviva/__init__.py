@@ -52,6 +52,7 @@ _HOME = {
     "Lagrangian": "generalized",
     "LinearDrag": "forces",
     "Method": "integrators",
+    "MissingPackage": "errors",
     "Oblate": "forces",
     "OdeResult": "initial_value",
     "OdeSolution": "initial_value",
@@ -141,6 +142,7 @@ __all__ = [
     "Lagrangian",
     "LinearDrag",
     "Method",
+    "MissingPackage",
     "Oblate",
     "OdeResult",
     "OdeSolution",
@@ -231,6 +233,7 @@ if TYPE_CHECKING:
         InternalError,
         Interrupted,
         InvalidInput,
+        MissingPackage,
         UnknownKeyword,
         WrongArguments,
     )

@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._arrays import number, whole_number
+from visviva._packages import needed
 from visviva._paths import path_text
 from visviva._style import COLORS, FRAME, legend_beside
 from visviva.errors import InvalidInput
@@ -100,7 +101,7 @@ def _moving(
     trail: float,
     fps: int,
 ) -> FuncAnimation:
-    from matplotlib.animation import FuncAnimation
+    from matplotlib.animation import FuncAnimation  # there is a figure: matplotlib is there
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
     FigureCanvasAgg(figure)
@@ -152,8 +153,7 @@ def _file(path: Any) -> Path:
     visviva.InvalidInput
         For another ending, or a writer that is not installed.
     """
-    from matplotlib.animation import writers
-
+    writers = needed("matplotlib.animation", "plot", "plot").writers
     file = Path(path_text("path", path))
     if file.suffix not in _SUFFIXES:
         raise InvalidInput("path", f"expected a file ending in {', '.join(_SUFFIXES)}, got {str(path)!r}")

@@ -21,15 +21,60 @@ from visviva.errors import Interrupted, InvalidInput
 from visviva.request import execute, finished
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
     from visviva.ensemble import EnsembleScene
     from visviva.ensemble_trajectory import EnsembleTrajectory
     from visviva.request import RunRequest
-    from visviva.typing import ColumnName
+    from visviva.typing import ColumnName, Progress
 
-__all__ = ["run_apart", "run_part"]
+__all__ = ["bounds_of", "gathered", "run_apart", "run_part", "sendable"]
 
 # Parts in all, and copies that go side by side through the lanes.
 _MOST, _LANES = 64, 8
+
+
+def bounds_of(number: int) -> list[int]:
+    """Where the parts of so many copies begin and end: lanes are full but for the last."""
+    parts = max(1, min(_MOST, number // _LANES))
+    return [number * part // parts // _LANES * _LANES for part in range(parts)] + [number]
+
+
+def gathered(
+    executor: Any, work: Callable[..., Any], calls: list[tuple[Any, ...]], bounds: list[int], progress: Progress
+) -> tuple[list[dict[str, Any]], str]:
+    """What parts of the copies gave, in order and without a gap; and after Ctrl-C, what is to be said of that.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        Whatever a worker refuses, by the number of a copy in its part.
+    """
+    home: list[dict[str, Any]] = []
+    with callback(progress, "copies") as report:
+        try:
+            with closing(answers(executor, work, calls)) as coming:
+                for came, end in zip(coming, bounds[1:], strict=True):
+                    home.append(came)
+                    if report is not None:
+                        report(end, bounds[-1])
+        except KeyboardInterrupt:
+            return home, f"interrupted after {bounds[len(home)]} of {bounds[-1]} copies"
+    return home, ""
+
+
+def sendable(events: Sequence[dict[str, Any]], of_python: Callable[[dict[str, Any]], bool]) -> None:
+    """Refuse events that no other process has.
+
+    Raises
+    ------
+    visviva.InvalidInput
+        For functions of one's own.
+    """
+    if any(map(of_python, events)):
+        raise InvalidInput(
+            "executor", "events that are functions of your own cannot be sent; use those of visviva.events, or run here"
+        )
 
 
 def run_part(copies: EnsembleScene, request: RunRequest) -> dict[str, Any]:
@@ -55,33 +100,20 @@ def run_apart(ensemble: EnsembleScene, request: RunRequest) -> EnsembleTrajector
     if request.threads is not None:
         whole_number("threads", request.threads, 1, 1024)
     asked = alone.to_core(ensemble._keywords, ensemble._names)
-    if any(event["kind"] == "function" for event in asked["events"]):
-        raise InvalidInput(
-            "executor", "events that are functions of your own cannot be sent; use those of visviva.events, or run here"
-        )
+    sendable(asked["events"], lambda event: event["kind"] == "function")
     # Which columns are recorded if nothing is said is known by identity, which no journey keeps.
     alone = replace(alone, record=cast("list[ColumnName]", asked["record"]))
     plan = _core.plan(asked)
-    number = len(ensemble)
-    parts = max(1, min(_MOST, number // _LANES))
-    bounds = [number * part // parts // _LANES * _LANES for part in range(parts)] + [number]
+    bounds = bounds_of(len(ensemble))
     calls = [(ensemble[start:end], alone) for start, end in pairwise(bounds)]
-    home: list[dict[str, Any]] = []
-    with callback(request.progress, "copies") as report:
-        try:
-            with closing(answers(executor, run_part, calls)) as coming:
-                for came, end in zip(coming, bounds[1:], strict=True):
-                    home.append(came)
-                    if report is not None:
-                        report(end, number)
-        except InvalidInput:
-            # A worker counts the copies of its part. Refused here, before anything runs, by the number of the copy.
-            return execute(ensemble._keywords, alone, names=ensemble._names, ensemble=True, make=ensemble._finished)
-        except KeyboardInterrupt:
-            reached = ensemble[: bounds[len(home)]] if home else None
-            done = None if reached is None else reached._finished(_joined(home, bounds, plan))
-            message = f"interrupted after {bounds[len(home)]} of {number} copies"
-            raise Interrupted(message, done) from None
+    try:
+        home, message = gathered(executor, run_part, calls, bounds, request.progress)
+    except InvalidInput:
+        # A worker counts the copies of its part. Refused here, before anything runs, by the number of the copy.
+        return execute(ensemble._keywords, alone, names=ensemble._names, ensemble=True, make=ensemble._finished)
+    if message:
+        reached = ensemble[: bounds[len(home)]] if home else None
+        raise Interrupted(message, None if reached is None else reached._finished(_joined(home, bounds, plan)))
     return finished(_joined(home, bounds, plan), asked, ensemble=True, make=ensemble._finished)
 
 

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 from visviva import _core
 from visviva._arrays import number
 from visviva._keywords import known_keywords
-from visviva.errors import InvalidInput
+from visviva.errors import InvalidInput, MissingPackage
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -119,7 +119,7 @@ def _formula(function: Any, tolerance: float | None, parameters: Mapping[Any, fl
     try:
         nodes, values = of_distance(function, parameters)
     except InvalidInput as error:
-        if error.argument.startswith("parameters"):
+        if isinstance(error, MissingPackage) or error.argument.startswith("parameters"):
             raise
         cure = "with r_min and r_max any function of arrays is sampled"
         if "is called with" in error.message:

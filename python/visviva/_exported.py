@@ -9,12 +9,12 @@ from __future__ import annotations
 from abc import abstractmethod
 from collections.abc import Iterable
 from dataclasses import dataclass, field
-from importlib import import_module
 from typing import TYPE_CHECKING, Any, Generic, TypeVar
 
 import numpy as np
 
 from visviva._keywords import known_keywords
+from visviva._packages import needed
 from visviva._paths import path_text
 from visviva.errors import InvalidInput
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from pandas import DataFrame
     from xarray import Dataset
 
-__all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels", "needed"]
+__all__ = ["AXES", "Columns", "Exported", "chosen_columns", "labels"]
 
 Name = TypeVar("Name", bound=str)
 
@@ -92,7 +92,7 @@ class Exported(Generic[Name]):
 
         Raises
         ------
-        ImportError
+        visviva.MissingPackage
             Without the package xarray: ``pip install 'visviva[xarray]'``.
         visviva.InvalidInput
             If a column is unknown, or neither recorded nor to be computed from what is.
@@ -133,7 +133,7 @@ class Exported(Generic[Name]):
 
         Raises
         ------
-        ImportError
+        visviva.MissingPackage
             Without the package pandas: ``pip install 'visviva[pandas]'``.
         visviva.InvalidInput
             As `to_xarray`.
@@ -183,7 +183,7 @@ class Exported(Generic[Name]):
 
         Raises
         ------
-        ImportError
+        visviva.MissingPackage
             Without the package pyarrow: ``pip install 'visviva[parquet]'``.
         visviva.InvalidInput
             As `to_xarray`, and for what is no path.
@@ -216,20 +216,6 @@ def _places(axes: Sequence[NDArray[Any]]) -> list[tuple[Any, ...]]:
     for labels_ in axes:
         places = [(*place, label) for place in places for label in labels_.tolist()]
     return places
-
-
-def needed(package: str, what: str, extra: str | None = None) -> Any:
-    """The package, or an error that says how to get it: by the `extra` of its name, or of another.
-
-    Raises
-    ------
-    ImportError
-        If it is not installed.
-    """
-    try:
-        return import_module(package)
-    except ImportError as error:
-        raise ImportError(f"{what} needs the package {package}: pip install 'visviva[{extra or package}]'") from error
 
 
 def labels(names: Iterable[str], number: int) -> NDArray[Any]:

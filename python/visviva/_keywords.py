@@ -66,7 +66,7 @@ _IN_PARTS = {
     "GeneralizedEnsemble.run": "only runs of scenes are saved as they go; run to a time, out.save(path), and go on "
     "from visviva.load(path)[i].final, copy by copy",
     "monte_carlo": "count events in parts: save each result, go on with first_event=result.next_event, and add them",
-    "Foil.run": "bombard in parts: go on with first_event=result.next_event, and add the results",
+    "Foil.run": "bombard in parts: save each result, go on with first_event=result.next_event, and add them",
 }
 _ELSEWHERE |= {(name, keyword): cure for name, cure in _IN_PARTS.items() for keyword in ("save_every", "save_to")}
 

@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._packages import needed
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -67,11 +69,9 @@ def write(path: str, tables: Iterator[dict[str, NDArray[Any]]], about: dict[str,
 
     Raises
     ------
-    ImportError
+    visviva.MissingPackage
         If pyarrow is not installed.
     """
-    from visviva._exported import needed
-
     arrow = needed("pyarrow", what, "parquet")
     parquet = needed("pyarrow.parquet", what, "parquet")
     table = arrow.table(next(tables)).replace_schema_metadata({name: str(value) for name, value in about.items()})

@@ -22,6 +22,8 @@ if TYPE_CHECKING:
     from numpy.typing import NDArray
 
 __all__ = [
+    "COUNTS",
+    "FOIL",
     "FORMAT",
     "GENERALIZED",
     "GROUPS",
@@ -37,6 +39,8 @@ __all__ = [
 FORMAT = "visviva run"
 #: Of runs in generalized coordinates, which have a module of their own: `visviva.generalized._saved`.
 GENERALIZED = "visviva generalized run"
+#: Of counts, which `visviva.scattering._saved` and `visviva.scattering._foil_saved` know.
+COUNTS, FOIL = "visviva scattering", "visviva foil"
 VERSION = 1
 GROUPS = ("columns", "final", "per_trajectory")
 
@@ -197,9 +201,7 @@ def checked(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> None:
         If something is missing or not as it should be.
     """
     if header["format"] != FORMAT:
-        others = {"visviva scattering": "; visviva.scattering.MonteCarlo.load reads it"}
-        cure = others.get(header["format"], "")
-        raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}{cure}")
+        raise Damaged(f"expected a {FORMAT!r}, but the file holds a {header['format']!r}")
     check_version(header, VERSION)
     _check_header(header)
     _check_arrays(arrays, header)

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from visviva._keywords import known_keywords
-from visviva.errors import InvalidInput
+from visviva._packages import needed
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -30,7 +30,6 @@ __all__ = [
     "legend_within",
     "plot_style",
     "set_box",
-    "without_matplotlib",
 ]
 
 # M. Okabe & K. Ito, *Color Universal Design* (2008), without the yellow, which is not seen on white.
@@ -87,16 +86,8 @@ def plot_style() -> dict[str, object]:
 
 
 def _cycle() -> Any:
-    try:
-        from cycler import cycler
-    except ImportError as error:
-        raise without_matplotlib() from error
+    cycler = needed("cycler", "plot", "plot").cycler
     return cycler(linestyle=LINES) * cycler(color=COLORS)
-
-
-def without_matplotlib() -> InvalidInput:
-    """What is said where there is nothing to draw with."""
-    return InvalidInput("plot", "matplotlib is not installed; pip install 'visviva[plot]'")
 
 
 def dress(axes: Axes) -> None:

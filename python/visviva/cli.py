@@ -141,7 +141,7 @@ def _say(pictures: list[Path]) -> None:
     if pictures:
         print("pictures:", ", ".join(map(str, pictures)))
     else:
-        print("no pictures: matplotlib is not installed (pip install 'visviva[plot]')")
+        print("no pictures: the package matplotlib is not installed: pip install 'visviva[plot]'")
 
 
 def _methods(_: argparse.Namespace) -> None:

@@ -229,7 +229,7 @@ class EnsembleScene(Runnable["EnsembleTrajectory"]):
 
         Raises
         ------
-        ImportError
+        visviva.MissingPackage
             Without the package pyarrow: ``pip install 'visviva[parquet]'``.
         visviva.InvalidInput
             As `run`, and for what is no path; there is no file then.

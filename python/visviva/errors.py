@@ -31,6 +31,7 @@ __all__ = [
     "InternalError",
     "Interrupted",
     "InvalidInput",
+    "MissingPackage",
     "UnknownKeyword",
     "WrongArguments",
 ]
@@ -140,6 +141,27 @@ class FrozenAttribute(InvalidInput, FrozenInstanceError):
     ... except vv.InvalidInput as error:
     ...     print(error)
     softening: a Gravity is frozen; make a changed one with dataclasses.replace(gravity, softening=…)
+    """
+
+
+class MissingPackage(InvalidInput, ImportError):
+    """A package that only a part of visviva uses is not installed; also the `ImportError` that Python would raise.
+
+    Parameters
+    ----------
+    argument : str
+        What was called or given that needs it.
+    message : str
+        Which package, and how to get it.
+
+    Examples
+    --------
+    >>> import visviva as vv
+    >>> try:
+    ...     raise vv.MissingPackage("to_pandas", "the package pandas is not installed: pip install 'visviva[pandas]'")
+    ... except ImportError as error:
+    ...     print(error)
+    to_pandas: the package pandas is not installed: pip install 'visviva[pandas]'
     """
 
 

@@ -6,13 +6,15 @@ A file of version 1 holds ``header`` (UTF-8 JSON as bytes), ``t``, ``status``, `
 ``events/<name>`` of a run with events, whose definitions are in the header, as are the names of bodies. What a run left
 behind for another to go on with is in ``final/held`` and ``final/node``; what the run itself went on with in
 ``final/start_<name>``. Every later version of visviva must load it: `tests/reference` keeps one.
-Files of runs in generalized coordinates are those of `visviva.generalized._saved`.
+Files of runs in generalized coordinates are those of `visviva.generalized._saved`, of counts those of
+`visviva.scattering._saved` and `visviva.scattering._foil_saved`.
 What a file holds is checked when it is loaded (`visviva._stored`), so that nothing fails later.
 """
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from importlib import import_module
+from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 import numpy as np
 
@@ -21,7 +23,7 @@ from visviva._continuation import ARRAYS, SHARED, attached, turning
 from visviva._files import write
 from visviva._keywords import known_keywords
 from visviva._paths import path_text
-from visviva._stored import FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, checked, opened
+from visviva._stored import COUNTS, FOIL, FORMAT, GENERALIZED, GROUPS, VERSION, Damaged, checked, opened
 from visviva._turning import restored, saved
 from visviva.ensemble import EnsembleScene
 from visviva.ensemble_trajectory import EnsembleTrajectory
@@ -37,8 +39,25 @@ if TYPE_CHECKING:
 
     from visviva.generalized import GeneralizedEnsembleTrajectory, GeneralizedTrajectory
     from visviva.recorded import Recorded
+    from visviva.scattering import FoilResult, MonteCarlo
+
+    _Saved: TypeAlias = (
+        Trajectory
+        | EnsembleTrajectory
+        | GeneralizedTrajectory
+        | GeneralizedEnsembleTrajectory
+        | MonteCarlo
+        | FoilResult
+    )
 
 __all__ = ["load", "save"]
+
+# Who reads files of other formats.
+_OTHERS = {
+    GENERALIZED: "visviva.generalized._saved",
+    COUNTS: "visviva.scattering._saved",
+    FOIL: "visviva.scattering._foil_saved",
+}
 
 
 @known_keywords
@@ -101,8 +120,8 @@ def save(path: str | PathLike[str], run: Recorded) -> None:
 @known_keywords
 def load(
     path: str | PathLike[str],
-) -> Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory:
-    """Read a file that ``save`` of a trajectory or of an ensemble wrote, of this or an earlier version.
+) -> Trajectory | EnsembleTrajectory | GeneralizedTrajectory | GeneralizedEnsembleTrajectory | MonteCarlo | FoilResult:
+    """Read a file that ``save`` of a trajectory, an ensemble or counts wrote, of this or an earlier version.
 
     Parameters
     ----------
@@ -111,7 +130,7 @@ def load(
     Returns
     -------
     Trajectory or EnsembleTrajectory, or in generalized coordinates GeneralizedTrajectory or \
-GeneralizedEnsembleTrajectory
+GeneralizedEnsembleTrajectory, or of events that were counted MonteCarlo or FoilResult
         Whichever was saved.
 
     Raises
@@ -134,10 +153,8 @@ GeneralizedEnsembleTrajectory
     with open(name, "rb") as stream:
         try:
             header, arrays = opened(stream)
-            if header["format"] == GENERALIZED:
-                from visviva.generalized._saved import restored as of_coordinates
-
-                return of_coordinates(header, arrays)
+            if header["format"] in _OTHERS:
+                return cast("_Saved", import_module(_OTHERS[header["format"]]).restored(header, arrays))
             checked(header, arrays)
             return _restored(header, arrays)
         except MemoryError:  # a good file may be too large

@@ -8,7 +8,8 @@ import numpy as np
 
 from visviva._keywords import did_you_mean
 from visviva._names import body_indices
-from visviva._style import FRAME, dress, legend_beside, set_box, without_matplotlib
+from visviva._packages import needed
+from visviva._style import FRAME, dress, legend_beside, set_box
 from visviva._text import count
 from visviva.errors import InvalidInput
 
@@ -62,11 +63,7 @@ def new_figure(panels: int, size: tuple[float, float], solid: Collection[int] = 
     visviva.InvalidInput
         If matplotlib is not installed.
     """
-    try:
-        from matplotlib.figure import Figure
-    except ImportError as error:
-        raise without_matplotlib() from error
-    figure = Figure(figsize=size, layout="constrained")
+    figure: Figure = needed("matplotlib.figure", "plot", "plot").Figure(figsize=size, layout="constrained")
     axes = []
     for panel in range(panels):
         kind = "3d" if panel in solid else "rectilinear"

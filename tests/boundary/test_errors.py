@@ -12,6 +12,7 @@ EXAMPLES = [
     (errors.InvalidInput("dt", "expected a positive number"), ValueError, {"argument": "dt"}),
     (errors.UnknownKeyword("dtt", "expected a keyword of run"), TypeError, {"argument": "dtt"}),
     (errors.WrongArguments("dt", "expected with every call of run"), TypeError, {"argument": "dt"}),
+    (errors.MissingPackage("to_pandas", "the package pandas is not installed"), ImportError, {"argument": "to_pandas"}),
     (errors.FrozenAttribute("t0", "a Scene is frozen"), AttributeError, {"argument": "t0"}),
     (errors.ConvergenceError("gave up", 2.5), RuntimeError, {"message": "gave up", "time": 2.5, "trajectory": None}),
     (

@@ -168,6 +168,8 @@ PATHS: list[tuple[Callable[..., Any], tuple[Any, ...]]] = [
     (SWINGS.run(t=1.0).save, NO_PATH),
     (COUNTED.save, NO_PATH),
     (vv.scattering.MonteCarlo.load, NO_PATH),
+    (CAME.save, NO_PATH),
+    (vv.scattering.FoilResult.load, NO_PATH),
     (vv.load, NO_PATH),
     (vv.resume, NO_PATH),
 ]

@@ -86,13 +86,12 @@ def test_first_attempts_are_answered_with_the_call_that_works(
     assert cure in str(refused.value)
 
 
-def test_counts_are_not_taken_for_a_run(tmp_path: Any) -> None:
+def test_counts_are_loaded_where_runs_are(tmp_path: Any) -> None:
     run = vv.scattering.monte_carlo(
         vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=10, seed=1
     )
     run.save(tmp_path / "counts.npz")
-    with pytest.raises(vv.InvalidInput, match=r"visviva\.scattering\.MonteCarlo\.load reads it"):
-        vv.load(tmp_path / "counts.npz")
+    assert vv.load(tmp_path / "counts.npz") == run
 
 
 def test_a_few_places_are_no_path() -> None:

@@ -340,7 +340,7 @@ def test_files_are_read_by_trimesh(monkeypatch):
     monkeypatch.setitem(sys.modules, "trimesh", reader)
     assert vv.rigid.mesh(*vv.rigid.load_mesh("box.stl")).mass == pytest.approx(1.0, rel=1e-15)
     monkeypatch.setitem(sys.modules, "trimesh", None)
-    with pytest.raises(ImportError, match="pip install trimesh"):
+    with pytest.raises(ImportError, match=r"the package trimesh is not installed: pip install 'visviva\[mesh\]'$"):
         vv.rigid.load_mesh("box.stl")
 
 

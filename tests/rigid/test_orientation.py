@@ -190,5 +190,7 @@ def test_nearly_unit_quaternions_are_taken():
 
 def test_what_makes_a_rotation_of_scipy_says_what_it_needs(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setitem(sys.modules, "scipy.spatial.transform", None)
-    with pytest.raises(ImportError, match=r"^to_scipy needs the package scipy: pip install scipy$"):
+    with pytest.raises(
+        ImportError, match=r"^to_scipy: the package scipy is not installed: pip install 'visviva\[scipy\]'$"
+    ):
         vv.rigid.to_scipy([0.0, 0.0, 0.0, 1.0])

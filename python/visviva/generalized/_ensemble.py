@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from visviva.generalized._system import GeneralizedSystem
     from visviva.integrators import Method
-    from visviva.typing import GeneralizedEvent, GeneralizedMethodName, Progress
+    from visviva.typing import Executor, GeneralizedEvent, GeneralizedMethodName, Progress
 
 __all__ = ["GeneralizedEnsemble"]
 
@@ -106,6 +106,12 @@ class GeneralizedEnsemble(Shown):
     def __len__(self) -> int:
         return len(self._states)
 
+    def _first(self, number: int) -> GeneralizedEnsemble:
+        """So many of the copies."""
+        n, states = len(self.system.coordinates), self._states[:number]
+        own = dict(zip(self.system.parameters, self._parameters[:number].T, strict=True))
+        return GeneralizedEnsemble(self.system, states[:, :n], states[:, n:], own)
+
     def __getitem__(self, member: int) -> GeneralizedSystem:
         n, member = len(self.system.coordinates), which(member, len(self))
         state = self._states[member]
@@ -125,6 +131,7 @@ class GeneralizedEnsemble(Shown):
         events: Sequence[GeneralizedEvent] | GeneralizedEvent = (),
         threads: int | None = None,
         progress: Progress = False,
+        executor: Executor | None = None,
     ) -> GeneralizedEnsembleTrajectory:
         """Run all copies; each has the bits that it has alone.
 
@@ -136,6 +143,9 @@ class GeneralizedEnsemble(Shown):
             As in `GeneralizedSystem.run`. With `visviva.events.function` copies run on one thread.
         threads : int, optional
             Threads; all cores if not given. They change no bit.
+        executor : concurrent.futures.Executor or dask.distributed.Client, optional
+            Who runs them: parts of the copies go out, results come home, with the bits of the run without one. Each
+            worker uses `threads` threads, or one. Not beside `visviva.events.function`.
 
         Returns
         -------
@@ -147,7 +157,7 @@ class GeneralizedEnsemble(Shown):
         InvalidInput
             For what cannot be run, before anything runs.
         Interrupted
-            By Ctrl-C.
+            By Ctrl-C; by an executor its ``.trajectory`` has the copies before the first that is not home, or is None.
 
         Examples
         --------
@@ -164,7 +174,13 @@ class GeneralizedEnsemble(Shown):
                 self[member]._check_start()
             except InvalidInput as error:
                 raise InvalidInput(error.argument, f"copy {member}: {error.message}") from None
-        result = self.system._run(asked, self._states, self._parameters, threads, progress)
+        result = None
+        if executor is not None:
+            from visviva.generalized._copies_apart import run_apart
+
+            result = run_apart(self, asked, executor, threads, progress)
+        if result is None:
+            result = self.system._run(asked, self._states, self._parameters, threads, progress)
         out = GeneralizedEnsembleTrajectory(self, result, asked)
         if result["interrupted"]:
             raise Interrupted("the ensemble was interrupted", out)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any, TypeAlias, cast
 
 from visviva._keywords import known_keywords
+from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.generalized._nodes import FUNCTIONS, SWITCH, Node, Nodes
 
@@ -29,14 +30,7 @@ _INSTEAD = {
 
 def sympy(argument: str = "L") -> Any:
     """Give the module, or say how to get it, naming the argument that needs it."""
-    try:
-        import sympy
-    except ImportError:
-        raise InvalidInput(
-            argument,
-            "expressions need SymPy: pip install 'visviva[symbolic]', or pass a function of (position, velocity, t)",
-        ) from None
-    return sympy
+    return needed("sympy", argument, "symbolic", "pass a function of (position, velocity, t)")
 
 
 class _Time:

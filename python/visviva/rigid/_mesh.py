@@ -9,6 +9,7 @@ import numpy as np
 from visviva import _core
 from visviva._arrays import float_array, positive
 from visviva._keywords import known_keywords
+from visviva._packages import needed
 from visviva._paths import path_text
 from visviva.errors import InvalidInput
 from visviva.rigid._mass import MassProperties, is_a_body
@@ -108,7 +109,7 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     ------
     InvalidInput
         For what is no path.
-    ImportError
+    MissingPackage
         Without trimesh.
 
     Examples
@@ -123,11 +124,7 @@ def load_mesh(path: str | PathLike[str]) -> tuple[NDArray[np.float64], NDArray[n
     ...     assert vertices.shape == (4, 3) and faces.shape == (4, 3)
     """
     file = path_text("path", path)
-    try:
-        import trimesh
-    except ImportError as error:
-        raise ImportError("load_mesh reads files with trimesh: pip install trimesh") from error
-    found: Any = trimesh.load_mesh(file, process=False)
+    found: Any = needed("trimesh", "load_mesh", "mesh").load_mesh(file, process=False)
     return np.array(found.vertices, dtype=np.float64), np.array(found.faces, dtype=np.int64)
 
 

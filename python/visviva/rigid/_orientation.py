@@ -9,6 +9,7 @@ import numpy as np
 
 from visviva import _core
 from visviva._keywords import known_keywords
+from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.rigid._arguments import mapped, rows
 
@@ -321,8 +322,8 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
     ------
     InvalidInput
         For a quaternion whose length is not 1 within 1e-6.
-    ImportError
-        Without the package scipy: ``pip install scipy``.
+    MissingPackage
+        Without the package scipy: ``pip install 'visviva[scipy]'``.
 
     Examples
     --------
@@ -330,11 +331,9 @@ def to_scipy(quaternion: ArrayLike) -> Rotation:
     >>> vv.rigid.to_scipy([0.0, 0.0, 1.0, 0.0]).apply([1.0, 0.0, 0.0])
     array([-1.,  0.,  0.])
     """
-    try:
-        from scipy.spatial.transform import Rotation
-    except ImportError as error:
-        raise ImportError("to_scipy needs the package scipy: pip install scipy") from error
-    return Rotation.from_quat(_form("normalized", (4,), ("quaternion", quaternion, (4,))))
+    module = needed("scipy.spatial.transform", "to_scipy")
+    made: Rotation = module.Rotation.from_quat(_form("normalized", (4,), ("quaternion", quaternion, (4,))))
+    return made
 
 
 def _form(name: str, result: tuple[int, ...], argument: tuple[str, ArrayLike, tuple[int, ...]]) -> NDArray[np.float64]:

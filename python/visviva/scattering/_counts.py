@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from visviva._packages import needed
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from numpy.typing import NDArray
@@ -182,11 +184,10 @@ def plot_foil(tally: FoilTally, ax: Axes | None) -> Axes:
 
 def plot_joint(tally: JointTally, ax: Axes | None) -> Axes:
     """A picture of a histogram of two quantities; see `JointTally.plot`."""
-    from matplotlib.colors import LogNorm, Normalize
-
     from visviva.errors import InvalidInput
     from visviva.plot import axes_or_new
 
+    colors = needed("matplotlib.colors", "plot", "plot")
     if len(tally.name) != 2:
         raise InvalidInput("plot", f"expected a tally of two quantities, got {len(tally.name)}: sum over the others")
     axes = axes_or_new(ax)
@@ -194,7 +195,8 @@ def plot_joint(tally: JointTally, ax: Axes | None) -> Axes:
     values = tally.values()
     seen = values[values > 0.0]
     wide = bool(seen.size) and seen.max() > 30.0 * seen.min()
-    norm: Any = LogNorm(seen.min(), seen.max()) if wide else Normalize(0.0, float(seen.max()) if seen.size else 1.0)
+    most = float(seen.max()) if seen.size else 1.0
+    norm = colors.LogNorm(seen.min(), most) if wide else colors.Normalize(0.0, most)
     # What counted nothing is left white, and is no color of the scale.
     shown = axes.pcolormesh(across, up, np.where(values > 0.0, values, np.nan).T, norm=norm, cmap="viridis_r")
     axes.figure.colorbar(shown, ax=axes, label="events per bin")

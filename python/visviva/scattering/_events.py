@@ -10,11 +10,13 @@ from visviva import _core
 from visviva._arrays import whole_number
 from visviva._declared import checked_potential
 from visviva._keywords import did_you_mean, known_keywords
+from visviva._packages import needed
 from visviva._paths import path_text
 from visviva._progress import callback
-from visviva.errors import Interrupted, InvalidInput
+from visviva.errors import Interrupted
 from visviva.scattering._beam import Spectrum, Spread, described
-from visviva.scattering._monte_carlo import _beam, _which
+from visviva.scattering._monte_carlo import _beam
+from visviva.scattering._spread import which
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -99,7 +101,7 @@ def scattering_events(
     """
     checked_potential("potential", potential)
     beam = _beam(potential, beam_energy, masses, b_max, energy_spread, divergence, spot, importance, channels)
-    first, count, key = _which(first_event, n_events, seed)
+    first, count, key = which(first_event, n_events, seed)
     several = None if threads is None else whole_number("threads", threads, 1, 1024)
     request: dict[str, Any] = {"beam": described(beam), "seed": key, "threads": several}
     with callback(progress, "events") as report:
@@ -147,11 +149,7 @@ def _columns(
 
 def _stream(request: dict[str, Any], first: int, count: int, report: Report | None, path: str) -> None:
     """Write events to a Parquet file, a row group at a time."""
-    try:
-        import pyarrow
-        from pyarrow import parquet
-    except ImportError as error:
-        raise InvalidInput("to", "pyarrow is not installed; pip install 'visviva[parquet]'") from error
+    pyarrow, parquet = (needed(module, "to", "parquet") for module in ("pyarrow", "pyarrow.parquet"))
     done = 0
 
     def told(part: int, _: int) -> None:

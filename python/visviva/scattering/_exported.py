@@ -8,8 +8,8 @@ from __future__ import annotations
 from abc import abstractmethod
 from typing import TYPE_CHECKING, Any
 
-from visviva._exported import needed
 from visviva._keywords import known_keywords
+from visviva._packages import needed
 from visviva.scattering._weights import to_hist
 
 if TYPE_CHECKING:
@@ -52,7 +52,7 @@ class ExportedTally:
 
         Raises
         ------
-        ImportError
+        MissingPackage
             Without the package hist.
 
         Examples
@@ -83,7 +83,7 @@ class ExportedTally:
 
         Raises
         ------
-        ImportError
+        MissingPackage
             Without the package xarray: ``pip install 'visviva[xarray]'``.
 
         Examples
@@ -107,7 +107,7 @@ def intervals(name: str, edges: NDArray[np.float64]) -> IntervalIndex:
 
     Raises
     ------
-    ImportError
+    MissingPackage
         Without the package pandas.
     """
     index: IntervalIndex = needed("pandas", "to_pandas").IntervalIndex.from_breaks(edges, closed="left", name=name)
@@ -121,7 +121,7 @@ def dataset(
 
     Raises
     ------
-    ImportError
+    MissingPackage
         Without the package xarray.
     """
     module = needed("xarray", "to_xarray")

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, TypeAlias, cast
+from typing import TYPE_CHECKING, Any, Literal, TypeAlias
 
 import numpy as np
 
 from visviva import _core
-from visviva._arrays import number, positive, positive_array, whole_number
+from visviva._arrays import number, positive, positive_array
 from visviva._html import Record
 from visviva._keywords import known_keywords, one_of
-from visviva._progress import callback
-from visviva.errors import Interrupted, InvalidInput
+from visviva.errors import InvalidInput
 from visviva.scattering._bins import asked_for
 from visviva.scattering._foil_material import Ion, Material, ion_of, losses_of, material_of, potential_of, screened
 from visviva.scattering._foil_result import USUAL_TALLIES, Bombardment, FoilResult
-from visviva.scattering._foil_tally import FoilTally
-from visviva.scattering._monte_carlo import _which
+from visviva.scattering._spread import which
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
@@ -26,7 +24,7 @@ if TYPE_CHECKING:
 
     from visviva.potentials import Potential
     from visviva.scattering._bins import Bins
-    from visviva.typing import FoilTallyName, IonHistory, IonName, MaterialName, Progress, ScreeningName
+    from visviva.typing import Executor, FoilTallyName, IonHistory, IonName, MaterialName, Progress, ScreeningName
 
 __all__ = ["Foil"]
 
@@ -151,6 +149,7 @@ class Foil(Record):
         threads: int | None = None,
         first_event: int = 0,
         progress: Progress = False,
+        executor: Executor | None = None,
     ) -> FoilResult:
         """Send ions and count what comes through, what comes back and what stops.
 
@@ -194,6 +193,8 @@ class Foil(Record):
             Index of the first event.
         progress : bool or callable, optional
             True for a bar, or ``f(done, total)``.
+        executor : concurrent.futures.Executor or dask.distributed.Client, optional
+            Who counts: as of `monte_carlo`; each range of events builds its table of angles again.
 
         Returns
         -------
@@ -219,31 +220,11 @@ class Foil(Record):
         '1.74e-05'
         """
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
-        first, count, key = _which(first_event, n_events, seed)
-        asked = []
-        for axes in asked_for(tally, bins):
+        asked = asked_for(tally, bins)
+        for axes in asked:
             if len(axes) > 1:
                 raise InvalidInput("tally", f"expected single quantities, got {tuple(name for name, _ in axes)}")
-            asked += axes
-        with callback(progress, "ions") as report:
-            done, stopped, units, told, fates, columns = _core.foil_run(
-                foil=self._described(hit.ion),
-                run=hit._to_core(),
-                n_events=count,
-                seed=key,
-                first_event=first,
-                tallies=asked,
-                threads=None if threads is None else whole_number("threads", threads, 1, 1024),
-                progress=report,
-            )
-        tallies = tuple(
-            FoilTally(cast("FoilTallyName", name), edges, sums, units, done) for name, edges, sums in columns
-        )
-        events = ((key, first, first + done),)
-        result = FoilResult(hit, events, fates, units, tallies, told[0], told[1])
-        if stopped or done < count:
-            raise Interrupted(f"interrupted after {done} of {count} events", result=result)
-        return result
+        return hit._run(asked, n_events, seed, first_event, threads, progress, executor)
 
     def history(
         self,
@@ -287,7 +268,7 @@ class Foil(Record):
         ('transmitted', True)
         """
         hit = self._hit(ion, beam_energy, lowest_energy, incidence, collisions, forced_angle)
-        first, _, key = _which(event, 1, seed)
+        first, _, key = which(event, 1, seed)
         numbers, directions, elements, end = _core.foil_history(
             foil=self._described(hit.ion), run=hit._to_core(), seed=key, event=first
         )

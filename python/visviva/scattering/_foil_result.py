@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, Literal, cast
 
 import numpy as np
 
@@ -13,7 +13,9 @@ from visviva._keywords import known_keywords, one_of
 from visviva._made_by import made_by
 from visviva.errors import InvalidInput
 from visviva.scattering._foil_tally import FoilTally, Fraction, summed
-from visviva.scattering._of_events import is_zero, merged
+from visviva.scattering._goes_on import GoesOn
+from visviva.scattering._of_events import Counted
+from visviva.scattering._spread import counted, which
 from visviva.scattering._weights import read_only
 
 if TYPE_CHECKING:
@@ -22,9 +24,10 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from numpy.typing import NDArray
 
+    from visviva.scattering._bins import Axes
     from visviva.scattering._foil import Foil
     from visviva.scattering._foil_material import Ion
-    from visviva.typing import FoilTallyName
+    from visviva.typing import Executor, FoilTallyName, Progress
 
 __all__ = ["USUAL_TALLIES", "Bombardment", "FoilResult"]
 
@@ -36,6 +39,8 @@ USUAL_TALLIES: tuple[FoilTallyName, ...] = (
     "reflected_energy",
     "stopped_depth",
 )
+#: So that no sum of weights in units is beyond 64 bits.
+MOST_IONS = 2**39
 _FATES = ("transmitted", "reflected", "stopped", "missed")
 
 
@@ -85,10 +90,35 @@ class Bombardment(Record):
             "forced_angle": self.forced_angle,
         }
 
+    def _run(
+        self,
+        asked: list[Axes],
+        n_events: object,
+        seed: object,
+        first_event: object,
+        threads: object,
+        progress: Progress,
+        executor: Any,
+    ) -> FoilResult:
+        request = {
+            "foil": self.foil._described(self.ion),
+            "run": self._to_core(),
+            "tallies": [axis for (axis,) in asked],
+        }
+        events = which(first_event, n_events, seed, MOST_IONS)
+        return counted("foil_run", request, events, threads, progress, executor, self._made, "ions")
+
+    def _made(self, came: tuple[Any, ...], events: tuple[tuple[int, int, int], ...]) -> FoilResult:
+        done, _, units, told, sums, columns = came
+        tallies = tuple(
+            FoilTally(cast("FoilTallyName", name), edges, each, units, done) for name, edges, each in columns
+        )
+        return FoilResult(self, events, sums, units, tallies, told[0], told[1])
+
 
 @known_keywords
 @dataclass(frozen=True, eq=False, repr=False)
-class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â€” as its tallies
+class FoilResult(GoesOn, Counted, Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â€” as its tallies
     """The tallies of a run by name. Results of the same bombardment add up, bit for bit, if no event is in both.
 
     Attributes
@@ -132,43 +162,6 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
     def __post_init__(self) -> None:
         made_by(self, "a run of a Foil", sums=(self.sums, np.ndarray))
         read_only(self.sums)
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()
-
-    @property
-    def n_events(self) -> int:
-        """Ions that came.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out.n_events
-        1000
-        """
-        return sum(end - first for _, first, end in self.events)
-
-    @property
-    def next_event(self) -> int:
-        """The ``first_event`` of a run that goes on after this one.
-
-        Raises
-        ------
-        InvalidInput
-            If the events are of several seeds.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> out = vv.scattering.Foil("gold", 0.4).run("alpha", beam_energy=7.687e6, n_events=1000, seed=1)
-        >>> out.next_event
-        1000
-        """
-        if len({seed for seed, _, _ in self.events}) > 1:
-            raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
-        return self.events[-1][2]
 
     @property
     def transmitted(self) -> int:
@@ -243,19 +236,12 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
     def __add__(self, other: FoilResult) -> FoilResult:
         if not isinstance(other, FoilResult):
             return NotImplemented
-        for name in (field.name for field in fields(self.bombardment)):
-            mine, theirs = getattr(self.bombardment, name), getattr(other.bombardment, name)
-            if mine != theirs:
-                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
+        names = (field.name for field in fields(self.bombardment))
+        events = self._joined_events(other, names, self.bombardment, other.bombardment)
         if list(self) != list(other):
             raise InvalidInput("other", f"expected the tallies {list(self)}, got {list(other)}")
-        events = merged((*self.events, *other.events))
         tallies = tuple(self[name]._joined(other[name]) for name in self)
         return replace(self, events=events, sums=self.sums + other.sums, tallies=tallies)
-
-    def __radd__(self, other: int) -> FoilResult:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented
 
     def _sheet(self) -> Sheet:
         fates = [(name, f"{number}", "", "") for name, number in zip(_FATES, self.sums[:, 0].tolist(), strict=True)]
@@ -305,3 +291,13 @@ class FoilResult(Shown, Mapping["FoilTallyName", FoilTally]):  # noqa: PLW1641 â
         for (axes, _), tally in zip(panels, drawn, strict=True):
             tally.plot(ax=axes)
         return figure
+
+    def _again(self, n_events: int, threads: int | None, progress: Progress, executor: Executor | None) -> FoilResult:
+        asked: list[Axes] = [[(tally.name, tally.edges)] for tally in self.tallies]
+        seed, first = self.events[0][0], self.next_event
+        return self.bombardment._run(asked, n_events, seed, first, threads, progress, executor)
+
+    def _kept(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        from visviva.scattering._foil_saved import kept
+
+        return kept(self)

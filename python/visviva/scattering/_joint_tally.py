@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._exported import needed
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
+from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.scattering._counts import plot_joint
 from visviva.scattering._exported import ExportedTally, intervals
@@ -128,7 +128,7 @@ class JointTally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — as Tally
 
         Raises
         ------
-        ImportError
+        MissingPackage
             Without the package pandas: ``pip install 'visviva[pandas]'``.
 
         Examples

@@ -7,19 +7,16 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
-from visviva import _core
-from visviva._arrays import float_array, number, positive, whole_number
+from visviva._arrays import float_array, number, positive
 from visviva._declared import checked_potential
 from visviva._keywords import known_keywords
-from visviva._progress import callback
-from visviva.errors import Interrupted
 from visviva.scattering._beam import Beam, Spectrum, Spread, as_spread, described
 from visviva.scattering._bins import asked_for
 from visviva.scattering._channels import Channel, as_channels
 from visviva.scattering._importance import LargeAngles, Strata, resolved
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._result import MonteCarlo
-from visviva.scattering._spread import spread
+from visviva.scattering._spread import counted, which
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
@@ -217,12 +214,6 @@ def _pair(masses: object) -> tuple[float, float]:
     return (float(pair[0]), float(pair[1]))
 
 
-def _which(first_event: object, n_events: object, seed: object) -> tuple[int, int, int]:
-    first = whole_number("first_event", first_event, 0, 2**63 - 1)
-    count = whole_number("n_events", n_events, 1, 2**63 - first)
-    return first, count, whole_number("seed", seed, 0, 2**64 - 1)
-
-
 def _run(
     beam: Beam,
     asked: list[Axes],
@@ -233,26 +224,14 @@ def _run(
     progress: Progress,
     executor: Any,
 ) -> MonteCarlo:
-    first, count, key = _which(first_event, n_events, seed)
-    several = None if threads is None else whole_number("threads", threads, 1, 1024)
-    request: dict[str, Any] = {"beam": described(beam), "tallies": asked, "seed": key, "threads": several}
-    with callback(progress, "events") as report:
-        if executor is not None:
-            counted = spread(executor, request, first, count, report)
-        else:
-            counted = [_core.monte_carlo(**request, n_events=count, first_event=first, progress=report)]
-    results, at = [], first
-    for events, _, smallest, tables, columns in counted:
+    request = {"beam": described(beam), "tallies": asked}
+
+    def made(came: tuple[Any, ...], events: tuple[tuple[int, int, int], ...]) -> MonteCarlo:
+        _, _, smallest, tables, columns = came
         found = replace(beam, smallest_angle=smallest, tables=tuple(table[0] for table in tables))
-        which = ((key, at, at + events),)
-        at += events
-        results.append(MonteCarlo(found, which, tuple(_tally(column, found, which) for column in columns)))
-    result: MonteCarlo | None = sum(results[1:], start=results[0]) if results else None
-    if result is None or at - first < count:
-        raise Interrupted(f"interrupted after {at - first} of {count} events", result=result)
-    if counted[-1][1]:
-        raise Interrupted(f"interrupted after {count} of {count} events", result=result)
-    return result
+        return MonteCarlo(found, events, tuple(_tally(column, found, events) for column in columns))
+
+    return counted("monte_carlo", request, which(first_event, n_events, seed), threads, progress, executor, made)
 
 
 def _tally(column: tuple[Any, ...], beam: Beam, events: tuple[tuple[int, int, int], ...]) -> Tally | JointTally:

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any, Self
 
+from visviva._stored import Damaged
 from visviva.errors import InvalidInput
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from visviva.scattering._beam import Beam
 
-__all__ = ["OfEvents", "is_zero", "merged"]
+__all__ = ["Counted", "OfEvents", "checked_events"]
 
 
-class OfEvents:
-    """What a result and each of its tallies know: the beam and which of its events."""
+class Counted:
+    """What is of events, and adds up where the rest is the same."""
 
-    beam: Beam
     events: tuple[tuple[int, int, int], ...]
 
     @property
@@ -32,6 +34,33 @@ class OfEvents:
         """
         return sum(end - first for _, first, end in self.events)
 
+    def __radd__(self, other: int) -> Self:
+        """Begin a `sum`."""
+        return self if type(other) is int and other == 0 else NotImplemented
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self.__post_init__()  # a pickle does not keep that arrays are read-only
+
+    def __post_init__(self) -> None:
+        pass
+
+    def _joined_events(
+        self, other: Counted, names: Iterable[str], mine: object, theirs: object
+    ) -> tuple[tuple[int, int, int], ...]:
+        """Refuse what was scattered by something else, as these names of it tell, and events that are in both."""
+        for name in names:
+            one, another = getattr(mine, name), getattr(theirs, name)
+            if one != another:
+                raise InvalidInput("other", f"expected the same {name}, {one!r}, got {another!r}")
+        return _merged((*self.events, *other.events))
+
+
+class OfEvents(Counted):
+    """What a result and each of its tallies know: the beam and which of its events."""
+
+    beam: Beam
+
     @property
     def b_max(self) -> float:
         """Radius of the disc of impact parameters, in the units of the potential's lengths.
@@ -46,33 +75,32 @@ class OfEvents:
         """
         return self.beam.b_max
 
-    def __radd__(self, other: int) -> Self:
-        """Begin a `sum`."""
-        return self if is_zero(other) else NotImplemented
-
-    def __setstate__(self, state: dict[str, Any]) -> None:
-        self.__dict__.update(state)
-        self.__post_init__()  # a pickle does not keep that arrays are read-only
-
-    def __post_init__(self) -> None:
-        pass
-
     def _merged_events(self, other: OfEvents) -> tuple[tuple[int, int, int], ...]:
         """Refuse another beam and events that are in both."""
         names = ("potential", "beam_energy", "masses", "b_max", "energy_spread", "divergence", "spot", "importance")
-        for name in (*names, "channels", "tables"):
-            mine, theirs = getattr(self.beam, name), getattr(other.beam, name)
-            if mine != theirs:
-                raise InvalidInput("other", f"expected the same {name}, {mine!r}, got {theirs!r}")
-        return merged((*self.events, *other.events))
+        return self._joined_events(other, (*names, "channels", "tables"), self.beam, other.beam)
 
 
-def is_zero(value: object) -> bool:
-    """Whether it is the 0 with which `sum` begins."""
-    return type(value) is int and value == 0
+def checked_events(told: list[Any]) -> tuple[tuple[int, int, int], ...]:
+    """The events of a file.
+
+    Raises
+    ------
+    Damaged
+        If they are none, or not sorted.
+    """
+    events = tuple((seed, first, end) for seed, first, end in told)
+    numbers = [number for each in events for number in each]
+    if not events or not all(type(number) is int for number in numbers):
+        raise Damaged("the file has counts of no events")
+    if not all(0 <= seed < 2**64 and 0 <= first < end <= 2**63 for seed, first, end in events):
+        raise Damaged("the file has counts of events that there are not")
+    if events != _merged(events):
+        raise Damaged("the file has events that are not sorted")
+    return events
 
 
-def merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
+def _merged(ranges: tuple[tuple[int, int, int], ...]) -> tuple[tuple[int, int, int], ...]:
     """Sort and join ranges of events; an event that is in two would count twice."""
     joined: list[tuple[int, int, int]] = []
     for seed, first, end in sorted(ranges):

@@ -5,25 +5,21 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from operator import add
-from typing import TYPE_CHECKING, overload
+from typing import TYPE_CHECKING, Any, overload
 
-import numpy as np
-
-from visviva._files import write
 from visviva._html import Sheet, Shown
 from visviva._keywords import known_keywords
-from visviva._paths import path_text
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import Beam, Spectrum
 from visviva.scattering._counts import theory_is_known
+from visviva.scattering._goes_on import GoesOn
 from visviva.scattering._joint_tally import JointTally
 from visviva.scattering._of_events import OfEvents
-from visviva.scattering._saved import kept, restored
+from visviva.scattering._saved import kept
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from os import PathLike
 
     from matplotlib.figure import Figure
 
@@ -35,7 +31,7 @@ __all__ = ["MonteCarlo"]
 
 @known_keywords
 @dataclass(frozen=True, eq=False)
-class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyName]", Tally | JointTally]):  # noqa: PLW1641 — as its tallies
+class MonteCarlo(GoesOn, OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyName]", Tally | JointTally]):  # noqa: PLW1641 — as its tallies
     """The tallies of a run by name. Results of the same beam add up, bit for bit, if no event is in both.
 
     Units: energies and lengths are those of the potential, masses in one unit, any; angles in radians.
@@ -124,27 +120,6 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
         """
         return self.beam.smallest_angle
 
-    @property
-    def next_event(self) -> int:
-        """The ``first_event`` of a run that goes on after this one.
-
-        Raises
-        ------
-        InvalidInput
-            If the events are of several seeds.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> run = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> run.next_event
-        1000
-        """
-        if len({seed for seed, _, _ in self.events}) > 1:
-            raise InvalidInput("next_event", "expected events of one seed, got several; see .events")
-        return self.events[-1][2]
-
     @overload
     def __getitem__(self, name: TallyName) -> Tally: ...
     @overload
@@ -225,108 +200,10 @@ class MonteCarlo(OfEvents, Shown, Mapping["TallyName | tuple[TallyName, TallyNam
                 tally.plot(ax=upper)
         return figure
 
-    @known_keywords
-    def resume(
-        self, n_events: int, *, threads: int | None = None, progress: Progress = False, executor: Executor | None = None
-    ) -> MonteCarlo:
-        """Go on with the next ``n_events``: the same bits as one run of them all.
-
-        Parameters
-        ----------
-        n_events : int
-            How many more, from `next_event` on.
-        threads, progress, executor
-            As of `monte_carlo`.
-
-        Returns
-        -------
-        MonteCarlo
-            Of all events.
-
-        Raises
-        ------
-        InvalidInput
-            As `next_event` and `monte_carlo`.
-        Interrupted
-            As `monte_carlo`: its ``.result`` begins with this one.
-
-        Examples
-        --------
-        >>> import visviva as vv
-        >>> beam = dict(beam_energy=1.0, masses=(1.0, 4.0), b_max=2.0, seed=1)
-        >>> part = vv.scattering.monte_carlo(vv.potentials.Yukawa(1.0, 1.0), n_events=600, **beam)
-        >>> part.resume(400) == vv.scattering.monte_carlo(vv.potentials.Yukawa(1.0, 1.0), n_events=1000, **beam)
-        True
-        """
-        from visviva.errors import Interrupted
+    def _again(self, n_events: int, threads: int | None, progress: Progress, executor: Executor | None) -> MonteCarlo:
         from visviva.scattering._monte_carlo import again
 
-        try:
-            return self + again(self, n_events, threads, progress, executor)
-        except Interrupted as stopped:
-            stopped.result = self + stopped.result if isinstance(stopped.result, MonteCarlo) else self
-            raise
+        return again(self, n_events, threads, progress, executor)
 
-    @known_keywords
-    def save(self, path: str | PathLike[str]) -> None:
-        """Write the result to a ``.npz`` file; `load` reads it.
-
-        Parameters
-        ----------
-        path : path-like
-            Written exactly as given; the file appears whole or not at all.
-
-        Raises
-        ------
-        visviva.InvalidInput
-            For what is no path.
-        OSError
-            Where the file cannot be written.
-
-        Examples
-        --------
-        >>> import pathlib, tempfile, visviva as vv
-        >>> run = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0,
-        ...     n_events=1000, seed=1, bins=4)
-        >>> path = pathlib.Path(tempfile.mkdtemp()) / "counts.npz"
-        >>> run.save(path)
-        >>> vv.scattering.MonteCarlo.load(path) == run
-        True
-        """
-        write(path, *kept(self.beam, self.events, self.tallies))
-
-    @staticmethod
-    @known_keywords
-    def load(path: str | PathLike[str]) -> MonteCarlo:
-        """Read a file that `save` wrote.
-
-        Parameters
-        ----------
-        path : path-like
-
-        Raises
-        ------
-        InvalidInput
-            If the file is no such file, is damaged, or was written by a later version.
-
-        Examples
-        --------
-        >>> import pathlib, tempfile, visviva as vv
-        >>> path = pathlib.Path(tempfile.mkdtemp()) / "counts.npz"
-        >>> result = vv.scattering.monte_carlo(
-        ...     vv.potentials.HardSphere(1.0), beam_energy=1.0, masses=(1.0, 4.0), b_max=1.0, n_events=1000, seed=1)
-        >>> result.save(path)
-        >>> vv.scattering.MonteCarlo.load(path) == result
-        True
-        """
-        with open(path_text("path", path), "rb") as stream:
-            try:
-                with np.load(stream, allow_pickle=False) as file:
-                    return MonteCarlo(*restored({name: file[name] for name in file.files}))
-            except MemoryError:
-                raise
-            except Exception as error:  # NumPy, zipfile and json raise what they please
-                raise InvalidInput(
-                    "path", f"expected counts that visviva saved, but {str(path)!r} has none: {error}"
-                ) from error
+    def _kept(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        return kept(self.beam, self.events, self.tallies)

@@ -1,4 +1,4 @@
-"""Files of counts: what `MonteCarlo.save` writes and `MonteCarlo.load` reads.
+"""Files of counts: what `MonteCarlo.save` writes and `visviva.load` reads.
 
 A file holds ``header`` and arrays. The header has the beam, the events and what each tally is; arrays are those of the
 tallies, by their numbers: ``0/edges``, ``0/counts`` and ``0/reachable``, of two quantities ``0/edges0``, ``0/edges1``
@@ -7,26 +7,30 @@ and ``0/flow``, and with `importance` ``0/by_stratum``. Versions load what earli
 
 from __future__ import annotations
 
-import json
 from typing import TYPE_CHECKING, Any, cast
 
 import numpy as np
 
+from visviva._stored import COUNTS, check_all, check_version
 from visviva.potentials import potential_from_core
 from visviva.scattering._beam import Beam, Spectrum, Spread
 from visviva.scattering._channels import Channel
 from visviva.scattering._importance import Strata
 from visviva.scattering._joint_tally import JointTally
+from visviva.scattering._of_events import checked_events
 from visviva.scattering._tally import Tally
 
 if TYPE_CHECKING:
+    from numpy.typing import NDArray
+
+    from visviva.scattering._result import MonteCarlo
     from visviva.typing import TallyName
 
 __all__ = ["kept", "restored"]
 
 # Version 2 knows beams that differ in energy, direction and place, version 3 strata, version 4 channels, version 5
 # their excitation functions.
-_FORMAT, _VERSION = "visviva scattering", 5
+_VERSION = 5
 
 
 def kept(
@@ -36,7 +40,7 @@ def kept(
     energy = beam.beam_energy
     lines = energy if isinstance(energy, Spectrum) else None
     header = {
-        "format": _FORMAT,
+        "format": COUNTS,
         "version": _VERSION,
         "potential": beam.potential._to_core(),
         "beam_energy": None if lines else energy,
@@ -74,25 +78,38 @@ def _told(tally: Tally | JointTally) -> dict[str, Any]:
     return {name: getattr(tally, name) for name in ("name", "underflow", "overflow", "covered", "captured")}
 
 
+def _arrays(tallies: list[dict[str, Any]], stratified: bool) -> dict[str, tuple[str, tuple[str | int, ...]]]:
+    """Which arrays such a file has, with their types and axes."""
+    shapes: dict[str, tuple[str, tuple[str | int, ...]]] = {}
+    for index, told in enumerate(tallies):
+        one = isinstance(told["name"], str)
+        own = {"edges": "edges", "counts": "bins", "reachable": "bins"} if one else {"edges0": "0", "edges1": "1"}
+        for name, axis in own.items():
+            shapes[f"{index}/{name}"] = ("u8" if name == "counts" else "f8", (f"{axis} of {index}",))
+        if not one:
+            shapes[f"{index}/flow"] = ("u8", (f"rows of {index}", f"columns of {index}"))
+        if stratified:
+            shapes[f"{index}/by_stratum"] = ("u8", ("strata", f"slots of {index}"))
+    return shapes
+
+
 def _spread(told: list[Any] | None) -> Spread | None:
     if told is None:
         return None
     return {"gaussian": Spread.gaussian, "uniform": Spread.uniform}[told[0]](told[1])
 
 
-def restored(
-    arrays: dict[str, Any],
-) -> tuple[Beam, tuple[tuple[int, int, int], ...], tuple[Tally | JointTally, ...]]:
-    """Beam, events and tallies of such a file; counts that do not add up to its events are refused.
+def restored(header: dict[str, Any], arrays: dict[str, NDArray[Any]]) -> MonteCarlo:
+    """The result of such a file; counts that do not add up to its events are refused.
 
     Raises
     ------
     Exception
-        Of whatever kind, if something is missing or does not fit: `MonteCarlo.load` puts it in words.
+        Of whatever kind, if something is missing or does not fit: `visviva.load` puts it in words.
     """
-    header = json.loads(arrays["header"].tobytes())
-    if header["format"] != _FORMAT or header["version"] > _VERSION:
-        raise ValueError(f"it holds a {header['format']!r} of version {header['version']}")
+    from visviva.scattering._result import MonteCarlo
+
+    check_version(header, _VERSION)
     lines, strata = header["spectrum"], header.get("importance")
     beam = Beam(
         potential_from_core(header["potential"]),
@@ -107,9 +124,10 @@ def restored(
         None if strata is None else Strata(*strata),
         tuple(Channel(*told) for told in header.get("channels", [])),
     )
-    events = tuple((seed, first, end) for seed, first, end in header["events"])
+    events = checked_events(header["events"])
     tallies: list[Tally | JointTally] = []
     tally: Tally | JointTally
+    check_all(_arrays(header["tallies"], strata is not None), arrays, {})
     for index, told in enumerate(header["tallies"]):
         by_stratum = None if strata is None else arrays[f"{index}/by_stratum"]
         if isinstance(told["name"], str):
@@ -130,7 +148,7 @@ def restored(
                 by_stratum,
             )
             slots = np.concatenate([[flows[0]], counts, [flows[1], captured]])
-            if len(edges) != len(counts) + 1 or len(reachable) != len(counts):
+            if len(edges) != len(counts) + 1:
                 raise ValueError("its edges and counts do not fit")
         else:
             several = tuple(arrays[f"{index}/edges{axis}"] for axis in range(len(told["name"])))
@@ -144,4 +162,4 @@ def restored(
         if (total := sum(slots.tolist())) != tally.n_events:
             raise ValueError(f"its counts are those of {total} events, not of {tally.n_events}")
         tallies.append(tally)
-    return beam, events, tuple(tallies)
+    return MonteCarlo(beam, events, tuple(tallies))

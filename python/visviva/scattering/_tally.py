@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 import numpy as np
 
 from visviva import _core
-from visviva._exported import needed
 from visviva._html import Record
 from visviva._keywords import known_keywords
 from visviva._made_by import made_by
+from visviva._packages import needed
 from visviva.errors import InvalidInput
 from visviva.scattering._beam import described
 from visviva.scattering._counts import plot_tally, poisson_interval
@@ -319,7 +319,7 @@ class Tally(OfEvents, ExportedTally, Record):  # noqa: PLW1641 — it holds arra
 
         Raises
         ------
-        ImportError
+        MissingPackage
             Without the package pandas: ``pip install 'visviva[pandas]'``.
 
         Examples

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from visviva._exported import needed
+from visviva._packages import needed
 
 if TYPE_CHECKING:
     from boost_histogram.storage import Storage
