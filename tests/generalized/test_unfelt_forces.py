@@ -115,3 +115,13 @@ def test_jumps_and_poles_are_no_zeros() -> None:
     turning = vv.systems.pendulum(position=[0.1], velocity=[8.0])
     wrapped = turning.poincare(lambda q, v, t, **_: np.arctan2(np.sin(q[0]), np.cos(q[0])), 5.0, direction=0)
     np.testing.assert_allclose(wrapped.position[:, 0] / (2.0 * np.pi), np.arange(1.0, 6.0), atol=1e-12)
+
+
+@pytest.mark.parametrize(("middle", "width"), [(50, 0.01), (20, 0.01), (7.77, 0.001)])
+def test_a_short_pulse_that_no_look_ahead_meets(middle: float, width: float) -> None:
+    """It begins with velocities without digits, on which steps came to nothing: 10⁸ did not pass the pulse."""
+    force = 100 * x * sp.exp(-(((vv.time - middle) / sp.Float(width)) ** 2))
+    out = vv.Lagrangian(vx**2 / 2 + force, [x], position=[0.0]).run(100.0, max_steps=100_000)
+    kick = 100 * np.sqrt(np.pi) * width
+    assert out.velocity[-1, 0] == pytest.approx(kick, rel=1e-9)
+    assert out.position[-1, 0] == pytest.approx(kick * (100.0 - middle), rel=1e-9)

@@ -60,3 +60,47 @@ def test_a_light_body_on_a_long_ellipse(method: str, heavy: float) -> None:
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         scene.run(t=100.0, method="taylor")
+
+
+def test_a_moon_that_is_lost_is_told() -> None:
+    """The Sun pulls our Moon twice as hard as the Earth does, about which it goes: equal steps threw it out."""
+    G = 6.674e-11
+    bodies = vv.Particles.from_elements(1.98841e30, 5.9722e24, G=G, semi_major_axis=1.495978707e11)
+    bodies = vv.Particles.from_elements(bodies, 7.346e22, G=G, about=1, semi_major_axis=3.844e8)
+    scene = vv.Scene(bodies, vv.Gravity(G))
+    with pytest.warns(vv.AccuracyWarning, match="a turn of body 2 about body 1 has 3"):
+        scene.run(t=5 * 3.156e7, method="leapfrog", dt=8 * 86400.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        scene.run(t=3.156e7, method="leapfrog", dt=0.5 * 86400.0)
+
+
+@pytest.mark.parametrize("mass", [0.0, 1e-12])
+@pytest.mark.parametrize("count", [63, 64, 200])
+def test_many_light_bodies_are_looked_at_too(count: int, mass: float) -> None:
+    """64 of them and more were flung from 0.5 AU to hundreds without a word."""
+    axes = np.linspace(0.3, 0.5, count)
+    bodies = vv.Particles.from_elements(1.0, np.full(count, mass), G=2.959e-4, semi_major_axis=axes)
+    with pytest.warns(vv.AccuracyWarning, match="a turn of body 1 about body 0 has 1"):
+        vv.Scene(bodies, vv.Gravity(2.959e-4)).run(t=36525.0, method="leapfrog", dt=60.0)
+
+
+def test_softened_pulls_and_constants_of_copies_are_looked_at_too() -> None:
+    """A circle in three steps a turn, which left for r = 47."""
+    orbit = vv.Particles.from_elements(1.0, 0.0, G=1.0, semi_major_axis=1.0)
+    how = {"t": 60.0, "method": "leapfrog", "dt": 2.0}
+    with pytest.warns(vv.AccuracyWarning, match=r"a turn of body 1 about body 0 has 3\.14"):
+        vv.Scene(orbit, vv.Gravity(1.0, 1e-6)).run(**how)
+    gravity = vv.Gravity(1.0)
+    copies = vv.Scene(orbit, gravity).ensemble(parameters={gravity: {"G": [1.0, 1.01]}})
+    with pytest.warns(vv.AccuracyWarning, match=r"in copy 1, a turn of body 1 about body 0 has 3\.13"):
+        copies.run(**how)
+
+
+@pytest.mark.parametrize("count", [14, 20, 100])
+def test_a_cluster_that_gains_energy_is_told(count: int) -> None:
+    """A thousand leapfrog steps of a hundred stars took its energy from −0.28 to +1.5; of 15 and more nobody looked."""
+    random = np.random.default_rng(0)
+    bodies = vv.Particles(np.ones(count) / count, random.normal(size=(count, 3)), 0.1 * random.normal(size=(count, 3)))
+    with pytest.warns(vv.AccuracyWarning, match="the energy at the end is off by"):
+        vv.Scene(bodies, vv.Gravity(1.0)).run(t=20.0, method="leapfrog", dt=0.02)

@@ -205,3 +205,16 @@ def test_refusals(call: object, argument: str, message: str) -> None:
     with pytest.raises(vv.InvalidInput, match=message) as refused:
         call()  # type: ignore[operator]
     assert refused.value.argument == argument
+
+
+@pytest.mark.parametrize("angle", [0.0, 1e-300, 1e-9, 1e-7, 1e-6, 1.0])
+def test_grazing_a_wall(angle: float) -> None:
+    """b = R cos(ψ/2) is R to the last digit below 1e-8: the cross section is R²/4 all the same, and no 0."""
+    sphere = V.HardSphere(2.0)
+    # R − b has two digits where the outermost angle is sampled, from which the smaller ones are told.
+    off = 1e-2 if angle < 1e-6 else 1e-7
+    assert s.cross_section(sphere, energy=1.0, angle=angle) == pytest.approx(1.0, rel=off)
+    if angle > 0.0:
+        assert s.impact_parameter(sphere, energy=1.0, angle=angle).impact_parameter == pytest.approx(
+            2.0 * np.cos(angle / 2.0), rel=1e-15
+        )

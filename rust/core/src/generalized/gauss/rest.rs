@@ -14,6 +14,9 @@ pub(super) const LOOKS: usize = 64;
 /// over a step on which it does nothing ([`pace`](super::pace)), is none.
 const PART: f64 = 1e-5;
 
+/// What is smaller counts as nothing: a pulse between the looks begins with numbers that have no digits.
+const LEAST: f64 = 1e-270;
+
 /// The time of a look, of a run that begins there and takes so long.
 pub(super) fn time(look: usize, (begin, span): (f64, f64)) -> f64 {
     begin + span * ((look as f64 + 0.5) / LOOKS as f64)
@@ -22,5 +25,6 @@ pub(super) fn time(look: usize, (begin, span): (f64, f64)) -> f64 {
 /// The larger of a size that is known and that which a rate gives over the span.
 pub(super) fn size(known: f64, rate: f64, span: f64) -> f64 {
     let size = PART * (rate * span).abs();
+    let known = Real::max(known, LEAST);
     if size < f64::INFINITY { Real::max(known, size) } else { known }
 }
