@@ -75,6 +75,7 @@ pub struct Model {
     pub projection: Option<Projection>,
     /// Velocities that dry friction may hold, with their rates, as code.
     pub switches: Vec<Arc<Code>>,
+    needs: Needs,
 }
 
 impl Model {
@@ -111,7 +112,9 @@ impl Model {
             columns,
             projection: None,
             switches: vec![],
+            needs: Needs::default(),
         };
+        model.needs = model.what_is_looked_at();
         model.projection = Projection::new(&mut model)?;
         model.switches = sticking::switches(&mut model)?;
         Ok(model)
@@ -198,6 +201,10 @@ impl Model {
 
     /// What its equations look at.
     pub fn needs(&self) -> Needs {
+        self.needs
+    }
+
+    fn what_is_looked_at(&self) -> Needs {
         use crate::expressions::Node;
         let graph = &self.source.graph;
         let n = self.source.coordinates as u32;
